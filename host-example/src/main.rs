@@ -1,0 +1,2 @@
+//! The sample host.
+fn main() {}
