@@ -1,1 +1,20 @@
-//! Placeholder until the first commit of code.
+//! Images, plans and the two executors of a plan: the part of Isophote that knows no filter.
+//!
+//! A [`plan::Plan`] lists passes over virtual images. [`cpu::CpuExecutor`] runs it with SIMD and
+//! threads; [`program::Program`] is the same plan lowered to textures and dispatches for any
+//! graphics API, and [`gpu`] runs that with wgpu.
+
+pub mod cpu;
+pub mod error;
+pub mod image;
+pub mod kernel;
+pub mod math;
+pub mod pixels;
+pub mod plan;
+pub mod program;
+
+pub use error::{Error, Result};
+pub use fearless_simd;
+pub use image::{Image, Rect, View};
+pub use kernel::{Band, CpuPass, Kernel, Tolerance};
+pub use plan::{Class, ImageId, Plan, PlanBuilder, Support};

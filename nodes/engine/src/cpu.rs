@@ -1,0 +1,324 @@
+//! The CPU executor: bands of rows in parallel, SIMD as the machine has it, exact tiles.
+//!
+//! Every output pixel is computed by the same arithmetic wherever its tile begins and whichever
+//! thread takes its band, so a tile equals the same tile cut from the full frame bit for bit.
+
+use crate::error::{Error, Result};
+use crate::image::{Image, Rect, View};
+use crate::kernel::{Band, CpuPass};
+use crate::plan::Plan;
+use fearless_simd::Level;
+use rayon::prelude::*;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+/// Something that runs independent jobs: the engine's own pool, the caller's thread, or the host's
+/// threads.
+pub trait Threads: Sync {
+    /// How many jobs can make progress at once; at least 1.
+    fn count(&self) -> usize;
+    /// Runs `job(0)`, ..., `job(jobs - 1)`, each once, in any order, and returns when all are done.
+    fn run(&self, jobs: usize, job: &(dyn Fn(usize) + Sync));
+}
+
+/// Everything on the calling thread.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CallingThread;
+
+impl Threads for CallingThread {
+    fn count(&self) -> usize {
+        1
+    }
+
+    fn run(&self, jobs: usize, job: &(dyn Fn(usize) + Sync)) {
+        (0..jobs).for_each(job);
+    }
+}
+
+/// A work-stealing pool of the engine's own. Its threads end when it is dropped.
+#[derive(Debug)]
+pub struct Pool(rayon::ThreadPool);
+
+impl Pool {
+    /// A pool of `threads` threads; 0 means one per core.
+    ///
+    /// # Errors
+    /// [`Error::Memory`] when the system refuses the threads.
+    pub fn new(threads: usize) -> Result<Self> {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .thread_name(|i| format!("isophote-{i}"))
+            .build()
+            .map(Self)
+            .map_err(|e| Error::Memory(format!("cannot start worker threads: {e}")))
+    }
+}
+
+impl Threads for Pool {
+    fn count(&self) -> usize {
+        self.0.current_num_threads()
+    }
+
+    fn run(&self, jobs: usize, job: &(dyn Fn(usize) + Sync)) {
+        self.0.install(|| (0..jobs).into_par_iter().with_max_len(1).for_each(job));
+    }
+}
+
+/// How the caller watches and stops a run.
+#[derive(Clone, Copy, Default)]
+pub struct Control<'a> {
+    /// Asked often, from any thread; true stops the run.
+    pub cancelled: Option<&'a (dyn Fn() -> bool + Sync)>,
+    /// Told the share of the work done, 0..=1, from the calling thread.
+    pub progress: Option<&'a dyn Fn(f32)>,
+}
+
+impl Control<'_> {
+    fn is_cancelled(&self) -> bool {
+        self.cancelled.is_some_and(|c| c())
+    }
+}
+
+/// What one pass took.
+#[derive(Clone, Debug)]
+pub struct PassTime {
+    /// The kernel's name.
+    pub kernel: &'static str,
+    /// Wall-clock time.
+    pub time: Duration,
+    /// Output pixels computed.
+    pub pixels: u64,
+}
+
+/// Runs plans on the CPU. Keeps the memory of transient images from run to run.
+#[derive(Debug)]
+pub struct CpuExecutor {
+    level: Level,
+    spare: Vec<Image>,
+    times: Option<Vec<PassTime>>,
+}
+
+impl Default for CpuExecutor {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl CpuExecutor {
+    /// An executor that uses the widest instruction set of this machine.
+    pub fn new() -> Self {
+        Self::with_level(Level::new())
+    }
+
+    /// An executor that uses the given instruction set (for tests and benchmarks).
+    pub fn with_level(level: Level) -> Self {
+        Self { level, spare: Vec::new(), times: None }
+    }
+
+    /// Starts or stops recording the time of every pass.
+    pub fn record_times(&mut self, on: bool) {
+        self.times = on.then(Vec::new);
+    }
+
+    /// Times of the last run, when recorded.
+    pub fn times(&self) -> &[PassTime] {
+        self.times.as_deref().unwrap_or(&[])
+    }
+
+    /// Gives back the memory kept for the next run.
+    pub fn purge(&mut self) {
+        self.spare.clear();
+    }
+
+    /// Computes `region` (level 0) of every output of `plan`.
+    ///
+    /// `inputs` are found by name; each must hold at least the window that [`Plan::windows`] names
+    /// for it. The outputs come in the order of [`Plan::outputs`].
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a missing or unfitting input, [`Error::Geometry`] for a region outside
+    /// the picture, [`Error::Cancelled`] when `control` says so.
+    pub fn run(
+        &mut self,
+        plan: &Plan,
+        inputs: &[(&str, &Image)],
+        region: Rect,
+        threads: &dyn Threads,
+        control: Control<'_>,
+    ) -> Result<Vec<Image>> {
+        let [width, height] = plan.size();
+        if region.is_empty() || !Rect::of_size(width, height).contains(&region) {
+            return Err(Error::Geometry(format!(
+                "region {region:?} is not inside the picture of {width}x{height}"
+            )));
+        }
+        let windows = plan.windows(region);
+        let mut slots = Slots::bind(plan, inputs, &windows)?;
+        let last_uses = plan.last_uses();
+        if let Some(times) = &mut self.times {
+            times.clear();
+        }
+        let total = plan.passes().len().max(1) as f32;
+        for (index, pass) in plan.passes().iter().enumerate() {
+            if control.is_cancelled() {
+                slots.recycle(&mut self.spare);
+                return Err(Error::Cancelled);
+            }
+            let window = windows[pass.outputs[0].index()];
+            if window.is_empty() {
+                continue;
+            }
+            let started = Instant::now();
+            let mut outputs: Vec<Image> =
+                pass.outputs.iter().map(|o| self.take(window, plan.desc(*o).channels)).collect();
+            let level = plan.desc(pass.outputs[0]).level;
+            let full = plan.level_size(level);
+            let views: Vec<View<'_>> = pass
+                .inputs
+                .iter()
+                .map(|i| View::new(slots.image(i.index()), plan.level_size(plan.desc(*i).level)))
+                .collect();
+            let call = CpuPass { params: &pass.params, inputs: &views, level: self.level };
+            run_bands(pass.kernel.cpu, &call, window, full, &mut outputs, threads, control);
+            drop(views);
+            for (id, image) in pass.outputs.iter().zip(outputs) {
+                slots.owned[id.index()] = Some(image);
+            }
+            for id in &pass.inputs {
+                if last_uses[id.index()] == index
+                    && let Some(image) = slots.owned[id.index()].take()
+                {
+                    self.spare.push(image);
+                }
+            }
+            if let Some(times) = &mut self.times {
+                let pixels = u64::from(window.width()) * u64::from(window.height());
+                times.push(PassTime { kernel: pass.kernel.name, time: started.elapsed(), pixels });
+            }
+            if let Some(progress) = control.progress {
+                progress((index + 1) as f32 / total);
+            }
+        }
+        if control.is_cancelled() {
+            slots.recycle(&mut self.spare);
+            return Err(Error::Cancelled);
+        }
+        let results = plan.outputs().iter().map(|port| slots.finish(port.image.index(), region)).collect();
+        slots.recycle(&mut self.spare);
+        results
+    }
+
+    /// A transient image: the spare one that wastes least memory, or a new one.
+    fn take(&mut self, window: Rect, channels: u32) -> Image {
+        let need = window.width() as usize * window.height() as usize * channels as usize;
+        let best = self
+            .spare
+            .iter()
+            .enumerate()
+            .min_by_key(|(_, image)| image.data().len().abs_diff(need))
+            .map(|(i, _)| i);
+        let mut image = best.map(|i| self.spare.swap_remove(i)).unwrap_or_default();
+        image.reshape(window, channels);
+        image
+    }
+}
+
+/// The images of a run, by virtual image.
+struct Slots<'a> {
+    borrowed: Vec<Option<&'a Image>>,
+    owned: Vec<Option<Image>>,
+}
+
+impl<'a> Slots<'a> {
+    fn bind(plan: &Plan, inputs: &[(&str, &'a Image)], windows: &[Rect]) -> Result<Self> {
+        let mut borrowed = vec![None; plan.images().len()];
+        for port in plan.inputs() {
+            let needed = windows[port.image.index()];
+            if needed.is_empty() {
+                continue;
+            }
+            let Some((_, image)) = inputs.iter().find(|(name, _)| *name == port.name) else {
+                return Err(Error::Input(format!("input image '{}' is missing", port.name)));
+            };
+            let channels = plan.desc(port.image).channels;
+            if image.channels() != channels {
+                return Err(Error::Input(format!(
+                    "input image '{}' has {} channels; {channels} are needed",
+                    port.name,
+                    image.channels()
+                )));
+            }
+            if !image.window().contains(&needed) {
+                return Err(Error::Input(format!(
+                    "input image '{}' covers {:?}; {needed:?} is needed",
+                    port.name,
+                    image.window()
+                )));
+            }
+            borrowed[port.image.index()] = Some(*image);
+        }
+        Ok(Self { borrowed, owned: vec![None; plan.images().len()] })
+    }
+
+    fn image(&self, index: usize) -> &Image {
+        static EMPTY: Image = Image::EMPTY;
+        self.borrowed[index].or(self.owned[index].as_ref()).unwrap_or(&EMPTY)
+    }
+
+    fn finish(&mut self, index: usize, region: Rect) -> Result<Image> {
+        match self.owned[index].take() {
+            Some(image) if image.window() == region => Ok(image),
+            Some(image) => {
+                let part = image.crop(region);
+                self.owned[index] = Some(image);
+                part
+            }
+            None => self.image(index).crop(region),
+        }
+    }
+
+    fn recycle(self, spare: &mut Vec<Image>) {
+        spare.extend(self.owned.into_iter().flatten());
+    }
+}
+
+fn run_bands(
+    kernel: fn(&CpuPass<'_>, &mut Band<'_>),
+    pass: &CpuPass<'_>,
+    window: Rect,
+    full: [i32; 2],
+    outputs: &mut [Image],
+    threads: &dyn Threads,
+    control: Control<'_>,
+) {
+    let height = window.height() as usize;
+    // Some bands per thread even out unequal rows; very thin ones would read their halo too often.
+    let bands = (threads.count() * 4).clamp(1, height.div_ceil(8).max(1));
+    let rows = height.div_ceil(bands);
+    let count = height.div_ceil(rows);
+    let mut jobs: Vec<Mutex<Band<'_>>> = (0..count)
+        .map(|i| {
+            let y0 = window.y0 + (i * rows) as i32;
+            let y1 = (y0 + rows as i32).min(window.y1);
+            Mutex::new(Band { window: Rect { y0, y1, ..window }, full, outputs: Vec::with_capacity(outputs.len()) })
+        })
+        .collect();
+    for image in outputs {
+        let stride = image.stride();
+        for (job, part) in jobs.iter_mut().zip(image.data_mut().chunks_mut(rows * stride)) {
+            if let Ok(band) = job.get_mut() {
+                band.outputs.push(part);
+            }
+        }
+    }
+    let cancelled = control.cancelled;
+    threads.run(jobs.len(), &|i| {
+        if cancelled.is_some_and(|c| c()) {
+            return;
+        }
+        // A band is locked once, by the one job that owns it.
+        if let Ok(mut band) = jobs[i].lock() {
+            kernel(pass, &mut band);
+        }
+    });
+}

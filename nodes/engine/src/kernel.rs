@@ -1,0 +1,97 @@
+//! What a kernel is: one pass over an image, as a WGSL shader and as a CPU function.
+//!
+//! The engine knows no kernel. It runs whatever a plan names, on either executor, by this contract.
+
+use crate::image::{Rect, View};
+use fearless_simd::Level;
+
+/// Most images that one pass may read; the size of `Grid.inputs` in `shaders/shared/grid.wgsl`.
+pub const MAX_INPUTS: usize = 6;
+
+/// Side of the square workgroups of every kernel.
+pub const WORKGROUP: u32 = 8;
+
+/// One kernel: the shader, its CPU twin and what both need to be run.
+#[derive(Debug)]
+pub struct Kernel {
+    /// Stem of the WGSL file and of the Rust file.
+    pub name: &'static str,
+    /// Complete WGSL module, imports resolved, entry point `main`.
+    pub shader: &'static str,
+    /// Images read, at bindings 2, 3, ...
+    pub inputs: usize,
+    /// Channels of the images written, at the bindings after the inputs.
+    pub outputs: &'static [u32],
+    /// Size of the uniform block at binding 1, in bytes.
+    pub params_size: usize,
+    /// The CPU twin: fills one band of the outputs.
+    pub cpu: fn(&CpuPass<'_>, &mut Band<'_>),
+    /// Fused multiply-adds (or operations of like cost) per output pixel, for benchmarks.
+    pub cost: fn(&[u8]) -> f64,
+    /// How far the two twins may differ.
+    pub tolerance: Tolerance,
+}
+
+impl PartialEq for &'static Kernel {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(*self, *other)
+    }
+}
+
+/// The bound on the difference between a shader and its CPU twin:
+/// |gpu - cpu| <= absolute + relative * max(|gpu|, |cpu|), for all but a share of `outliers`.
+#[derive(Clone, Copy, Debug)]
+pub struct Tolerance {
+    /// In the unit of the output.
+    pub absolute: f32,
+    /// As a share of the larger value.
+    pub relative: f32,
+    /// Share of the values that may break the bound (a floor, a comparison or a stream line that
+    /// goes the other way on the last bit).
+    pub outliers: f32,
+    /// Why these numbers.
+    pub reason: &'static str,
+}
+
+/// What a CPU twin is given: the uniform block, the inputs and the instruction set to use.
+#[derive(Debug)]
+pub struct CpuPass<'a> {
+    /// The uniform block's bytes, as the shader would see them.
+    pub params: &'a [u8],
+    /// The images read, each with the pixels that the pass's support promises.
+    pub inputs: &'a [View<'a>],
+    /// The widest instruction set that this machine has.
+    pub level: Level,
+}
+
+impl CpuPass<'_> {
+    /// The uniform block as the kernel's own type.
+    ///
+    /// # Panics
+    /// When the plan was made with a block of another size, which the plan builder refuses.
+    pub fn params<P: bytemuck::AnyBitPattern>(&self) -> P {
+        bytemuck::pod_read_unaligned(self.params)
+    }
+}
+
+/// A band of output rows that one CPU job fills.
+#[derive(Debug)]
+pub struct Band<'a> {
+    /// Columns and rows to write, absolute.
+    pub window: Rect,
+    /// Size of the whole output picture.
+    pub full: [i32; 2],
+    /// The values of the band, one slice per output, rows adjacent.
+    pub outputs: Vec<&'a mut [f32]>,
+}
+
+impl Band<'_> {
+    /// Row `y` (absolute) of output `index`, from column `window.x0` to `window.x1`.
+    #[inline]
+    pub fn row_mut(&mut self, index: usize, y: i32) -> &mut [f32] {
+        let rows = self.window.height() as usize;
+        let stride = self.outputs[index].len() / rows;
+        let start = (y - self.window.y0) as usize * stride;
+        &mut self.outputs[index][start..start + stride]
+    }
+}

@@ -1,0 +1,415 @@
+//! A plan: what to run, not how.
+//!
+//! Nodes describe passes over virtual images; equal passes are recorded once, so that two nodes
+//! which need the same structure tensor share it without knowing of each other. Everything that
+//! both executors must agree on is decided here, once.
+
+use crate::error::{Error, Result};
+use crate::image::{Rect, check_size};
+use crate::kernel::{Kernel, MAX_INPUTS};
+use std::collections::HashMap;
+
+/// A virtual image of a plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ImageId(pub(crate) u32);
+
+impl ImageId {
+    /// Position in [`Plan::images`].
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// How precisely an image must be kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Class {
+    /// Tensors, distances, orientations: always 32-bit float.
+    Field,
+    /// Colours: an executor may keep them in half precision where the caller allows it.
+    Colour,
+}
+
+/// Shape of a virtual image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ImageDesc {
+    /// Values a pixel, 1..=4.
+    pub channels: u32,
+    /// Precision needed.
+    pub class: Class,
+    /// Pyramid level: sides are ceil(n / 2^level); negative levels are oversampled.
+    pub level: i8,
+}
+
+/// How far around an output pixel a pass reads its inputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Support {
+    /// At most so many pixels of the input's own level, in x and in y.
+    Pixels(u32),
+    /// Anywhere.
+    Global,
+}
+
+/// One pass over an image.
+#[derive(Clone, Debug)]
+pub struct Pass {
+    /// What to run.
+    pub kernel: &'static Kernel,
+    /// Images read.
+    pub inputs: Vec<ImageId>,
+    /// Images written; all of one level.
+    pub outputs: Vec<ImageId>,
+    /// The kernel's uniform block.
+    pub params: Vec<u8>,
+    /// How far the kernel reads.
+    pub support: Support,
+}
+
+/// An image that enters or leaves a plan, by name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Port {
+    /// The caller's name for it.
+    pub name: String,
+    /// The virtual image.
+    pub image: ImageId,
+}
+
+/// Passes in order, with the images that enter and leave.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    size: [u32; 2],
+    images: Vec<ImageDesc>,
+    passes: Vec<Pass>,
+    inputs: Vec<Port>,
+    outputs: Vec<Port>,
+    /// Which pass each call of the builder led to; replayed by edits.
+    calls: Vec<u32>,
+    /// The edit in which each pass was last written.
+    stamps: Vec<u64>,
+    edit: u64,
+}
+
+impl Plan {
+    /// Size of the picture at level 0, in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// All virtual images.
+    pub fn images(&self) -> &[ImageDesc] {
+        &self.images
+    }
+
+    /// All passes, in the order of execution.
+    pub fn passes(&self) -> &[Pass] {
+        &self.passes
+    }
+
+    /// Images that enter.
+    pub fn inputs(&self) -> &[Port] {
+        &self.inputs
+    }
+
+    /// Images that leave.
+    pub fn outputs(&self) -> &[Port] {
+        &self.outputs
+    }
+
+    /// Shape of a virtual image.
+    pub fn desc(&self, image: ImageId) -> ImageDesc {
+        self.images[image.index()]
+    }
+
+    /// Size of the whole picture at `level`: ceil(n / 2^level), at least 1.
+    pub fn level_size(&self, level: i8) -> [i32; 2] {
+        self.size.map(|n| {
+            if level >= 0 { n.div_ceil(1 << level.min(31)).max(1) as i32 } else { (n << (-level).min(4)) as i32 }
+        })
+    }
+
+    /// The window of every virtual image that is needed to compute `region` (level 0) of every
+    /// output. Images that are not needed get an empty window.
+    pub fn windows(&self, region: Rect) -> Vec<Rect> {
+        let mut windows = vec![Rect::default(); self.images.len()];
+        for port in &self.outputs {
+            let level = self.desc(port.image).level;
+            let needed = self.clip(rescale(region, 0, level), level);
+            windows[port.image.index()] = windows[port.image.index()].union(&needed);
+        }
+        for pass in self.passes.iter().rev() {
+            let out = pass.outputs.iter().fold(Rect::default(), |r, o| r.union(&windows[o.index()]));
+            if out.is_empty() {
+                continue;
+            }
+            // Every output of a pass is computed over the same window.
+            for output in &pass.outputs {
+                windows[output.index()] = out;
+            }
+            let out_level = self.desc(pass.outputs[0]).level;
+            for input in &pass.inputs {
+                let level = self.desc(*input).level;
+                let needed = match pass.support {
+                    Support::Pixels(n) => self.clip(rescale(out, out_level, level).grown(n as i32), level),
+                    Support::Global => self.whole(level),
+                };
+                windows[input.index()] = windows[input.index()].union(&needed);
+            }
+        }
+        windows
+    }
+
+    /// How far outside a region the inputs are read, in pixels of level 0, or `Global`.
+    pub fn support(&self) -> Support {
+        // A region far from every border shows the full halo.
+        let wide = Plan { size: [1 << 24, 1 << 24], ..self.clone() };
+        let centre = 1 << 23;
+        let region = Rect { x0: centre, y0: centre, x1: centre + 1, y1: centre + 1 };
+        let windows = wide.windows(region);
+        let mut halo = 0;
+        for port in &wide.inputs {
+            let window = windows[port.image.index()];
+            if window.is_empty() {
+                continue;
+            }
+            if window.x0 <= 0 {
+                return Support::Global;
+            }
+            halo = halo.max(region.x0 - window.x0).max(window.x1 - region.x1);
+            halo = halo.max(region.y0 - window.y0).max(window.y1 - region.y1);
+        }
+        Support::Pixels(halo as u32)
+    }
+
+    /// The last pass that reads each image (or writes it, when nobody reads it); images that leave
+    /// the plan live on past the end.
+    pub fn last_uses(&self) -> Vec<usize> {
+        let mut last = vec![0; self.images.len()];
+        for (index, pass) in self.passes.iter().enumerate() {
+            for image in pass.inputs.iter().chain(&pass.outputs) {
+                last[image.index()] = index;
+            }
+        }
+        for port in &self.outputs {
+            last[port.image.index()] = usize::MAX;
+        }
+        last
+    }
+
+    /// Describes the plan again with other uniform bytes, in place and without allocating.
+    ///
+    /// Returns false when the description took another course (other passes, other connections, or
+    /// passes that were shared and now differ); the plan is then spoiled and must be made anew.
+    pub fn edit<E>(&mut self, describe: impl FnOnce(&mut PlanBuilder) -> std::result::Result<(), E>) -> std::result::Result<bool, E> {
+        let mut plan = std::mem::take(self);
+        plan.edit += 1;
+        let mut builder = PlanBuilder { plan, shared: HashMap::new(), replay: Some(Replay::default()) };
+        let described = describe(&mut builder);
+        let replay = builder.replay.unwrap_or_default();
+        let complete =
+            replay.call == builder.plan.calls.len() && replay.output == builder.plan.outputs.len();
+        *self = builder.plan;
+        described.map(|()| complete && !replay.diverged)
+    }
+
+    fn whole(&self, level: i8) -> Rect {
+        let [w, h] = self.level_size(level);
+        Rect { x0: 0, y0: 0, x1: w, y1: h }
+    }
+
+    fn clip(&self, rect: Rect, level: i8) -> Rect {
+        // A region wholly outside still needs the edge pixels that it clamps to.
+        let [w, h] = self.level_size(level);
+        let x0 = rect.x0.clamp(0, w - 1);
+        let y0 = rect.y0.clamp(0, h - 1);
+        Rect { x0, y0, x1: rect.x1.clamp(x0 + 1, w), y1: rect.y1.clamp(y0 + 1, h) }
+    }
+}
+
+/// The pixels of level `to` that lie under `rect` of level `from`.
+fn rescale(rect: Rect, from: i8, to: i8) -> Rect {
+    let shift = i32::from(to) - i32::from(from);
+    if shift >= 0 {
+        let up = |v: i32| (v + (1 << shift) - 1) >> shift;
+        Rect { x0: rect.x0 >> shift, y0: rect.y0 >> shift, x1: up(rect.x1), y1: up(rect.y1) }
+    } else {
+        Rect { x0: rect.x0 << -shift, y0: rect.y0 << -shift, x1: rect.x1 << -shift, y1: rect.y1 << -shift }
+    }
+}
+
+#[derive(Default)]
+struct Replay {
+    call: usize,
+    output: usize,
+    diverged: bool,
+}
+
+#[derive(PartialEq, Eq, Hash)]
+struct PassKey {
+    kernel: *const Kernel,
+    inputs: Vec<ImageId>,
+    params: Vec<u8>,
+    support: Support,
+    outputs: Vec<(Class, i8)>,
+}
+
+/// Records the passes of a plan, or replays them with other uniform bytes.
+pub struct PlanBuilder {
+    plan: Plan,
+    shared: HashMap<PassKey, u32>,
+    replay: Option<Replay>,
+}
+
+impl PlanBuilder {
+    /// An empty plan for pictures of `width` x `height`.
+    ///
+    /// # Errors
+    /// [`Error::Geometry`] when a side is 0 or too large.
+    pub fn new(width: u32, height: u32) -> Result<Self> {
+        check_size(width, height)?;
+        let plan = Plan { size: [width, height], ..Plan::default() };
+        Ok(Self { plan, shared: HashMap::new(), replay: None })
+    }
+
+    /// Size of the picture at level 0.
+    pub fn size(&self) -> [u32; 2] {
+        self.plan.size
+    }
+
+    /// Size of the picture at `level`.
+    pub fn level_size(&self, level: i8) -> [i32; 2] {
+        self.plan.level_size(level)
+    }
+
+    /// Shape of an image described so far.
+    pub fn desc(&self, image: ImageId) -> ImageDesc {
+        self.plan.desc(image)
+    }
+
+    /// Declares an image that enters; the same name twice is the same image.
+    pub fn input(&mut self, name: &str, channels: u32, class: Class) -> ImageId {
+        if let Some(port) = self.plan.inputs.iter().find(|p| p.name == name) {
+            return port.image;
+        }
+        if let Some(replay) = &mut self.replay {
+            replay.diverged = true;
+            return ImageId(0);
+        }
+        let image = self.image(ImageDesc { channels, class, level: 0 });
+        self.plan.inputs.push(Port { name: name.to_owned(), image });
+        image
+    }
+
+    /// Declares an image that leaves.
+    pub fn output(&mut self, name: &str, image: ImageId) {
+        if let Some(replay) = &mut self.replay {
+            let same = self.plan.outputs.get(replay.output).is_some_and(|p| p.name == name && p.image == image);
+            replay.diverged |= !same;
+            replay.output += 1;
+            return;
+        }
+        self.plan.outputs.push(Port { name: name.to_owned(), image });
+    }
+
+    /// Adds a pass with one output at the level of its first input.
+    pub fn pass<P: bytemuck::NoUninit>(
+        &mut self,
+        kernel: &'static Kernel,
+        inputs: &[ImageId],
+        params: &P,
+        class: Class,
+        support: Support,
+    ) -> ImageId {
+        let level = inputs.first().map_or(0, |i| self.desc(*i).level);
+        self.pass_at(kernel, inputs, params, &[class], support, level)
+    }
+
+    /// Adds a pass whose outputs lie at `level`, and returns the first of them; the others follow it
+    /// ([`PlanBuilder::sibling`]).
+    pub fn pass_at<P: bytemuck::NoUninit>(
+        &mut self,
+        kernel: &'static Kernel,
+        inputs: &[ImageId],
+        params: &P,
+        classes: &[Class],
+        support: Support,
+        level: i8,
+    ) -> ImageId {
+        let params = bytemuck::bytes_of(params);
+        // These three are slips of the describing code, never of outside data; a node's tests meet them.
+        assert_eq!(params.len(), kernel.params_size, "{}: uniform block of another size", kernel.name);
+        assert_eq!(inputs.len(), kernel.inputs, "{}: wrong number of inputs", kernel.name);
+        assert_eq!(classes.len(), kernel.outputs.len(), "{}: wrong number of outputs", kernel.name);
+        debug_assert!(inputs.len() <= MAX_INPUTS);
+        if self.replay.is_some() {
+            return self.replayed(kernel, inputs, params, support, level);
+        }
+        let key = PassKey {
+            kernel,
+            inputs: inputs.to_vec(),
+            params: params.to_vec(),
+            support,
+            outputs: classes.iter().map(|c| (*c, level)).collect(),
+        };
+        if let Some(index) = self.shared.get(&key) {
+            self.plan.calls.push(*index);
+            return self.plan.passes[*index as usize].outputs[0];
+        }
+        let outputs: Vec<ImageId> = classes
+            .iter()
+            .zip(kernel.outputs)
+            .map(|(class, channels)| self.image(ImageDesc { channels: *channels, class: *class, level }))
+            .collect();
+        let index = self.plan.passes.len() as u32;
+        let first = outputs[0];
+        self.plan.passes.push(Pass { kernel, inputs: inputs.to_vec(), outputs, params: params.to_vec(), support });
+        self.plan.stamps.push(0);
+        self.plan.calls.push(index);
+        self.shared.insert(key, index);
+        first
+    }
+
+    /// The `n`th image written by the pass that wrote `first`.
+    pub fn sibling(&self, first: ImageId, n: u32) -> ImageId {
+        ImageId(first.0 + n)
+    }
+
+    /// The finished plan.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when nothing leaves it.
+    pub fn finish(self) -> Result<Plan> {
+        if self.plan.outputs.is_empty() {
+            return Err(Error::Input("the plan has no output".into()));
+        }
+        Ok(self.plan)
+    }
+
+    fn image(&mut self, desc: ImageDesc) -> ImageId {
+        self.plan.images.push(desc);
+        ImageId(self.plan.images.len() as u32 - 1)
+    }
+
+    fn replayed(&mut self, kernel: &'static Kernel, inputs: &[ImageId], params: &[u8], support: Support, level: i8) -> ImageId {
+        let Some(replay) = &mut self.replay else { return ImageId(0) };
+        let plan = &mut self.plan;
+        let Some(&index) = plan.calls.get(replay.call) else {
+            replay.diverged = true;
+            return ImageId(0);
+        };
+        replay.call += 1;
+        let pass = &mut plan.passes[index as usize];
+        let out_level = plan.images[pass.outputs[0].index()].level;
+        if !std::ptr::eq(pass.kernel, kernel) || pass.inputs != inputs || out_level != level {
+            replay.diverged = true;
+            return pass.outputs[0];
+        }
+        let stamp = &mut plan.stamps[index as usize];
+        if *stamp == plan.edit && (pass.params != params || pass.support != support) {
+            // Two requests shared this pass and now ask for different things.
+            replay.diverged = true;
+        }
+        *stamp = plan.edit;
+        pass.params.copy_from_slice(params);
+        pass.support = support;
+        pass.outputs[0]
+    }
+}

@@ -1,0 +1,204 @@
+//! A program: a plan lowered to textures, bindings, uniform bytes and dispatch sizes.
+//!
+//! This is the plan as plain data, ready for any graphics API: no device, queue or driver handle
+//! appears in it. The `gpu` executor runs it with wgpu; a host may run it with whatever it has.
+//!
+//! Bindings of every pass, all in group 0: 0 is the `Grid` uniform (below), 1 the kernel's own
+//! uniform block, then the sampled textures in order, then the storage textures in order. Textures
+//! are read by integer loads only and never filtered.
+
+use crate::error::{Error, Result};
+use crate::image::Rect;
+use crate::kernel::{Kernel, MAX_INPUTS, WORKGROUP};
+use crate::plan::{Class, Plan};
+
+/// What a texture of a program is for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// The host binds its own texture here. It must show the picture's window named by `window`.
+    Input(String),
+    /// A result; the host's own texture or one it allocates.
+    Output(String),
+    /// Scratch memory; contents do not survive the program, and equal shapes are reused.
+    Transient,
+}
+
+/// One physical texture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Texture {
+    /// What it is for.
+    pub role: Role,
+    /// 1, 2 or 4 stored channels: r32float, rg32float, rgba32float. (Three are stored as four.)
+    pub channels: u32,
+    /// Precision needed.
+    pub class: Class,
+    /// Part of the picture (at its pyramid level) that the texture holds, in pixels.
+    pub window: Rect,
+}
+
+/// The uniform block at binding 0: where the textures of a pass lie in the picture.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Grid {
+    /// Absolute position of texel (0, 0) of the outputs.
+    pub origin: [i32; 2],
+    /// Texels to write.
+    pub size: [i32; 2],
+    /// Size of the whole picture at the outputs' level.
+    pub full: [i32; 2],
+    /// Zero.
+    pub reserved: [i32; 2],
+    /// Per input: absolute position of texel (0, 0), and the whole picture's size at its level.
+    pub inputs: [[i32; 4]; MAX_INPUTS],
+}
+
+/// One dispatch.
+#[derive(Clone, Debug)]
+pub struct Dispatch {
+    /// The kernel; its `shader` is the WGSL module, entry point `main`.
+    pub kernel: &'static Kernel,
+    /// Uniform at binding 0.
+    pub grid: Grid,
+    /// Uniform at binding 1.
+    pub params: Vec<u8>,
+    /// Sampled textures, indices into [`Program::textures`], from binding 2.
+    pub inputs: Vec<u32>,
+    /// Storage textures (write only), from the binding after the inputs.
+    pub outputs: Vec<u32>,
+    /// Workgroups in x, y, z.
+    pub workgroups: [u32; 3],
+}
+
+/// A plan lowered for one region.
+#[derive(Clone, Debug, Default)]
+pub struct Program {
+    /// All textures; inputs and outputs first, in the plan's order.
+    pub textures: Vec<Texture>,
+    /// All dispatches in order. Between two there must be a barrier wherever one reads what the
+    /// other wrote (wgpu and WebGPU place it by themselves).
+    pub dispatches: Vec<Dispatch>,
+    /// Which pass of the plan each dispatch came from.
+    passes: Vec<usize>,
+}
+
+impl Program {
+    /// Lowers `plan` for `region` (level 0). Transient images with disjoint lives share a texture.
+    ///
+    /// # Errors
+    /// [`Error::Geometry`] for a region outside the picture, [`Error::Input`] for a plan whose output
+    /// is one of its inputs.
+    pub fn lower(plan: &Plan, region: Rect) -> Result<Self> {
+        let [width, height] = plan.size();
+        if region.is_empty() || !Rect::of_size(width, height).contains(&region) {
+            return Err(Error::Geometry(format!(
+                "region {region:?} is not inside the picture of {width}x{height}"
+            )));
+        }
+        let windows = plan.windows(region);
+        let last_uses = plan.last_uses();
+        let mut program = Self::default();
+        let mut slots: Vec<Option<u32>> = vec![None; plan.images().len()];
+        for port in plan.inputs() {
+            let role = Role::Input(port.name.clone());
+            program.add(plan, &windows, port.image.index(), role, &mut slots);
+        }
+        for port in plan.outputs() {
+            if slots[port.image.index()].is_some() {
+                return Err(Error::Input(format!(
+                    "output '{}' is an input or another output passed on unchanged",
+                    port.name
+                )));
+            }
+            program.add(plan, &windows, port.image.index(), Role::Output(port.name.clone()), &mut slots);
+        }
+        let mut free: Vec<u32> = Vec::new();
+        for (index, pass) in plan.passes().iter().enumerate() {
+            let window = windows[pass.outputs[0].index()];
+            if window.is_empty() {
+                continue;
+            }
+            for output in &pass.outputs {
+                if slots[output.index()].is_some() {
+                    continue;
+                }
+                let wanted = texture(plan, &windows, output.index(), Role::Transient);
+                let found = free.iter().position(|f| program.textures[*f as usize] == wanted);
+                slots[output.index()] = Some(match found {
+                    Some(at) => free.swap_remove(at),
+                    None => {
+                        program.textures.push(wanted);
+                        program.textures.len() as u32 - 1
+                    }
+                });
+            }
+            program.dispatches.push(dispatch(plan, &windows, index, &slots));
+            program.passes.push(index);
+            for image in pass.inputs.iter().chain(&pass.outputs) {
+                let slot = slots[image.index()];
+                if last_uses[image.index()] == index
+                    && let Some(slot) = slot
+                    && program.textures[slot as usize].role == Role::Transient
+                    && !free.contains(&slot)
+                {
+                    free.push(slot);
+                }
+            }
+        }
+        Ok(program)
+    }
+
+    /// Takes over the uniform bytes of a plan that was edited in place.
+    pub fn repack(&mut self, plan: &Plan) {
+        for (dispatch, pass) in self.dispatches.iter_mut().zip(&self.passes) {
+            dispatch.params.copy_from_slice(&plan.passes()[*pass].params);
+        }
+    }
+
+    /// Index of the input texture of this name.
+    pub fn input(&self, name: &str) -> Option<usize> {
+        self.textures.iter().position(|t| matches!(&t.role, Role::Input(n) if n == name))
+    }
+
+    /// Index of the output texture of this name.
+    pub fn output(&self, name: &str) -> Option<usize> {
+        self.textures.iter().position(|t| matches!(&t.role, Role::Output(n) if n == name))
+    }
+
+    fn add(&mut self, plan: &Plan, windows: &[Rect], image: usize, role: Role, slots: &mut [Option<u32>]) {
+        if windows[image].is_empty() {
+            return;
+        }
+        slots[image] = Some(self.textures.len() as u32);
+        self.textures.push(texture(plan, windows, image, role));
+    }
+}
+
+fn texture(plan: &Plan, windows: &[Rect], image: usize, role: Role) -> Texture {
+    let desc = plan.images()[image];
+    let channels = if desc.channels == 3 { 4 } else { desc.channels };
+    Texture { role, channels, class: desc.class, window: windows[image] }
+}
+
+fn dispatch(plan: &Plan, windows: &[Rect], index: usize, slots: &[Option<u32>]) -> Dispatch {
+    let pass = &plan.passes()[index];
+    let out = pass.outputs[0];
+    let window = windows[out.index()];
+    let full = plan.level_size(plan.desc(out).level);
+    let mut inputs = [[0; 4]; MAX_INPUTS];
+    for (slot, image) in inputs.iter_mut().zip(&pass.inputs) {
+        let w = windows[image.index()];
+        let [fw, fh] = plan.level_size(plan.desc(*image).level);
+        *slot = [w.x0, w.y0, fw, fh];
+    }
+    let size = [window.width() as i32, window.height() as i32];
+    // Every image of a pass got its texture above or in an earlier pass.
+    let textures = |ids: &[crate::plan::ImageId]| ids.iter().filter_map(|i| slots[i.index()]).collect();
+    Dispatch {
+        kernel: pass.kernel,
+        grid: Grid { origin: [window.x0, window.y0], size, full, reserved: [0; 2], inputs },
+        params: pass.params.clone(),
+        inputs: textures(&pass.inputs),
+        outputs: textures(&pass.outputs),
+        workgroups: [window.width().div_ceil(WORKGROUP), window.height().div_ceil(WORKGROUP), 1],
+    }
+}
