@@ -300,7 +300,11 @@ fn run_bands(
         .map(|i| {
             let y0 = window.y0 + (i * rows) as i32;
             let y1 = (y0 + rows as i32).min(window.y1);
-            Mutex::new(Band { window: Rect { y0, y1, ..window }, full, outputs: Vec::with_capacity(outputs.len()) })
+            Mutex::new(Band {
+                window: Rect { y0, y1, ..window },
+                full,
+                outputs: Vec::with_capacity(outputs.len()),
+            })
         })
         .collect();
     for image in outputs {

@@ -198,7 +198,13 @@ mod tests {
     use crate::image::Image;
     use fearless_simd::{Level, dispatch};
 
-    fn apply(f: impl Fn(f32) -> f64, simd: impl Fn(&[f32; 16]) -> [f32; 16], low: f32, high: f32, bound: f64) {
+    fn apply(
+        f: impl Fn(f32) -> f64,
+        simd: impl Fn(&[f32; 16]) -> [f32; 16],
+        low: f32,
+        high: f32,
+        bound: f64,
+    ) {
         for i in 0..2000 {
             let x = std::array::from_fn(|k| low + (high - low) * (i * 16 + k) as f32 / 32000.0);
             for (x, got) in x.iter().zip(simd(&x)) {
@@ -209,7 +215,10 @@ mod tests {
         }
     }
 
-    fn on_lanes(x: &[f32; 16], f: impl Fn(f32x16<fearless_simd::Avx2>) -> f32x16<fearless_simd::Avx2>) -> Option<[f32; 16]> {
+    fn on_lanes(
+        x: &[f32; 16],
+        f: impl Fn(f32x16<fearless_simd::Avx2>) -> f32x16<fearless_simd::Avx2>,
+    ) -> Option<[f32; 16]> {
         let simd = Level::new().as_avx2()?;
         Some(simd.vectorize(
             #[inline(always)]

@@ -122,7 +122,11 @@ impl Plan {
     /// Size of the whole picture at `level`: ceil(n / 2^level), at least 1.
     pub fn level_size(&self, level: i8) -> [i32; 2] {
         self.size.map(|n| {
-            if level >= 0 { n.div_ceil(1 << level.min(31)).max(1) as i32 } else { (n << (-level).min(4)) as i32 }
+            if level >= 0 {
+                n.div_ceil(1 << level.min(31)).max(1) as i32
+            } else {
+                (n << (-level).min(4)) as i32
+            }
         })
     }
 
@@ -198,14 +202,16 @@ impl Plan {
     ///
     /// Returns false when the description took another course (other passes, other connections, or
     /// passes that were shared and now differ); the plan is then spoiled and must be made anew.
-    pub fn edit<E>(&mut self, describe: impl FnOnce(&mut PlanBuilder) -> std::result::Result<(), E>) -> std::result::Result<bool, E> {
+    pub fn edit<E>(
+        &mut self,
+        describe: impl FnOnce(&mut PlanBuilder) -> std::result::Result<(), E>,
+    ) -> std::result::Result<bool, E> {
         let mut plan = std::mem::take(self);
         plan.edit += 1;
         let mut builder = PlanBuilder { plan, shared: HashMap::new(), replay: Some(Replay::default()) };
         let described = describe(&mut builder);
         let replay = builder.replay.unwrap_or_default();
-        let complete =
-            replay.call == builder.plan.calls.len() && replay.output == builder.plan.outputs.len();
+        let complete = replay.call == builder.plan.calls.len() && replay.output == builder.plan.outputs.len();
         *self = builder.plan;
         described.map(|()| complete && !replay.diverged)
     }
@@ -301,7 +307,8 @@ impl PlanBuilder {
     /// Declares an image that leaves.
     pub fn output(&mut self, name: &str, image: ImageId) {
         if let Some(replay) = &mut self.replay {
-            let same = self.plan.outputs.get(replay.output).is_some_and(|p| p.name == name && p.image == image);
+            let same =
+                self.plan.outputs.get(replay.output).is_some_and(|p| p.name == name && p.image == image);
             replay.diverged |= !same;
             replay.output += 1;
             return;
@@ -360,7 +367,13 @@ impl PlanBuilder {
             .collect();
         let index = self.plan.passes.len() as u32;
         let first = outputs[0];
-        self.plan.passes.push(Pass { kernel, inputs: inputs.to_vec(), outputs, params: params.to_vec(), support });
+        self.plan.passes.push(Pass {
+            kernel,
+            inputs: inputs.to_vec(),
+            outputs,
+            params: params.to_vec(),
+            support,
+        });
         self.plan.stamps.push(0);
         self.plan.calls.push(index);
         self.shared.insert(key, index);
@@ -388,7 +401,14 @@ impl PlanBuilder {
         ImageId(self.plan.images.len() as u32 - 1)
     }
 
-    fn replayed(&mut self, kernel: &'static Kernel, inputs: &[ImageId], params: &[u8], support: Support, level: i8) -> ImageId {
+    fn replayed(
+        &mut self,
+        kernel: &'static Kernel,
+        inputs: &[ImageId],
+        params: &[u8],
+        support: Support,
+        level: i8,
+    ) -> ImageId {
         let Some(replay) = &mut self.replay else { return ImageId(0) };
         let plan = &mut self.plan;
         let Some(&index) = plan.calls.get(replay.call) else {

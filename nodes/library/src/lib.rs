@@ -1,3 +1,5 @@
 //! Placeholder until the first commit of code.
 /// x
-pub fn hello() -> u32 { 3 }
+pub fn hello() -> u32 {
+    3
+}

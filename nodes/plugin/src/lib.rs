@@ -1,3 +1,5 @@
 //! Placeholder until the first commit of code.
 /// x
-pub fn h() -> u32 { isophote::hello() }
+pub fn h() -> u32 {
+    isophote::hello()
+}
