@@ -1,5 +1,23 @@
-//! Placeholder until the first commit of code.
-/// x
-pub fn hello() -> u32 {
-    3
-}
+//! Structure-adaptive stylization filters as composable nodes.
+//!
+//! After J. E. Kyprianidis, *Structure Adaptive Stylization of Images and Video*. A [`graph::Graph`]
+//! connects nodes of the [`registry`]; it is turned into a plan of passes that either executor of
+//! [`isophote_engine`] runs, on the CPU or on a GPU.
+
+#![forbid(unsafe_code)]
+
+pub mod error;
+pub mod graph;
+mod json;
+pub mod kernels;
+pub mod nodes;
+pub mod registry;
+pub mod request;
+pub mod spec;
+pub mod values;
+
+pub use error::{Error, Result};
+pub use graph::{Graph, NodeId};
+pub use isophote_engine as engine;
+pub use request::{ColourSpace, Planned, Request};
+pub use values::Value;

@@ -1,5 +1,1 @@
-//! Placeholder until the first commit of code.
-/// x
-pub fn h() -> u32 {
-    isophote::hello()
-}
+//! The dynamic library: the C face of Isophote.

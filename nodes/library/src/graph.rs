@@ -1,0 +1,367 @@
+//! Graphs: nodes, their parameter values and how they are connected.
+
+use crate::error::{Error, Result, nearest};
+use crate::registry;
+use crate::request::Request;
+use crate::spec::{ImageKind, NodeSpec};
+use crate::values::{self, Value};
+
+/// A picture that enters a graph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum GraphInput {
+    /// The picture to stylize.
+    Color,
+    /// View-space normals.
+    Normal,
+    /// Distance from the camera.
+    Depth,
+    /// Object numbers.
+    ObjectId,
+}
+
+impl GraphInput {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Color, Self::Normal, Self::Depth, Self::ObjectId];
+
+    /// Stable name, which is also the name of the plan's input.
+    pub const fn id(self) -> &'static str {
+        self.kind().id()
+    }
+
+    /// What it holds.
+    pub const fn kind(self) -> ImageKind {
+        match self {
+            Self::Color => ImageKind::Color,
+            Self::Normal => ImageKind::Normal,
+            Self::Depth => ImageKind::Depth,
+            Self::ObjectId => ImageKind::ObjectId,
+        }
+    }
+
+    /// The input of this name.
+    pub fn from_id(id: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|i| i.id() == id)
+    }
+}
+
+/// Where an input port takes its picture from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A picture that enters the graph.
+    Input(GraphInput),
+    /// The output of the node at this position.
+    Node(usize),
+}
+
+/// A node of one graph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct NodeId(usize);
+
+impl NodeId {
+    /// Position in the graph, in the order of addition.
+    pub const fn index(self) -> usize {
+        self.0
+    }
+}
+
+/// A node with its values and connections.
+#[derive(Clone, Debug)]
+pub(crate) struct Node {
+    pub name: String,
+    pub spec: &'static NodeSpec,
+    pub values: Vec<Value>,
+    pub inputs: Vec<Option<Source>>,
+}
+
+/// Nodes and their connections. Always free of cycles and of ports that do not fit.
+#[derive(Clone, Debug, Default)]
+pub struct Graph {
+    nodes: Vec<Node>,
+    order: Vec<usize>,
+    output: Option<usize>,
+}
+
+impl Graph {
+    /// A graph without nodes.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// A graph of one node, its inputs connected to the graph's inputs of the same name, its output
+    /// the graph's.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] when there is no such node.
+    pub fn single(node: &str) -> Result<Self> {
+        let mut graph = Self::new();
+        let id = graph.add(node, node)?;
+        for (i, port) in graph.nodes[0].spec.inputs.iter().enumerate() {
+            graph.nodes[0].inputs[i] = GraphInput::from_id(port.id).map(Source::Input);
+        }
+        graph.set_output(id)?;
+        Ok(graph)
+    }
+
+    /// Adds a node under a name of its own.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] when there is no such node, [`Error::Value`] when the name is taken or empty.
+    pub fn add(&mut self, name: &str, node: &str) -> Result<NodeId> {
+        let spec = registry::find(node)?;
+        if name.is_empty() || name.starts_with('@') {
+            return Err(Error::Value(format!("'{name}' cannot name a node")));
+        }
+        if self.nodes.iter().any(|n| n.name == name) {
+            return Err(Error::Value(format!("two nodes are named '{name}'")));
+        }
+        self.nodes.push(Node {
+            name: name.to_owned(),
+            spec,
+            values: spec.params().map(|p| p.default_value()).collect(),
+            inputs: vec![None; spec.inputs.len()],
+        });
+        self.order.push(self.nodes.len() - 1);
+        Ok(NodeId(self.nodes.len() - 1))
+    }
+
+    /// The node at a position.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] when there are fewer nodes.
+    pub fn node(&self, index: usize) -> Result<NodeId> {
+        if index < self.nodes.len() {
+            Ok(NodeId(index))
+        } else {
+            Err(Error::Unknown(format!("there is no node {index}")))
+        }
+    }
+
+    /// The node of a name.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`], naming the nearest.
+    pub fn find(&self, name: &str) -> Result<NodeId> {
+        self.nodes.iter().position(|n| n.name == name).map(NodeId).ok_or_else(|| {
+            Error::Unknown(format!(
+                "the graph has no node named '{name}'{}",
+                nearest(name, self.nodes.iter().map(|n| n.name.as_str()))
+            ))
+        })
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// True when there is no node.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// Name of a node within the graph.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] for a node of another graph.
+    pub fn name(&self, node: NodeId) -> Result<&str> {
+        Ok(&self.get(node)?.name)
+    }
+
+    /// Declaration of a node.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] for a node of another graph.
+    pub fn spec(&self, node: NodeId) -> Result<&'static NodeSpec> {
+        Ok(self.get(node)?.spec)
+    }
+
+    /// Sets a parameter.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] for a parameter the node lacks, [`Error::Value`] for a wrong type or range.
+    pub fn set(&mut self, node: NodeId, param: &str, value: Value) -> Result<()> {
+        let spec = self.get(node)?.spec;
+        let (index, declared) = find_param(spec, param)?;
+        self.nodes[node.0].values[index] = values::check(spec, declared, value)?;
+        Ok(())
+    }
+
+    /// Sets a parameter from text, as a person writes it.
+    ///
+    /// # Errors
+    /// As [`Graph::set`].
+    pub fn set_text(&mut self, node: NodeId, param: &str, text: &str) -> Result<()> {
+        let spec = self.get(node)?.spec;
+        let (index, declared) = find_param(spec, param)?;
+        self.nodes[node.0].values[index] = values::parse(spec, declared, text)?;
+        Ok(())
+    }
+
+    /// Value of a parameter.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] for a parameter the node lacks.
+    pub fn value(&self, node: NodeId, param: &str) -> Result<Value> {
+        let node = self.get(node)?;
+        Ok(node.values[find_param(node.spec, param)?.0])
+    }
+
+    /// Connects the output of `from` to a port of `to`, replacing what was there.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] for a port the node lacks, [`Error::Connection`] for kinds that do not fit or
+    /// a cycle; the graph is then unchanged.
+    pub fn connect(&mut self, from: NodeId, to: NodeId, port: &str) -> Result<()> {
+        let kind = self.get(from)?.spec.output.kind;
+        self.attach(Source::Node(from.0), kind, to, port)
+    }
+
+    /// Connects a picture that enters the graph to a port of `to`.
+    ///
+    /// # Errors
+    /// As [`Graph::connect`].
+    pub fn connect_input(&mut self, input: GraphInput, to: NodeId, port: &str) -> Result<()> {
+        self.attach(Source::Input(input), input.kind(), to, port)
+    }
+
+    /// Opens a port.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] for a port the node lacks.
+    pub fn disconnect(&mut self, to: NodeId, port: &str) -> Result<()> {
+        let index = find_input(self.get(to)?.spec, port)?;
+        self.nodes[to.0].inputs[index] = None;
+        self.sort()
+    }
+
+    /// Makes the output of `node` the graph's.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] for a node of another graph.
+    pub fn set_output(&mut self, node: NodeId) -> Result<()> {
+        self.get(node)?;
+        self.output = Some(node.0);
+        Ok(())
+    }
+
+    /// What leaves the graph, once an output is set.
+    pub fn output_kind(&self) -> Option<ImageKind> {
+        self.output_node().map(|(_, kind)| kind)
+    }
+
+    /// Fails when `request` cannot be planned: no output, or a required input open.
+    pub(crate) fn check(&self, request: &Request) -> Result<()> {
+        let Some(output) = self.output else {
+            return Err(Error::Connection(
+                "the graph has no output; name the node whose result leaves it".into(),
+            ));
+        };
+        if !(request.scale.is_finite() && request.scale > 0.0 && request.scale <= 64.0) {
+            return Err(Error::Value(format!(
+                "the render scale must be above 0 and at most 64, not {}",
+                request.scale
+            )));
+        }
+        debug_assert!(output < self.nodes.len());
+        for node in &self.nodes {
+            for (port, source) in node.spec.inputs.iter().zip(&node.inputs) {
+                let missing = match source {
+                    None => true,
+                    Some(Source::Input(GraphInput::Color) | Source::Node(_)) => false,
+                    Some(Source::Input(GraphInput::Normal)) => !request.guides.normal,
+                    Some(Source::Input(GraphInput::Depth)) => !request.guides.depth,
+                    Some(Source::Input(GraphInput::ObjectId)) => !request.guides.object_id,
+                };
+                if missing && !port.optional {
+                    return Err(Error::Connection(format!(
+                        "input '{}' of node '{}' ({}) is not connected",
+                        port.id, node.name, node.spec.id
+                    )));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    pub(crate) fn order(&self) -> &[usize] {
+        &self.order
+    }
+
+    pub(crate) fn node_at(&self, index: usize) -> &Node {
+        &self.nodes[index]
+    }
+
+    pub(crate) fn output_node(&self) -> Option<(usize, ImageKind)> {
+        self.output.map(|o| (o, self.nodes[o].spec.output.kind))
+    }
+
+    fn get(&self, node: NodeId) -> Result<&Node> {
+        self.nodes.get(node.0).ok_or_else(|| Error::Unknown(format!("there is no node {}", node.0)))
+    }
+
+    fn attach(&mut self, source: Source, kind: ImageKind, to: NodeId, port: &str) -> Result<()> {
+        let node = self.get(to)?;
+        let index = find_input(node.spec, port)?;
+        let wanted = node.spec.inputs[index].kind;
+        if wanted != kind {
+            return Err(Error::Connection(format!(
+                "input '{port}' of node '{}' ({}) takes {}, not {}",
+                node.name,
+                node.spec.id,
+                wanted.id(),
+                kind.id()
+            )));
+        }
+        let before = self.nodes[to.0].inputs[index].replace(source);
+        let sorted = self.sort();
+        if sorted.is_err() {
+            self.nodes[to.0].inputs[index] = before;
+            self.sort()?;
+        }
+        sorted
+    }
+
+    /// Orders nodes so that each comes after those it reads.
+    fn sort(&mut self) -> Result<()> {
+        let mut placed = vec![false; self.nodes.len()];
+        let mut order = Vec::with_capacity(self.nodes.len());
+        while order.len() < self.nodes.len() {
+            let ready = (0..self.nodes.len()).find(|n| {
+                !placed[*n]
+                    && self.nodes[*n].inputs.iter().flatten().all(|s| match s {
+                        Source::Node(from) => placed[*from],
+                        Source::Input(_) => true,
+                    })
+            });
+            let Some(next) = ready else {
+                let stuck = self.nodes.iter().zip(&placed).find(|(_, placed)| !**placed);
+                let name = stuck.map_or("", |(n, _)| n.name.as_str());
+                return Err(Error::Connection(format!("the connections of node '{name}' form a cycle")));
+            };
+            placed[next] = true;
+            order.push(next);
+        }
+        self.order = order;
+        Ok(())
+    }
+}
+
+fn find_param(spec: &'static NodeSpec, id: &str) -> Result<(usize, &'static crate::spec::Param)> {
+    spec.param(id).ok_or_else(|| {
+        Error::Unknown(format!(
+            "node '{}' has no parameter '{id}'{}",
+            spec.id,
+            nearest(id, spec.params().map(|p| p.id))
+        ))
+    })
+}
+
+fn find_input(spec: &'static NodeSpec, id: &str) -> Result<usize> {
+    spec.input(id).map(|(index, _)| index).ok_or_else(|| {
+        Error::Unknown(format!(
+            "node '{}' has no input '{id}'{}",
+            spec.id,
+            nearest(id, spec.inputs.iter().map(|p| p.id))
+        ))
+    })
+}

@@ -1,0 +1,53 @@
+//! The working colour back to the host's colour.
+//!
+//! Cost: three powers per pixel.
+
+use crate::kernels::colour_space::{LINEAR_TO_ACESCG, srgb_decode, transform};
+use crate::kernels::support::map_pixels4;
+use crate::request::ColourSpace;
+use isophote_engine::fearless_simd::{dispatch};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for colour_export {
+        /// 0 sRGB, 1 linear Rec. 709, 2 ACEScg.
+        pub space: u32,
+        /// Nonzero when colour leaves multiplied by alpha.
+        pub premultiplied: u32,
+    }
+}
+
+crate::kernel!(colour_export {
+    cpu: run,
+    cost: |_| 60.0,
+    tolerance: Tolerance {
+        absolute: 2e-5,
+        relative: 2e-5,
+        outliers: 0.0,
+        reason: "shader powers are exact to a few units in the last place at best",
+    },
+});
+
+/// Adds the pass.
+pub fn export(plan: &mut PlanBuilder, image: ImageId, space: ColourSpace, premultiplied: bool) -> ImageId {
+    let params = Params { space: space as u32, premultiplied: premultiplied.into() };
+    plan.pass(&KERNEL, &[image], &params, Class::Colour, Support::Pixels(0))
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, |[r, g, b, a]| {
+        let mut rgb = [r, g, b];
+        if params.space != ColourSpace::Srgb as u32 {
+            rgb = srgb_decode(rgb);
+        }
+        if params.space == ColourSpace::AcesCg as u32 {
+            rgb = transform(&LINEAR_TO_ACESCG, rgb);
+        }
+        if params.premultiplied != 0 {
+            rgb = rgb.map(|v| v * a);
+        }
+        [rgb[0], rgb[1], rgb[2], a]
+    }));
+}

@@ -1,0 +1,80 @@
+//! What several kernels share: the layout check, Gaussian tables, blocks of pixels.
+
+use isophote_engine::fearless_simd::{Simd, f32x8};
+use isophote_engine::math::{load4, store4};
+use isophote_engine::{Band, CpuPass};
+
+/// Fails the build when a uniform block differs from the struct of its shader.
+pub const fn assert_layout(rust: &[(&str, usize)], size: usize, wgsl: &[(&str, usize)], wgsl_size: usize) {
+    assert!(size == wgsl_size, "the uniform block has another size than the struct in the shader");
+    assert!(rust.len() == wgsl.len(), "the uniform block has another number of fields than the shader's");
+    let mut i = 0;
+    while i < rust.len() {
+        assert!(rust[i].1 == wgsl[i].1, "a field of the uniform block lies at another offset in the shader");
+        let (a, b) = (rust[i].0.as_bytes(), wgsl[i].0.as_bytes());
+        assert!(a.len() == b.len(), "a field of the uniform block has another name in the shader");
+        let mut k = 0;
+        while k < a.len() {
+            assert!(a[k] == b[k], "a field of the uniform block has another name in the shader");
+            k += 1;
+        }
+        i += 1;
+    }
+}
+
+/// Entries of a Gaussian table, the centre included.
+pub const GAUSSIAN_TAPS: usize = 256;
+
+/// Largest radius of a Gaussian table, in pixels.
+pub const GAUSSIAN_MAX_RADIUS: u32 = GAUSSIAN_TAPS as u32 - 1;
+
+/// One half of a Gaussian, packed as the uniform block wants it: entry i is the weight at distance i.
+pub type GaussianTable = [[f32; 4]; GAUSSIAN_TAPS / 4];
+
+/// Radius at which a Gaussian of standard deviation `sigma` (pixels) is cut: ceil(cutoff sigma).
+pub fn gaussian_radius(sigma: f32, cutoff: f32) -> u32 {
+    ((cutoff * sigma).ceil().max(0.0) as u32).min(GAUSSIAN_MAX_RADIUS)
+}
+
+/// Weights of a Gaussian of standard deviation `sigma` at distances 0..=radius (2.21), normalised
+/// by the sum of the kept weights (both sides).
+pub fn gaussian_table(sigma: f32, radius: u32) -> GaussianTable {
+    let mut table = [[0.0; 4]; GAUSSIAN_TAPS / 4];
+    let sigma = f64::from(sigma).max(1e-4);
+    let weight = |i: u32| (-f64::from(i * i) / (2.0 * sigma * sigma)).exp();
+    let sum: f64 = weight(0) + 2.0 * (1..=radius).map(weight).sum::<f64>();
+    for i in 0..=radius.min(GAUSSIAN_MAX_RADIUS) {
+        table[i as usize / 4][i as usize % 4] = (weight(i) / sum) as f32;
+    }
+    table
+}
+
+/// Runs `f` on eight four-channel pixels at a time, one vector per channel, over a whole band; a pass
+/// from each pixel to the same pixel.
+#[inline(always)]
+pub fn map_pixels4<S: Simd>(
+    simd: S,
+    pass: &CpuPass<'_>,
+    band: &mut Band<'_>,
+    mut f: impl FnMut([f32x8<S>; 4]) -> [f32x8<S>; 4],
+) {
+    let window = band.window;
+    let view = &pass.inputs[0];
+    for y in window.y0..window.y1 {
+        let at = view.offset(window.x0, y);
+        let target = band.row_mut(0, y);
+        let source = &view.data()[at..at + target.len()];
+        for (s, t) in source.chunks(32).zip(target.chunks_mut(32)) {
+            if s.len() == 32 {
+                store4(f(load4(simd, s)), t);
+            } else {
+                // The last pixels of a row go through the same arithmetic, padded with zeros.
+                let mut block = [0.0; 32];
+                block[..s.len()].copy_from_slice(s);
+                let mut result = [0.0; 32];
+                store4(f(load4(simd, &block)), &mut result);
+                t.copy_from_slice(&result[..t.len()]);
+            }
+        }
+    }
+}

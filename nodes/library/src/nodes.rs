@@ -1,0 +1,21 @@
+//! The nodes: each file holds one node's declaration and how it composes kernels into a plan.
+
+use crate::spec::NodeSpec;
+
+/// Declares the modules of all nodes and lists their specs. The one line a new node needs is its
+/// name here.
+macro_rules! nodes {
+    ($($group:ident { $($node:ident,)* })*) => {
+        $(
+            #[doc = concat!("Nodes of the group `", stringify!($group), "`.")]
+            pub mod $group { $(pub mod $node;)* }
+        )*
+        pub(crate) static NODES: &[&NodeSpec] = &[$($(&$group::$node::NODE,)*)*];
+    };
+}
+
+nodes! {
+    smoothing {
+        gaussian,
+    }
+}

@@ -1,0 +1,27 @@
+//! The Gaussian filter (§ 2.2.2, equation 2.21).
+
+use crate::kernels::smoothing::gaussian_blur;
+use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
+use isophote_engine::ImageId;
+
+/// The node.
+pub static NODE: NodeSpec = NodeSpec {
+    id: "gaussian",
+    label: "Gaussian",
+    group: "smoothing",
+    doc: "Smooths the picture with a Gaussian (2.21), cut off at three standard deviations and \
+          normalised. Transparent pixels lend no colour to their neighbours.",
+    section: "2.2.2",
+    inputs: &[Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The picture." }],
+    output: Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The smoothed picture." },
+    own_params: &[Param::float("sigma", "Sigma", 2.0, [0.0, 80.0])
+        .slider(0.0, 20.0)
+        .pixels()
+        .doc("Standard deviation of the Gaussian.")],
+    build,
+};
+
+fn build(scope: &mut Scope<'_>) -> ImageId {
+    let (color, sigma) = (scope.required("color"), scope.float("sigma"));
+    gaussian_blur::color(scope.plan, color, sigma)
+}

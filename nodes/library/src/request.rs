@@ -1,0 +1,225 @@
+//! From a graph to a plan for one size, and from an edited graph to an edited plan.
+
+use crate::error::Result;
+use crate::graph::{Graph, GraphInput, Source};
+use crate::kernels::colour::{colour_export, colour_import, mix};
+use crate::spec::{ImageKind, Scope};
+use crate::values::Value;
+use isophote_engine::{ImageId, Plan, PlanBuilder};
+
+/// What the numbers of a colour picture mean. All have their primaries' own encoding extended to
+/// values below 0 and above 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ColourSpace {
+    /// Gamma-encoded sRGB.
+    #[default]
+    Srgb,
+    /// Linear light, Rec. 709 primaries.
+    Linear,
+    /// ACEScg: linear light, AP1 primaries.
+    AcesCg,
+}
+
+impl ColourSpace {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Srgb, Self::Linear, Self::AcesCg];
+
+    /// Stable name.
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::Srgb => "srgb",
+            Self::Linear => "linear",
+            Self::AcesCg => "acescg",
+        }
+    }
+
+    /// The space of this name.
+    pub fn from_id(id: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|s| s.id() == id)
+    }
+}
+
+/// What a host wants of a graph.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Request {
+    /// Size of the rendered picture, in pixels.
+    pub width: u32,
+    /// Size of the rendered picture, in pixels.
+    pub height: u32,
+    /// Rendered size over full size: 0.5 for a half-size proxy. Scales every parameter in pixels.
+    pub scale: f32,
+    /// Space of the colour that enters and leaves.
+    pub space: ColourSpace,
+    /// True when colour enters, and is to leave, multiplied by alpha.
+    pub premultiplied: bool,
+    /// Which guides the host has; connections to others count as open.
+    pub guides: Guides,
+}
+
+/// The guide images that a host can supply beside the colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Guides {
+    /// View-space normals.
+    pub normal: bool,
+    /// Distance from the camera.
+    pub depth: bool,
+    /// Object numbers.
+    pub object_id: bool,
+}
+
+impl Guides {
+    fn has(self, input: GraphInput) -> bool {
+        match input {
+            GraphInput::Color => true,
+            GraphInput::Normal => self.normal,
+            GraphInput::Depth => self.depth,
+            GraphInput::ObjectId => self.object_id,
+        }
+    }
+}
+
+impl Request {
+    /// A request for full size, sRGB, premultiplied, without guides.
+    pub const fn new(width: u32, height: u32) -> Self {
+        Self {
+            width,
+            height,
+            scale: 1.0,
+            space: ColourSpace::Srgb,
+            premultiplied: true,
+            guides: Guides { normal: false, depth: false, object_id: false },
+        }
+    }
+}
+
+/// What an update of a plan came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// Only uniform bytes were rewritten, in place.
+    Uniforms,
+    /// The passes are others now; programs made from the plan must be made again.
+    Structure,
+}
+
+/// A plan together with the request it was made for.
+#[derive(Debug)]
+pub struct Planned {
+    plan: Plan,
+    request: Request,
+    scratch: Scratch,
+}
+
+/// Working memory of a description, kept so that editing allocates nothing.
+#[derive(Debug, Default)]
+struct Scratch {
+    results: Vec<Option<ImageId>>,
+    inputs: Vec<Option<ImageId>>,
+}
+
+impl Planned {
+    /// Plans `graph` for `request`.
+    ///
+    /// # Errors
+    /// [`Error::Connection`](crate::Error::Connection) for a required input left open or an output not set, and the engine's
+    /// errors for impossible sizes.
+    pub fn new(graph: &Graph, request: Request) -> Result<Self> {
+        let mut scratch = Scratch::default();
+        let plan = plan(graph, &request, &mut scratch)?;
+        Ok(Self { plan, request, scratch })
+    }
+
+    /// Takes over the current parameter values and connections of `graph`.
+    ///
+    /// # Errors
+    /// As [`Planned::new`]; the plan is then the old one or, if the structure changed, must not be used
+    /// until an update succeeds.
+    pub fn update(&mut self, graph: &Graph) -> Result<Change> {
+        graph.check(&self.request)?;
+        let (request, scratch) = (&self.request, &mut self.scratch);
+        if self.plan.edit(|builder| describe(graph, request, builder, scratch))? {
+            return Ok(Change::Uniforms);
+        }
+        self.plan = plan(graph, request, scratch)?;
+        Ok(Change::Structure)
+    }
+
+    /// The plan.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// What it was made for.
+    pub fn request(&self) -> &Request {
+        &self.request
+    }
+}
+
+fn plan(graph: &Graph, request: &Request, scratch: &mut Scratch) -> Result<Plan> {
+    graph.check(request)?;
+    let mut builder = PlanBuilder::new(request.width, request.height)?;
+    describe(graph, request, &mut builder, scratch)?;
+    Ok(builder.finish()?)
+}
+
+fn describe(
+    graph: &Graph,
+    request: &Request,
+    builder: &mut PlanBuilder,
+    scratch: &mut Scratch,
+) -> Result<()> {
+    scratch.results.clear();
+    scratch.results.resize(graph.len(), None);
+    for index in graph.order() {
+        let node = graph.node_at(*index);
+        scratch.inputs.clear();
+        for source in &node.inputs {
+            let image = match source {
+                Some(Source::Node(n)) => scratch.results[*n],
+                Some(Source::Input(input)) if request.guides.has(*input) => {
+                    Some(graph_input(builder, *input, request))
+                }
+                _ => None,
+            };
+            scratch.inputs.push(image);
+        }
+        let mut scope = Scope {
+            plan: builder,
+            spec: node.spec,
+            values: &node.values,
+            inputs: &scratch.inputs,
+            scale: request.scale,
+        };
+        let mut result = (node.spec.build)(&mut scope);
+        if node.spec.has_mix()
+            && let (Some((at, _)), Some((color, _))) = (
+                node.spec.param("mix"),
+                node.spec.inputs.iter().enumerate().find(|(_, p)| p.kind == ImageKind::Color),
+            )
+            && let Value::Float(amount) = node.values[at]
+            && amount < 1.0
+            && let Some(original) = scratch.inputs[color]
+        {
+            result = mix::blend(builder, original, result, amount);
+        }
+        scratch.results[*index] = Some(result);
+    }
+    if let Some((index, kind)) = graph.output_node()
+        && let Some(result) = scratch.results[index]
+    {
+        let image = match kind {
+            ImageKind::Color => colour_export::export(builder, result, request.space, request.premultiplied),
+            _ => result,
+        };
+        builder.output("output", image);
+    }
+    Ok(())
+}
+
+fn graph_input(builder: &mut PlanBuilder, input: GraphInput, request: &Request) -> ImageId {
+    let kind = input.kind();
+    let image = builder.input(input.id(), kind.channels(), kind.class());
+    match input {
+        GraphInput::Color => colour_import::import(builder, image, request.space, request.premultiplied),
+        _ => image,
+    }
+}

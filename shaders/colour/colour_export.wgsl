@@ -1,0 +1,32 @@
+// The working colour back to the host's colour.
+// Cost: one load and three powers.
+#import grid
+#import colour
+
+struct Params {
+    // 0 sRGB, 1 linear Rec. 709, 2 ACEScg.
+    space: u32,
+    premultiplied: u32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var source: texture_2d<f32>;
+@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    var v = fetch(source, 0u, pixel(id));
+    if params.space != 0u {
+        v = vec4f(srgb_decode(v.rgb), v.a);
+    }
+    if params.space == 2u {
+        v = vec4f(linear_to_acescg(v.rgb), v.a);
+    }
+    if params.premultiplied != 0u {
+        v = vec4f(v.rgb * v.a, v.a);
+    }
+    textureStore(target_image, vec2i(id.xy), v);
+}

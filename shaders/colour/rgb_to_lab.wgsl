@@ -1,0 +1,24 @@
+// Working colour to CIELAB; alpha passes.
+// Cost: one load and six powers.
+#import grid
+#import colour
+
+struct Params {
+    // Share of the perceptual colour axes that is kept; 1 for CIELAB as it is.
+    chroma: f32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var source: texture_2d<f32>;
+@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    var v = fetch(source, 0u, pixel(id));
+    let lab = linear_to_lab(srgb_decode(v.rgb));
+    v = vec4f(lab * vec3f(1.0, params.chroma, params.chroma), v.a);
+    textureStore(target_image, vec2i(id.xy), v);
+}
