@@ -74,7 +74,7 @@ pub struct Control<'a> {
 }
 
 impl Control<'_> {
-    fn is_cancelled(&self) -> bool {
+    pub(crate) fn is_cancelled(&self) -> bool {
         self.cancelled.is_some_and(|c| c())
     }
 }
@@ -203,7 +203,11 @@ impl CpuExecutor {
             slots.recycle(&mut self.spare);
             return Err(Error::Cancelled);
         }
-        let results = plan.outputs().iter().map(|port| slots.finish(port.image.index(), region)).collect();
+        let results = plan
+            .outputs()
+            .iter()
+            .map(|port| slots.finish(port.image.index(), plan.region_at(region, plan.desc(port.image).level)))
+            .collect();
         slots.recycle(&mut self.spare);
         results
     }
@@ -223,6 +227,41 @@ impl CpuExecutor {
     }
 }
 
+/// The images of `inputs` by virtual image, after checking that each covers what `windows` names.
+pub(crate) fn bind_inputs<'a>(
+    plan: &Plan,
+    inputs: &[(&str, &'a Image)],
+    windows: &[Rect],
+) -> Result<Vec<Option<&'a Image>>> {
+    let mut borrowed = vec![None; plan.images().len()];
+    for port in plan.inputs() {
+        let needed = windows[port.image.index()];
+        if needed.is_empty() {
+            continue;
+        }
+        let Some((_, image)) = inputs.iter().find(|(name, _)| *name == port.name) else {
+            return Err(Error::Input(format!("input image '{}' is missing", port.name)));
+        };
+        let channels = plan.desc(port.image).channels;
+        if image.channels() != channels {
+            return Err(Error::Input(format!(
+                "input image '{}' has {} channels; {channels} are needed",
+                port.name,
+                image.channels()
+            )));
+        }
+        if !image.window().contains(&needed) {
+            return Err(Error::Input(format!(
+                "input image '{}' covers {:?}; {needed:?} is needed",
+                port.name,
+                image.window()
+            )));
+        }
+        borrowed[port.image.index()] = Some(*image);
+    }
+    Ok(borrowed)
+}
+
 /// The images of a run, by virtual image.
 struct Slots<'a> {
     borrowed: Vec<Option<&'a Image>>,
@@ -231,32 +270,7 @@ struct Slots<'a> {
 
 impl<'a> Slots<'a> {
     fn bind(plan: &Plan, inputs: &[(&str, &'a Image)], windows: &[Rect]) -> Result<Self> {
-        let mut borrowed = vec![None; plan.images().len()];
-        for port in plan.inputs() {
-            let needed = windows[port.image.index()];
-            if needed.is_empty() {
-                continue;
-            }
-            let Some((_, image)) = inputs.iter().find(|(name, _)| *name == port.name) else {
-                return Err(Error::Input(format!("input image '{}' is missing", port.name)));
-            };
-            let channels = plan.desc(port.image).channels;
-            if image.channels() != channels {
-                return Err(Error::Input(format!(
-                    "input image '{}' has {} channels; {channels} are needed",
-                    port.name,
-                    image.channels()
-                )));
-            }
-            if !image.window().contains(&needed) {
-                return Err(Error::Input(format!(
-                    "input image '{}' covers {:?}; {needed:?} is needed",
-                    port.name,
-                    image.window()
-                )));
-            }
-            borrowed[port.image.index()] = Some(*image);
-        }
+        let borrowed = bind_inputs(plan, inputs, windows)?;
         Ok(Self { borrowed, owned: vec![None; plan.images().len()] })
     }
 

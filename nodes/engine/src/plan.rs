@@ -130,13 +130,18 @@ impl Plan {
         })
     }
 
+    /// The pixels of `level` that lie under `region` (level 0): what an output of that level returns.
+    pub fn region_at(&self, region: Rect, level: i8) -> Rect {
+        self.clip(rescale(region, 0, level), level)
+    }
+
     /// The window of every virtual image that is needed to compute `region` (level 0) of every
     /// output. Images that are not needed get an empty window.
     pub fn windows(&self, region: Rect) -> Vec<Rect> {
         let mut windows = vec![Rect::default(); self.images.len()];
         for port in &self.outputs {
             let level = self.desc(port.image).level;
-            let needed = self.clip(rescale(region, 0, level), level);
+            let needed = self.region_at(region, level);
             windows[port.image.index()] = windows[port.image.index()].union(&needed);
         }
         for pass in self.passes.iter().rev() {

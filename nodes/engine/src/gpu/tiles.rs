@@ -1,0 +1,356 @@
+//! Plans on images in memory: upload, run, read back, in tiles where the device is too small.
+
+use super::device::count;
+use super::executor::Executor;
+use super::prepared::Prepared;
+use super::timing::read_buffer;
+use crate::cpu::{Control, bind_inputs};
+use crate::error::{Error, Result};
+use crate::image::{Image, Rect};
+use crate::kernel::WORKGROUP;
+use crate::plan::{Plan, Support};
+use crate::program::{Program, Role, Texture};
+
+/// The smallest tile side worth computing; below it the halo would be nearly everything.
+const LEAST_TILE: u32 = 32;
+
+/// A prepared program with textures of its own and the way back to the CPU, kept between runs.
+#[derive(Debug)]
+pub(super) struct Warm {
+    prepared: Prepared,
+    readback: wgpu::Buffer,
+}
+
+impl Warm {
+    fn bytes(&self) -> u64 {
+        self.prepared.bytes() + self.readback.size()
+    }
+}
+
+/// One tile: its program, and which part of the picture it computes.
+struct Tile {
+    region: Rect,
+    program: Program,
+}
+
+impl Executor {
+    /// Computes `region` (level 0) of every output of `plan` from images in memory; the counterpart
+    /// of [`CpuExecutor::run`](crate::cpu::CpuExecutor::run), with the same rules for its inputs.
+    ///
+    /// What exceeds the limits of the device, or those of [`Executor::set_limits`], is computed in
+    /// tiles. Cancelling and progress take effect between tiles. Everything made for a run stays for
+    /// the next one of the same shape, which then only uploads, submits once a tile and reads back.
+    ///
+    /// # Errors
+    /// Those of the CPU executor; [`Error::Geometry`] when the picture exceeds the device's limit and
+    /// cannot be cut, because the plan reads all of it for every pixel or its halo is too wide;
+    /// [`Error::Memory`] and [`Error::Device`] for what the device reports. After the loss of the
+    /// device every call fails, and the executor must be made anew.
+    pub fn run_images(
+        &mut self,
+        plan: &Plan,
+        inputs: &[(&str, &Image)],
+        region: Rect,
+        control: Control<'_>,
+    ) -> Result<Vec<Image>> {
+        self.device.check()?;
+        let tiles = self.cut(plan, region)?;
+        bind_inputs(plan, inputs, &plan.windows(region))?;
+        let mut results = Vec::with_capacity(plan.outputs().len());
+        for port in plan.outputs() {
+            let desc = plan.desc(port.image);
+            results.push(Image::with_window(plan.region_at(region, desc.level), desc.channels)?);
+        }
+        let total = tiles.len() as f32;
+        for (index, tile) in tiles.iter().enumerate() {
+            if control.is_cancelled() {
+                return Err(Error::Cancelled);
+            }
+            let done = self.run_tile(plan, inputs, tile, &mut results);
+            if matches!(done, Err(Error::Memory(_))) && !self.warm.is_empty() {
+                self.purge();
+                self.run_tile(plan, inputs, tile, &mut results)?;
+            } else {
+                done?;
+            }
+            if let Some(progress) = control.progress {
+                progress((index + 1) as f32 / total);
+            }
+        }
+        if control.is_cancelled() {
+            return Err(Error::Cancelled);
+        }
+        Ok(results)
+    }
+
+    /// The tiles of `region`: one if it fits, else as few as the limits allow.
+    fn cut(&self, plan: &Plan, region: Rect) -> Result<Vec<Tile>> {
+        let whole = Program::lower(plan, region)?;
+        let side = whole.textures.iter().map(|t| t.window.width().max(t.window.height())).max().unwrap_or(0);
+        let global = plan.support() == Support::Global;
+        if global && side > self.max_side {
+            return Err(Error::Geometry(format!(
+                "the graphics device takes at most {0}x{0} pixels, {side} are needed, and this filter cannot be \
+                 cut into tiles because every pixel depends on the whole picture: use a smaller picture or the CPU",
+                self.max_side
+            )));
+        }
+        if global || self.allows(plan, &whole, region) {
+            return Ok(vec![Tile { region, program: whole }]);
+        }
+        let mut size = [region.width(), region.height()];
+        loop {
+            let longer = usize::from(size[1] > size[0]);
+            size[longer] = size[longer].div_ceil(2).next_multiple_of(WORKGROUP);
+            if size[longer] < LEAST_TILE {
+                return Err(Error::Geometry(format!(
+                    "the graphics device takes at most {0}x{0} pixels and {1} MiB, too little even for a small tile \
+                     with the surroundings that this filter reads: use the CPU",
+                    self.max_side,
+                    self.budget >> 20
+                )));
+            }
+            if let Some(tiles) = self.tiles_of(plan, region, size)? {
+                return Ok(tiles);
+            }
+        }
+    }
+
+    /// The tiles of `region` of at most `size`, or `None` if one of them exceeds the limits.
+    fn tiles_of(&self, plan: &Plan, region: Rect, size: [u32; 2]) -> Result<Option<Vec<Tile>>> {
+        let mut tiles = Vec::new();
+        for y0 in (region.y0..region.y1).step_by(size[1] as usize) {
+            for x0 in (region.x0..region.x1).step_by(size[0] as usize) {
+                let (x1, y1) = (x0 + size[0] as i32, y0 + size[1] as i32);
+                let tile = Rect { x0, y0, x1: x1.min(region.x1), y1: y1.min(region.y1) };
+                let program = Program::lower(plan, tile)?;
+                if !self.allows(plan, &program, tile) {
+                    return Ok(None);
+                }
+                tiles.push(Tile { region: tile, program });
+            }
+        }
+        Ok(Some(tiles))
+    }
+
+    fn allows(&self, plan: &Plan, program: &Program, region: Rect) -> bool {
+        let bytes = |t: &Texture| {
+            u64::from(t.window.width()) * u64::from(t.window.height()) * u64::from(t.channels) * 4
+        };
+        let fits_side = |t: &Texture| t.window.width() <= self.max_side && t.window.height() <= self.max_side;
+        let textures: u64 = program.textures.iter().map(bytes).sum();
+        let is_input = |t: &&Texture| matches!(t.role, Role::Input(_));
+        let staged: u64 = program.textures.iter().filter(is_input).map(bytes).sum();
+        let readback: u64 = parts(plan, program, region).iter().map(|p| p.bytes()).sum();
+        let largest = self.device.raw().limits().max_buffer_size;
+        program.textures.iter().all(fits_side)
+            && textures + staged + readback <= self.budget
+            && staged <= largest
+            && readback <= largest
+    }
+
+    fn run_tile(
+        &mut self,
+        plan: &Plan,
+        inputs: &[(&str, &Image)],
+        tile: &Tile,
+        results: &mut [Image],
+    ) -> Result<()> {
+        let parts = parts(plan, &tile.program, tile.region);
+        let mut warm = self.warmed(&tile.program, &parts)?;
+        self.upload(inputs, &tile.program, &mut warm.prepared)?;
+        let views: Vec<_> =
+            parts.iter().map(|part| warm.prepared.own_output(&part.name)).collect::<Result<_>>()?;
+        let device = &self.device;
+        let mut encoder =
+            device.raw.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("isophote") });
+        warm.prepared.encode(&mut encoder)?;
+        let submission = device.guarded("running the plan", |_| {
+            for (part, view) in parts.iter().zip(&views) {
+                part.copy(view.texture(), &warm.readback, &mut encoder);
+            }
+            device.queue.submit([encoder.finish()])
+        })?;
+        count(&device.counters.submissions);
+        let size = parts.iter().map(Part::bytes).sum();
+        read_buffer(device, &warm.readback, size, Some(submission), |bytes| {
+            for (part, image) in parts.iter().zip(results) {
+                part.store(bytes, image);
+            }
+        })?;
+        self.keep(warm);
+        Ok(())
+    }
+
+    /// A program made ready earlier that `program` fits, or a new one.
+    fn warmed(&mut self, program: &Program, parts: &[Part]) -> Result<Warm> {
+        let size: u64 = parts.iter().map(Part::bytes).sum();
+        if let Some(index) =
+            self.warm.iter().rposition(|w| w.readback.size() >= size && w.prepared.fits(program))
+        {
+            let mut warm = self.warm.remove(index);
+            warm.prepared.repack(program)?;
+            return Ok(warm);
+        }
+        let prepared = self.prepare(program)?;
+        let readback = self.device.guarded("the buffer to read results back", |raw| {
+            raw.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("isophote readback"),
+                size,
+                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+                mapped_at_creation: false,
+            })
+        })?;
+        count(&self.device.counters.buffers);
+        Ok(Warm { prepared, readback })
+    }
+
+    /// Keeps `warm` for later, and as many of those used before it as the budget allows.
+    fn keep(&mut self, warm: Warm) {
+        self.warm.push(warm);
+        let mut bytes = 0;
+        let mut kept = 0;
+        for warm in self.warm.iter().rev() {
+            bytes += warm.bytes();
+            if kept > 0 && bytes > self.budget {
+                break;
+            }
+            kept += 1;
+        }
+        let surplus = self.warm.len() - kept;
+        self.warm.drain(..surplus);
+    }
+
+    fn upload(
+        &mut self,
+        inputs: &[(&str, &Image)],
+        program: &Program,
+        prepared: &mut Prepared,
+    ) -> Result<()> {
+        for texture in &program.textures {
+            let Role::Input(name) = &texture.role else { continue };
+            let Some((_, image)) = inputs.iter().find(|(n, _)| n == name) else {
+                return Err(Error::Input(format!("input image '{name}' is missing")));
+            };
+            let view = prepared.own_input(name)?;
+            let window = texture.window;
+            let (bytes, offset, stride): (&[u8], usize, usize) = if image.channels() == texture.channels {
+                let first = (window.y0 - image.window().y0) as usize * image.stride()
+                    + (window.x0 - image.window().x0) as usize * image.channels() as usize;
+                (bytemuck::cast_slice(image.data()), first * 4, image.stride() * 4)
+            } else {
+                pad(image, window, &mut self.padded);
+                (bytemuck::cast_slice(&self.padded), 0, window.width() as usize * 16)
+            };
+            self.device.guarded("uploading an image", |_| {
+                let layout = wgpu::TexelCopyBufferLayout {
+                    offset: offset as u64,
+                    bytes_per_row: Some(stride as u32),
+                    rows_per_image: None,
+                };
+                self.device.queue.write_texture(
+                    view.texture().as_image_copy(),
+                    bytes,
+                    layout,
+                    extent(window),
+                );
+            })?;
+        }
+        Ok(())
+    }
+}
+
+/// The pixels of `window` of a three-channel image with a fourth channel of 0.
+fn pad(image: &Image, window: Rect, padded: &mut Vec<f32>) {
+    padded.clear();
+    let first = (window.x0 - image.window().x0) as usize * 3;
+    let len = window.width() as usize * 3;
+    for y in window.y0..window.y1 {
+        let row = &image.row(y)[first..first + len];
+        padded.extend(row.chunks_exact(3).flat_map(|p| [p[0], p[1], p[2], 0.0]));
+    }
+}
+
+fn extent(window: Rect) -> wgpu::Extent3d {
+    wgpu::Extent3d { width: window.width(), height: window.height(), depth_or_array_layers: 1 }
+}
+
+/// One output on its way back: which texels of the texture, and where they lie in the buffer.
+struct Part {
+    name: String,
+    /// The pixels wanted, at the output's level.
+    wanted: Rect,
+    /// Position of the first of them in the texture.
+    at: [u32; 2],
+    channels: u32,
+    offset: u64,
+}
+
+fn parts(plan: &Plan, program: &Program, region: Rect) -> Vec<Part> {
+    let mut offset = 0;
+    let mut parts = Vec::with_capacity(plan.outputs().len());
+    for port in plan.outputs() {
+        // Every output has a texture: lowering made it.
+        let Some(index) = program.output(&port.name) else { continue };
+        let texture = &program.textures[index];
+        let wanted = plan.region_at(region, plan.desc(port.image).level);
+        let part = Part {
+            name: port.name.clone(),
+            wanted,
+            at: [(wanted.x0 - texture.window.x0) as u32, (wanted.y0 - texture.window.y0) as u32],
+            channels: texture.channels,
+            offset,
+        };
+        offset += part.bytes();
+        parts.push(part);
+    }
+    parts
+}
+
+impl Part {
+    /// Bytes from one row to the next: copies want a multiple of 256.
+    fn row(&self) -> u64 {
+        let row = u64::from(self.wanted.width()) * u64::from(self.channels) * 4;
+        row.next_multiple_of(u64::from(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT))
+    }
+
+    fn bytes(&self) -> u64 {
+        self.row() * u64::from(self.wanted.height())
+    }
+
+    fn copy(&self, texture: &wgpu::Texture, buffer: &wgpu::Buffer, encoder: &mut wgpu::CommandEncoder) {
+        let source = wgpu::TexelCopyTextureInfo {
+            origin: wgpu::Origin3d { x: self.at[0], y: self.at[1], z: 0 },
+            ..texture.as_image_copy()
+        };
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: self.offset,
+            bytes_per_row: Some(self.row() as u32),
+            rows_per_image: None,
+        };
+        encoder.copy_texture_to_buffer(
+            source,
+            wgpu::TexelCopyBufferInfo { buffer, layout },
+            extent(self.wanted),
+        );
+    }
+
+    /// Copies the values read back into their place in the result.
+    fn store(&self, bytes: &[u8], image: &mut Image) {
+        let (stored, kept) = (self.channels as usize, image.channels() as usize);
+        let first = (self.wanted.x0 - image.window().x0) as usize * kept;
+        let len = self.wanted.width() as usize;
+        for (index, y) in (self.wanted.y0..self.wanted.y1).enumerate() {
+            let start = self.offset as usize + index * self.row() as usize;
+            let row = &bytes[start..start + len * stored * 4];
+            let target = &mut image.row_mut(y)[first..first + len * kept];
+            if stored == kept {
+                bytemuck::cast_slice_mut(target).copy_from_slice(row);
+                continue;
+            }
+            for (pixel, texel) in target.chunks_exact_mut(kept).zip(row.chunks_exact(stored * 4)) {
+                bytemuck::cast_slice_mut(pixel).copy_from_slice(&texel[..kept * 4]);
+            }
+        }
+    }
+}
