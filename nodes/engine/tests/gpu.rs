@@ -157,8 +157,13 @@ fn texture(device: &wgpu::Device, width: u32, height: u32, format: wgpu::Texture
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format,
-        usage: wgpu::TextureUsages::all()
-            & !(wgpu::TextureUsages::STORAGE_ATOMIC | wgpu::TextureUsages::TRANSIENT_ATTACHMENT),
+        usage: wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC
+            | wgpu::TextureUsages::COPY_DST
+            | match format {
+                wgpu::TextureFormat::Rgba32Float => wgpu::TextureUsages::STORAGE_BINDING,
+                _ => wgpu::TextureUsages::empty(),
+            },
         view_formats: &[],
     })
 }
@@ -397,7 +402,7 @@ fn wrong_images_are_refused_as_on_the_cpu() {
 fn tiles_report_progress_and_stop() {
     let Some(device) = device() else { return };
     let mut executor = Executor::new(device);
-    executor.set_limits(64, u64::MAX);
+    executor.set_limits(80, u64::MAX);
     let plan = plan(120, 90, 1.0);
     let source = noise(120, 90, 4);
     let whole = Rect::of_size(120, 90);

@@ -264,20 +264,28 @@ impl Device {
         loop {
             self.check()?;
             let poll = wgpu::PollType::Wait { submission_index: submission.clone(), timeout };
-            // wgpu panics when the device is lost during the wait; that must end here.
-            match catch_unwind(AssertUnwindSafe(|| self.raw.poll(poll))) {
-                Ok(Ok(_)) => return self.check(),
-                Ok(Err(wgpu::PollError::Timeout)) => {}
-                Ok(Err(e)) => return Err(Error::Device(one_line(&e.to_string()))),
-                Err(_) => {
+            match self.poll(poll) {
+                Some(Ok(_)) => return self.check(),
+                Some(Err(wgpu::PollError::Timeout)) => {}
+                // A submission that was never accepted cannot be waited for.
+                Some(Err(wgpu::PollError::WrongSubmissionIndex(..))) | None => {
+                    // The device-lost callback is called by a poll.
+                    self.poll(wgpu::PollType::Poll);
                     self.check()?;
                     return Err(Error::Device(format!(
-                        "the graphics device '{}' was lost: open a new one, or run on the CPU",
+                        "the graphics device '{}' did not take the commands; it is lost: open a new one, or run \
+                         on the CPU",
                         self.info.name
                     )));
                 }
             }
         }
+    }
+
+    /// `None` when wgpu panicked, which it does when the device is lost during the wait; that must
+    /// end here.
+    fn poll(&self, poll: wgpu::PollType) -> Option<std::result::Result<wgpu::PollStatus, wgpu::PollError>> {
+        catch_unwind(AssertUnwindSafe(|| self.raw.poll(poll))).ok()
     }
 }
 

@@ -103,11 +103,14 @@ impl Executor {
             let longer = usize::from(size[1] > size[0]);
             size[longer] = size[longer].div_ceil(2).next_multiple_of(WORKGROUP);
             if size[longer] < LEAST_TILE {
+                let memory = match self.budget {
+                    u64::MAX => String::new(),
+                    budget => format!(" and {} MiB", budget >> 20),
+                };
                 return Err(Error::Geometry(format!(
-                    "the graphics device takes at most {0}x{0} pixels and {1} MiB, too little even for a small tile \
-                     with the surroundings that this filter reads: use the CPU",
-                    self.max_side,
-                    self.budget >> 20
+                    "the graphics device may use at most {0}x{0} pixels{memory}, too little even for a small tile with \
+                     the surroundings that this filter reads: use the CPU",
+                    self.max_side
                 )));
             }
             if let Some(tiles) = self.tiles_of(plan, region, size)? {
