@@ -7,6 +7,7 @@
 
 pub mod colour_space;
 pub mod support;
+pub mod tensor_algebra;
 
 include!(concat!(env!("OUT_DIR"), "/kernels.rs"));
 

@@ -1,0 +1,232 @@
+//! Algebra of symmetric positive semidefinite 2x2 tensors (E, F, G): eigenvalues, eigenvectors and
+//! anisotropy (§ 2.3.4, 2.6.1). Twin of `shaders/shared/tensor.wgsl`, operation by operation.
+//!
+//! The eigenanalysis is that of Listing 2.1. Its squares would underflow for weak gradients and
+//! overflow for strong ones, so values are first multiplied by a power of two, which is exact.
+//! Cost: about 20 operations, two of them square roots and one a division.
+
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*, u32x8};
+
+/// Eigenvalues and the major eigenvector of eight tensors.
+#[derive(Clone, Copy)]
+pub struct Eigen<S: Simd> {
+    /// The larger eigenvalue.
+    pub lambda1: f32x8<S>,
+    /// The smaller eigenvalue, never negative.
+    pub lambda2: f32x8<S>,
+    /// Unit eigenvector of `lambda1`; its sign means nothing.
+    pub major: [f32x8<S>; 2],
+}
+
+/// 2^-n for 2^n <= v < 2^(n+1), and 2^n.
+#[inline(always)]
+fn scales<S: Simd>(v: f32x8<S>) -> (f32x8<S>, f32x8<S>) {
+    let splat = |bits: u32| u32x8::splat(v.simd, bits);
+    let bits = v.bitcast::<u32x8<S>>() & splat(0x7f80_0000);
+    ((splat(0x7f00_0000) - bits).bitcast(), bits.bitcast())
+}
+
+/// sqrt(d^2 + f^2) (2.80) and the major eigenvector (2.82) of tensors with d = (E - G) / 2 and f = F.
+#[inline(always)]
+pub fn axis<S: Simd>(d: f32x8<S>, f: f32x8<S>) -> (f32x8<S>, [f32x8<S>; 2]) {
+    let c = |v: f32| f32x8::splat(d.simd, v);
+    let size = d.abs().max(f.abs());
+    let zero = size.simd_lt(c(f32::MIN_POSITIVE));
+    let (scale, unscale) = scales(size);
+    let (ds, fs) = (d * scale, f * scale);
+    let ff = fs * fs;
+    let r = (ds * ds + ff).sqrt();
+    // The sum of two positive numbers: nothing cancels, and it is at least 1.
+    let n = ds.abs() + r;
+    let inverse = c(1.0) / (n * n + ff).sqrt();
+    let along = d.simd_ge(c(0.0));
+    let x = along.select(n, fs) * inverse;
+    let y = along.select(fs, n) * inverse;
+    (zero.select(c(0.0), r * unscale), [zero.select(c(1.0), x), zero.select(c(0.0), y)])
+}
+
+/// Eigenvalues (2.80, 2.81) and major eigenvector; zero tensor: (1, 0). Values must be finite and
+/// below 2^127.
+#[inline(always)]
+pub fn eigen<S: Simd>(e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> Eigen<S> {
+    let c = |v: f32| f32x8::splat(e.simd, v);
+    let size = e.max(g).max(f.abs());
+    let zero = size.simd_lt(c(f32::MIN_POSITIVE));
+    let (scale, unscale) = scales(size);
+    let (e, f, g) = (e * scale, f * scale, g * scale);
+    let (radius, [x, y]) = axis((e - g) * 0.5, f);
+    let lambda1 = (e + g) * 0.5 + radius;
+    // Only tensors that are not semidefinite have lambda1 < 1/2 here; the bound keeps them finite.
+    let lambda2 = (e * g - f * f).max(c(0.0)) / lambda1.max(c(0.25));
+    Eigen {
+        lambda1: zero.select(c(0.0), lambda1 * unscale),
+        lambda2: zero.select(c(0.0), lambda2 * unscale),
+        major: [zero.select(c(1.0), x), zero.select(c(0.0), y)],
+    }
+}
+
+/// Unit minor eigenvector, along the isophotes; zero tensor: (0, 1). Its sign means nothing.
+#[inline(always)]
+pub fn tangent<S: Simd>(e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> [f32x8<S>; 2] {
+    let (_, [x, y]) = axis((e - g) * 0.5, f);
+    [-y, x]
+}
+
+/// (lambda1 - lambda2) / (lambda1 + lambda2), 0..=1 (2.137); zero tensor: 0.
+#[inline(always)]
+pub fn anisotropy<S: Simd>(e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> f32x8<S> {
+    let c = |v: f32| f32x8::splat(e.simd, v);
+    let half_trace = (e + g) * 0.5;
+    let zero = half_trace.simd_lt(c(f32::MIN_POSITIVE));
+    let (radius, _) = axis((e - g) * 0.5, f);
+    zero.select(c(0.0), (radius / half_trace).min(c(1.0)))
+}
+
+/// One tensor at a time, by the same operations.
+pub mod scalar {
+    fn scales(v: f32) -> (f32, f32) {
+        let bits = v.to_bits() & 0x7f80_0000;
+        (f32::from_bits(0x7f00_0000_u32.wrapping_sub(bits)), f32::from_bits(bits))
+    }
+
+    fn axis(d: f32, f: f32) -> (f32, [f32; 2]) {
+        let size = d.abs().max(f.abs());
+        if size < f32::MIN_POSITIVE {
+            return (0.0, [1.0, 0.0]);
+        }
+        let (scale, unscale) = scales(size);
+        let (ds, fs) = (d * scale, f * scale);
+        let ff = fs * fs;
+        let r = (ds * ds + ff).sqrt();
+        let n = ds.abs() + r;
+        let inverse = 1.0 / (n * n + ff).sqrt();
+        let [x, y] = if d >= 0.0 { [n, fs] } else { [fs, n] };
+        (r * unscale, [x * inverse, y * inverse])
+    }
+
+    /// lambda1, lambda2 and the unit eigenvector of lambda1 (Listing 2.1); zero tensor: (0, 0, (1, 0)).
+    /// Values must be finite and below 2^127.
+    pub fn eigen(e: f32, f: f32, g: f32) -> (f32, f32, [f32; 2]) {
+        let size = e.max(g).max(f.abs());
+        if size < f32::MIN_POSITIVE {
+            return (0.0, 0.0, [1.0, 0.0]);
+        }
+        let (scale, unscale) = scales(size);
+        let (e, f, g) = (e * scale, f * scale, g * scale);
+        let (radius, major) = axis((e - g) * 0.5, f);
+        let lambda1 = (e + g) * 0.5 + radius;
+        let lambda2 = (e * g - f * f).max(0.0) / lambda1.max(0.25);
+        (lambda1 * unscale, lambda2 * unscale, major)
+    }
+
+    /// Unit minor eigenvector; zero tensor: (0, 1).
+    pub fn tangent(e: f32, f: f32, g: f32) -> [f32; 2] {
+        let (_, [x, y]) = axis((e - g) * 0.5, f);
+        [-y, x]
+    }
+
+    /// Anisotropy (2.137); zero tensor: 0.
+    pub fn anisotropy(e: f32, f: f32, g: f32) -> f32 {
+        let half_trace = (e + g) * 0.5;
+        if half_trace < f32::MIN_POSITIVE {
+            return 0.0;
+        }
+        (axis((e - g) * 0.5, f).0 / half_trace).min(1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isophote_engine::fearless_simd::{Level, dispatch};
+
+    /// Deterministic numbers in 0..1.
+    fn numbers(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        }
+    }
+
+    /// Tensors of any size between 1e-30 and 1e30, condition numbers up to 1e6, with the angle of the
+    /// major eigenvector.
+    fn tensors() -> Vec<[f32; 3]> {
+        let mut next = numbers(7);
+        (0..20_000)
+            .map(|_| {
+                let (size, condition) = (10f64.powf(next() * 60.0 - 30.0), 10f64.powf(next() * 6.0));
+                let (sin, cos) = (next() * std::f64::consts::PI).sin_cos();
+                let (l1, l2) = (size, size / condition);
+                [
+                    (l1 * cos * cos + l2 * sin * sin) as f32,
+                    ((l1 - l2) * sin * cos) as f32,
+                    (l1 * sin * sin + l2 * cos * cos) as f32,
+                ]
+            })
+            .collect()
+    }
+
+    fn exact([e, f, g]: [f32; 3]) -> (f64, f64, f64) {
+        let (e, f, g) = (f64::from(e), f64::from(f), f64::from(g));
+        let r = ((e - g) / 2.0).hypot(f);
+        let l1 = (e + g) / 2.0 + r;
+        (l1, (e * g - f * f).max(0.0) / l1, 0.5 * (2.0 * f).atan2(e - g))
+    }
+
+    #[test]
+    fn eigenvalues_and_axes_are_those_of_double_precision() {
+        for t in tensors() {
+            let (l1, l2, angle) = exact(t);
+            let (lambda1, lambda2, [x, y]) = scalar::eigen(t[0], t[1], t[2]);
+            assert!((f64::from(lambda1) / l1 - 1.0).abs() < 3e-7, "{t:?}: lambda1 {lambda1} for {l1}");
+            // A determinant in f32 is exact to a few roundings of its largest product.
+            assert!((f64::from(lambda2) - l2).abs() < 3e-7 * l1, "{t:?}: lambda2 {lambda2} for {l2}");
+            let (sin, cos) = angle.sin_cos();
+            let across = f64::from(x) * sin - f64::from(y) * cos;
+            assert!(across.abs() < 5e-7 * l1 / (l1 - l2), "{t:?}: angle off by {across:e}");
+            assert!((x * x + y * y - 1.0).abs() < 4e-7);
+        }
+    }
+
+    #[test]
+    fn extreme_and_degenerate_tensors_keep_their_axes() {
+        let diagonal = std::f32::consts::FRAC_1_SQRT_2;
+        for size in [1.0, 1e-36, 1e37] {
+            let (lambda1, lambda2, major) = scalar::eigen(size, size, size);
+            assert!((lambda1 / size - 2.0).abs() < 1e-6 && lambda2 == 0.0);
+            assert!((major[0] - diagonal).abs() < 1e-6 && (major[1] - diagonal).abs() < 1e-6);
+            assert_eq!(scalar::eigen(size, 0.0, size), (size, size, [1.0, 0.0]));
+            assert_eq!(scalar::eigen(0.0, 0.0, size), (size, 0.0, [0.0, 1.0]));
+            assert_eq!(scalar::anisotropy(size, 0.0, size), 0.0);
+            assert_eq!(scalar::anisotropy(size, 0.0, 0.0), 1.0);
+        }
+        assert_eq!(scalar::eigen(0.0, 0.0, 0.0), (0.0, 0.0, [1.0, 0.0]));
+        assert_eq!(scalar::tangent(0.0, 0.0, 0.0), [0.0, 1.0]);
+        assert_eq!(scalar::anisotropy(0.0, 0.0, 0.0), 0.0);
+        // Where E = G exactly, the least F still gives the axis.
+        let (_, _, major) = scalar::eigen(1.0, 1e-30, 1.0);
+        assert!((major[0] - diagonal).abs() < 1e-6 && (major[1] - diagonal).abs() < 1e-6);
+    }
+
+    #[test]
+    fn lanes_do_what_the_scalar_form_does() {
+        let mut all = tensors();
+        all.extend([[0.0; 3], [1.0, 0.0, 1.0], [1e-39, 0.0, 0.0], [0.0, 0.0, 3.0]]);
+        all.resize(all.len().next_multiple_of(8), [0.0; 3]);
+        for block in all.chunks_exact(8) {
+            dispatch!(Level::new(), simd => {
+                let lane = |k: usize| f32x8::from_fn(simd, |i| block[i][k]);
+                let (e, f, g) = (lane(0), lane(1), lane(2));
+                let all = eigen(e, f, g);
+                let (t, a) = (tangent(e, f, g), anisotropy(e, f, g));
+                for (i, [e, f, g]) in block.iter().copied().enumerate() {
+                    let got = (all.lambda1[i], all.lambda2[i], [all.major[0][i], all.major[1][i]]);
+                    assert_eq!(got, scalar::eigen(e, f, g));
+                    assert_eq!([t[0][i], t[1][i]], scalar::tangent(e, f, g));
+                    assert_eq!(a[i], scalar::anisotropy(e, f, g));
+                }
+            });
+        }
+    }
+}
