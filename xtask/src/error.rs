@@ -1,0 +1,31 @@
+//! What a chore says when it fails: one line with what, where and why.
+
+use std::fmt;
+
+/// A failure, as the line that the user reads.
+#[derive(Debug)]
+pub struct Failure(pub String);
+
+impl fmt::Display for Failure {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.0)
+    }
+}
+
+/// The result of a chore.
+pub type Result<T> = std::result::Result<T, Failure>;
+
+/// Says what was being done when an error came from below.
+pub trait Context<T> {
+    /// Puts a description in front of the error.
+    ///
+    /// # Errors
+    /// The error it was called on.
+    fn context(self, what: impl FnOnce() -> String) -> Result<T>;
+}
+
+impl<T, E: fmt::Display> Context<T> for std::result::Result<T, E> {
+    fn context(self, what: impl FnOnce() -> String) -> Result<T> {
+        self.map_err(|error| Failure(format!("{}: {error}", what())))
+    }
+}
