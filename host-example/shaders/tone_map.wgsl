@@ -1,0 +1,37 @@
+// From scene-linear radiance to linear display light in [0, 1]: exposure, then the Khronos PBR Neutral tone
+// mapper, which keeps the colours of materials and compresses only highlights.
+
+struct Settings {
+    exposure: vec4f,
+}
+
+@group(0) @binding(0) var radiance: texture_2d<f32>;
+@group(0) @binding(1) var<uniform> settings: Settings;
+
+@vertex
+fn tone_map_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return vec4f(vec2f(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+const COMPRESSION_START = 0.76;
+const DESATURATION = 0.15;
+
+fn neutral(input: vec3f) -> vec3f {
+    let darkest = min(input.r, min(input.g, input.b));
+    let offset = select(0.04, darkest - 6.25 * darkest * darkest, darkest < 0.08);
+    let color = input - offset;
+    let peak = max(color.r, max(color.g, color.b));
+    if peak < COMPRESSION_START {
+        return color;
+    }
+    let room = 1.0 - COMPRESSION_START;
+    let compressed = 1.0 - room * room / (peak + room - COMPRESSION_START);
+    let share = 1.0 - 1.0 / (DESATURATION * (peak - compressed) + 1.0);
+    return mix(color * compressed / peak, vec3f(compressed), share);
+}
+
+@fragment
+fn tone_map_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let color = textureLoad(radiance, vec2u(position.xy), 0).rgb;
+    return vec4f(neutral(max(color, vec3f(0.0)) * settings.exposure.x), 1.0);
+}

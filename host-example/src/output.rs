@@ -1,0 +1,225 @@
+//! Pictures in main memory, and writing them as PNG or EXR. Files are written beside their final name and
+//! renamed when whole, so that nothing partial ever carries that name.
+
+use std::fs;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, SmallVec, WritableImage};
+use half::f16;
+
+use crate::error::{Error, Result};
+
+/// An image of 32-bit floats, channels interleaved, rows from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Numbers per pixel.
+    pub channels: usize,
+    /// `width * height * channels` numbers.
+    pub data: Vec<f32>,
+}
+
+/// Precision of the numbers in an EXR file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    /// 16 bit, enough for colours.
+    Half,
+    /// 32 bit, for ids, depths and motion.
+    Float,
+}
+
+/// Encodes linear light in [0, 1] for sRGB displays (IEC 61966-2-1).
+pub fn srgb_encode(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// Saves a linear picture of 4 channels (red, green, blue, premultiplied alpha) as its extension says: 8-bit
+/// sRGB-encoded PNG, or linear EXR in half precision.
+///
+/// # Errors
+/// [`Error::Input`] for other extensions and for folders that are missing or cannot be written.
+pub fn save(path: &Path, picture: &Picture) -> Result<()> {
+    match extension(path).as_str() {
+        "png" => save_png(path, picture),
+        "exr" => save_exr(path, picture, &["R", "G", "B", "A"], Precision::Half),
+        _ => Err(unknown_extension(path)),
+    }
+}
+
+/// Whether [`save`] knows the extension; asked before any work is done.
+///
+/// # Errors
+/// [`Error::Input`] naming the file and the extensions that are known.
+pub fn check_extension(path: &Path) -> Result<()> {
+    match extension(path).as_str() {
+        "png" | "exr" => Ok(()),
+        _ => Err(unknown_extension(path)),
+    }
+}
+
+fn unknown_extension(path: &Path) -> Error {
+    Error::file(path, "is not a kind of picture that is written", "name a .png or .exr file")
+}
+
+fn extension(path: &Path) -> String {
+    path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase()
+}
+
+fn save_png(path: &Path, picture: &Picture) -> Result<()> {
+    let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+    let mut bytes = Vec::with_capacity(picture.data.len());
+    let mut opaque = true;
+    for pixel in picture.data.chunks_exact(picture.channels) {
+        let [r, g, b, a] = match pixel {
+            [r, g, b, a, ..] => [*r, *g, *b, *a],
+            [r, g, b] => [*r, *g, *b, 1.0],
+            [y, ..] => [*y, *y, *y, 1.0],
+            [] => [0.0, 0.0, 0.0, 1.0],
+        };
+        // PNG keeps colour and coverage apart.
+        let unpremultiply = if a > 0.0 && a < 1.0 { 1.0 / a } else { 1.0 };
+        bytes.extend([r, g, b].map(|v| byte(srgb_encode(v * unpremultiply))));
+        bytes.push(byte(a));
+        opaque &= a >= 1.0;
+    }
+    let color = if opaque { image::ExtendedColorType::Rgb8 } else { image::ExtendedColorType::Rgba8 };
+    if opaque {
+        bytes = bytes.as_chunks::<4>().0.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
+    }
+    write_beside(path, |file| {
+        let encoder = image::codecs::png::PngEncoder::new(file);
+        image::ImageEncoder::write_image(encoder, &bytes, picture.width, picture.height, color)
+            .map_err(|e| e.to_string())
+    })
+}
+
+/// Saves all channels under the given names as linear EXR, compressed without loss.
+///
+/// # Errors
+/// [`Error::Input`] when the folder is missing or cannot be written.
+pub fn save_exr(path: &Path, picture: &Picture, names: &[&str], precision: Precision) -> Result<()> {
+    let channel = |(index, name): (usize, &&str)| {
+        let values = picture.data.iter().skip(index).step_by(picture.channels).copied();
+        let samples = match precision {
+            Precision::Half => FlatSamples::F16(values.map(f16::from_f32).collect()),
+            Precision::Float => FlatSamples::F32(values.collect()),
+        };
+        AnyChannel::new(*name, samples)
+    };
+    let channels: SmallVec<[_; 4]> = names.iter().take(picture.channels).enumerate().map(channel).collect();
+    let layer = Layer::new(
+        (picture.width as usize, picture.height as usize),
+        LayerAttributes::default(),
+        Encoding::SMALL_LOSSLESS,
+        AnyChannels::sort(channels),
+    );
+    let image = exr::prelude::Image::from_layer(layer);
+    write_beside(path, |file| {
+        image.write().to_buffered(file).map_err(|e| e.to_string())
+    })
+}
+
+/// Writes a file under another name in its folder and renames it when `write` has succeeded.
+///
+/// # Errors
+/// [`Error::Input`] when the folder is missing or cannot be written.
+pub fn write_beside(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<&mut fs::File>) -> std::result::Result<(), String>,
+) -> Result<()> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let fail = |problem: String| Error::file(path, format!("cannot be written: {problem}"), "name a writable folder");
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".isophote-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // Temporary files are private by default; pictures are as public as the umask lets them be.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let mut file = builder.tempfile_in(folder).map_err(|e| fail(e.to_string()))?;
+    let mut writer = BufWriter::new(file.as_file_mut());
+    write(&mut writer).map_err(fail)?;
+    writer.flush().map_err(|e| fail(e.to_string()))?;
+    drop(writer);
+    file.persist(path).map_err(|e| fail(e.error.to_string()))?;
+    Ok(())
+}
+
+/// The name of frame `index` (from 1) of `count`: itself for a single frame; `####` in the name is replaced by
+/// the number, otherwise `.0001` goes before the extension.
+pub fn frame_path(path: &Path, index: usize, count: usize) -> PathBuf {
+    let name = path.file_name().and_then(|n| n.to_str()).unwrap_or_default();
+    if let Some(start) = name.find('#') {
+        let length = name[start..].bytes().take_while(|b| *b == b'#').count();
+        let numbered = format!("{}{index:0length$}{}", &name[..start], &name[start + length..]);
+        return path.with_file_name(numbered);
+    }
+    if count <= 1 {
+        return path.to_owned();
+    }
+    let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or_default();
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    path.with_file_name(format!("{stem}.{index:04}.{extension}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gradient() -> Picture {
+        let data = (0..5 * 3).flat_map(|i| [i as f32 / 14.0, 0.25, 0.5, 1.0]).collect();
+        Picture { width: 5, height: 3, channels: 4, data }
+    }
+
+    #[test]
+    fn frames_are_numbered() {
+        let name = |path: &str, index, count| frame_path(Path::new(path), index, count).display().to_string();
+        assert_eq!(name("a/out.png", 1, 1), "a/out.png");
+        assert_eq!(name("a/out.png", 7, 24), "a/out.0007.png");
+        assert_eq!(name("a/out.####.exr", 7, 24), "a/out.0007.exr");
+        assert_eq!(name("a/out.##.exr", 7, 1), "a/out.07.exr");
+    }
+
+    #[test]
+    fn png_is_srgb_encoded() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        save(&path, &gradient()).unwrap();
+        let read = image::open(&path).unwrap().into_rgba8();
+        assert_eq!(read.dimensions(), (5, 3));
+        assert_eq!(read.get_pixel(4, 2).0, [255, 137, 188, 255]);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "nothing else is left behind");
+    }
+
+    #[test]
+    fn exr_keeps_numbers_and_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        let picture = Picture { width: 2, height: 1, channels: 2, data: vec![1e-7, -3.5, 70000.0, 0.1] };
+        save_exr(&path, &picture, &["motion.X", "motion.Y"], Precision::Float).unwrap();
+        let read = exr::prelude::read_first_flat_layer_from_file(&path).unwrap();
+        let channels = &read.layer_data.channel_data.list;
+        assert_eq!(channels[0].name.to_string(), "motion.X");
+        assert_eq!(channels[0].sample_data.values_as_f32().collect::<Vec<_>>(), [1e-7, 70000.0]);
+        assert_eq!(channels[1].sample_data.values_as_f32().collect::<Vec<_>>(), [-3.5, 0.1]);
+    }
+
+    #[test]
+    fn unwritable_places_are_input_errors() {
+        let folder = tempfile::tempdir().unwrap();
+        for path in ["missing/a.png", "missing/a.exr", "a.tiff"] {
+            let error = save(&folder.path().join(path), &gradient()).unwrap_err();
+            assert_eq!(error.exit_code(), 2);
+            assert_eq!(error.to_string().lines().count(), 1);
+        }
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}

@@ -1,0 +1,497 @@
+//! The renderer: a scene on a wgpu device that the caller owns, frame by frame, with everything that is known
+//! about each pixel beside its colour.
+//!
+//! A frame is four passes over the scene or the picture: the shadow map, the multisampled colours, the
+//! geometry buffer with one sample per pixel, and the tone mapping. They are recorded into the caller's
+//! command encoder; nothing is allocated once every pipeline that the scene needs has been used.
+
+pub mod gpu;
+mod layouts;
+pub mod look;
+mod pipelines;
+pub mod readback;
+pub mod targets;
+mod textures;
+mod uniforms;
+mod upload;
+
+use glam::{Mat4, Vec3};
+
+use self::layouts::{Layouts, bind_buffer, bind_sampler, bind_view};
+use self::look::Look;
+use self::pipelines::{Pass, Pipelines, Variant};
+use self::targets::{COLOR_FORMAT, DEPTH_FORMAT, Targets};
+use self::textures::TextureStore;
+use self::uniforms::{FrameBlock, InstanceBlock, LightBlock};
+use self::upload::GpuPrimitive;
+use crate::error::Result;
+use crate::scene::camera::View;
+use crate::scene::pose::Pose;
+use crate::scene::{AlphaMode, Scene};
+
+/// Texels along a side of the shadow map.
+const SHADOW_SIZE: u32 = 2048;
+
+/// A scene on the GPU with the targets it is rendered into.
+pub struct Renderer {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    pipelines: Pipelines,
+    targets: Targets,
+    primitives: Vec<Vec<GpuPrimitive>>,
+    materials: Vec<wgpu::BindGroup>,
+    buffers: Buffers,
+    shadow_map: wgpu::TextureView,
+    shadow_group: wgpu::BindGroup,
+    tone_map: ToneMap,
+    joints: Vec<Option<u32>>,
+    weights: Vec<u32>,
+    joint_count: usize,
+    weight_count: usize,
+    history: History,
+    scratch: Scratch,
+}
+
+/// Buffers that are filled anew for each frame, and the group that binds them.
+struct Buffers {
+    frame: wgpu::Buffer,
+    instances: wgpu::Buffer,
+    joints: wgpu::Buffer,
+    weights: wgpu::Buffer,
+    lights: wgpu::Buffer,
+    bind_group: wgpu::BindGroup,
+}
+
+struct ToneMap {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::RenderPipeline,
+    settings: wgpu::Buffer,
+    bind_group: wgpu::BindGroup,
+}
+
+/// The frame before this one; empty before the first.
+#[derive(Default)]
+struct History {
+    view_projection: Option<Mat4>,
+    models: Vec<Mat4>,
+}
+
+/// Memory that is reused from frame to frame. Joints and weights hold the current frame's values and then the
+/// previous one's.
+#[derive(Default)]
+struct Scratch {
+    instances: Vec<InstanceBlock>,
+    joints: Vec<Mat4>,
+    weights: Vec<f32>,
+    lights: Vec<LightBlock>,
+    mirrored: Vec<bool>,
+    order: Vec<(f32, usize)>,
+}
+
+impl Renderer {
+    /// Uploads a scene and allocates targets of `size` pixels. Errors that the device reports later than this
+    /// are found by [`gpu::Gpu::check`].
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Input`] when the size or a part of the scene is beyond the limits of the device.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene, size: (u32, u32)) -> Result<Self> {
+        let targets = Targets::new(device, size.0, size.1)?;
+        let layouts = Layouts::new(device);
+        let mut textures = TextureStore::new(device, queue);
+        let mut primitives = Vec::with_capacity(scene.meshes.len());
+        for mesh in &scene.meshes {
+            let uploaded: Result<Vec<_>> =
+                mesh.primitives.iter().map(|p| upload::primitive(device, &layouts, &mesh.name, p)).collect();
+            primitives.push(uploaded?);
+        }
+        let mut materials = Vec::with_capacity(scene.materials.len());
+        for material in &scene.materials {
+            materials.push(upload::material(device, queue, &layouts, &mut textures, scene, material)?);
+        }
+        let (joints, joint_count) = joint_offsets(scene);
+        let (weights, weight_count) = weight_offsets(scene);
+        let light_count = look::visible_lights(scene).count();
+        let buffers = Buffers::new(device, &layouts, scene.draws.len(), joint_count, weight_count, light_count);
+        let (shadow_map, shadow_group) = make_shadow_map(device, &layouts);
+        let tone_map = ToneMap::new(device, &targets);
+        Ok(Self {
+            pipelines: Pipelines::new(device, &layouts),
+            device: device.clone(),
+            queue: queue.clone(),
+            targets,
+            primitives,
+            materials,
+            buffers,
+            shadow_map,
+            shadow_group,
+            tone_map,
+            joints,
+            weights,
+            joint_count,
+            weight_count,
+            history: History::default(),
+            scratch: Scratch::default(),
+        })
+    }
+
+    /// What the last frame was rendered into.
+    pub fn targets(&self) -> &Targets {
+        &self.targets
+    }
+
+    /// Replaces the targets by ones of another size; motion begins anew.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`]; the old targets then stay.
+    pub fn resize(&mut self, size: (u32, u32)) -> Result<()> {
+        if size != (self.targets.width, self.targets.height) {
+            self.targets = Targets::new(&self.device, size.0, size.1)?;
+            self.tone_map.bind(&self.device, &self.targets);
+            self.forget_motion();
+        }
+        Ok(())
+    }
+
+    /// Makes the next frame the first of a sequence: its motion vectors are 0.
+    pub fn forget_motion(&mut self) {
+        self.history = History::default();
+    }
+
+    /// Records one frame of `scene`, which must be the one given to [`Renderer::new`], in `pose`. Buffers are
+    /// written through the queue, so the encoder must be submitted before the next call.
+    pub fn encode(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &Scene,
+        pose: &Pose,
+        view: &View,
+        look: &Look,
+    ) {
+        let frame = self.write_buffers(scene, pose, view, look);
+        for draw in 0..scene.draws.len() {
+            for pass in [Pass::Shadow, Pass::Surface, Pass::Geometry] {
+                self.pipelines.prepare(&self.device, self.variant(scene, draw, pass));
+            }
+        }
+        self.sort_blended(scene, pose, frame.eye.truncate());
+        self.shadow_pass(encoder, scene, look);
+        self.surface_pass(encoder, scene);
+        self.geometry_pass(encoder, scene);
+        self.tone_map.encode(encoder, &self.targets);
+        self.history.view_projection = Some(frame.view_projection);
+    }
+
+    fn write_buffers(&mut self, scene: &Scene, pose: &Pose, view: &View, look: &Look) -> FrameBlock {
+        let scratch = &mut self.scratch;
+        let first = self.history.models.len() != scene.draws.len();
+        fill_joints(scene, pose, &self.joints, self.joint_count, &mut scratch.joints, first);
+        fill_weights(pose, &self.weights, self.weight_count, &mut scratch.weights, first);
+        scratch.instances.clear();
+        scratch.mirrored.clear();
+        self.history.models.resize(scene.draws.len(), Mat4::IDENTITY);
+        for (index, draw) in scene.draws.iter().enumerate() {
+            let primitive = scene.primitive(draw);
+            let joints = self.joints[draw.node].filter(|_| !primitive.influences.is_empty());
+            let model = pose.world[draw.node];
+            let previous = std::mem::replace(&mut self.history.models[index], model);
+            let skeleton = joints.map(|j| scratch.joints[j as usize]);
+            scratch.mirrored.push(skeleton.unwrap_or(model).determinant() < 0.0);
+            scratch.instances.push(InstanceBlock {
+                model,
+                previous_model: if first { model } else { previous },
+                joints: joints.unwrap_or(0),
+                previous_joints: joints.unwrap_or(0) + self.joint_count as u32,
+                weights: self.weights[draw.node],
+                previous_weights: self.weights[draw.node] + self.weight_count as u32,
+                morph_targets: primitive.morph_targets.len() as u32,
+                vertex_count: primitive.vertices.len() as u32,
+                influence_sets: if joints.is_some() { primitive.influence_sets as u32 } else { 0 },
+                object_id: index as u32 + 1,
+            });
+        }
+        uniforms::lights(scene, pose, look, &mut scratch.lights);
+        let sun = look.sun_matrix(scene, SHADOW_SIZE);
+        let size = (self.targets.width, self.targets.height);
+        let mut frame = FrameBlock::new(view, look, sun, size, self.history.view_projection);
+        frame.settings.y = scratch.lights.len() as f32;
+        let write = |buffer: &wgpu::Buffer, bytes: &[u8]| {
+            if !bytes.is_empty() {
+                self.queue.write_buffer(buffer, 0, bytes);
+            }
+        };
+        write(&self.buffers.frame, bytemuck::bytes_of(&frame));
+        write(&self.buffers.instances, bytemuck::cast_slice(&scratch.instances));
+        write(&self.buffers.joints, bytemuck::cast_slice(&scratch.joints));
+        write(&self.buffers.weights, bytemuck::cast_slice(&scratch.weights));
+        write(&self.buffers.lights, bytemuck::cast_slice(&scratch.lights));
+        write(&self.tone_map.settings, bytemuck::bytes_of(&[look.exposure, 0.0, 0.0, 0.0]));
+        frame
+    }
+
+    fn variant(&self, scene: &Scene, draw: usize, pass: Pass) -> Variant {
+        let material = &scene.materials[scene.primitive(&scene.draws[draw]).material];
+        Variant::new(pass, material, self.scratch.mirrored[draw])
+    }
+
+    /// Orders blended draws from far to near by the middle of their vertices.
+    fn sort_blended(&mut self, scene: &Scene, pose: &Pose, eye: Vec3) {
+        self.scratch.order.clear();
+        for (index, draw) in scene.draws.iter().enumerate() {
+            let primitive = scene.primitive(draw);
+            if scene.materials[primitive.material].alpha_mode == AlphaMode::Blend {
+                let middle = pose.world[draw.node].transform_point3(primitive.center());
+                self.scratch.order.push((middle.distance_squared(eye), index));
+            }
+        }
+        self.scratch.order.sort_by(|a, b| b.0.total_cmp(&a.0));
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass, scene: &Scene, index: usize, kind: Pass) {
+        let Some(pipeline) = self.pipelines.get(self.variant(scene, index, kind)) else { return };
+        let draw = &scene.draws[index];
+        let primitive = &self.primitives[draw.mesh][draw.primitive];
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(1, &primitive.bind_group, &[]);
+        pass.set_bind_group(2, &self.materials[scene.primitive(draw).material], &[]);
+        pass.set_vertex_buffer(0, primitive.vertices.slice(..));
+        pass.set_index_buffer(primitive.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..primitive.index_count, 0, index as u32..index as u32 + 1);
+    }
+
+    fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene, look: &Look) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("shadow"),
+            depth_stencil_attachment: Some(layouts::depth(&self.shadow_map, 1.0, wgpu::StoreOp::Store)),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.buffers.bind_group, &[]);
+        if look.sun_color.is_some() {
+            (0..scene.draws.len()).for_each(|index| self.draw(&mut pass, scene, index, Pass::Shadow));
+        }
+    }
+
+    fn surface_pass(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene) {
+        let targets = &self.targets;
+        let mut color = layouts::cleared(&targets.multisampled.view, wgpu::Color::BLACK);
+        color.resolve_target = Some(&targets.radiance.view);
+        color.ops.store = wgpu::StoreOp::Discard;
+        let depth = layouts::depth(&targets.multisampled_depth.view, 0.0, wgpu::StoreOp::Discard);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("surface"),
+            color_attachments: &[Some(color)],
+            depth_stencil_attachment: Some(depth),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.buffers.bind_group, &[]);
+        pass.set_bind_group(3, &self.shadow_group, &[]);
+        for index in 0..scene.draws.len() {
+            let material = scene.primitive(&scene.draws[index]).material;
+            if scene.materials[material].alpha_mode != AlphaMode::Blend {
+                self.draw(&mut pass, scene, index, Pass::Surface);
+            }
+        }
+        pass.set_pipeline(&self.pipelines.background);
+        pass.draw(0..3, 0..1);
+        for &(_, index) in &self.scratch.order {
+            self.draw(&mut pass, scene, index, Pass::Surface);
+        }
+    }
+
+    fn geometry_pass(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene) {
+        let targets = &self.targets;
+        let attachments = [&targets.normal, &targets.depth, &targets.object_id, &targets.motion]
+            .map(|target| Some(layouts::cleared(&target.view, wgpu::Color::TRANSPARENT)));
+        let depth = layouts::depth(&targets.geometry_depth.view, 0.0, wgpu::StoreOp::Discard);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("geometry"),
+            color_attachments: &attachments,
+            depth_stencil_attachment: Some(depth),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.buffers.bind_group, &[]);
+        pass.set_bind_group(3, &self.shadow_group, &[]);
+        (0..scene.draws.len()).for_each(|index| self.draw(&mut pass, scene, index, Pass::Geometry));
+    }
+}
+
+/// Where the joints of each skinned node begin, and how many there are in all.
+fn joint_offsets(scene: &Scene) -> (Vec<Option<u32>>, usize) {
+    let mut total = 0;
+    let offsets = scene
+        .nodes
+        .iter()
+        .map(|node| {
+            let skin = node.skin.filter(|_| node.visible && node.mesh.is_some())?;
+            let start = total;
+            total += scene.skins[skin].joints.len();
+            Some(start as u32)
+        })
+        .collect();
+    (offsets, total)
+}
+
+/// Where the morph weights of each node begin, and how many there are in all.
+fn weight_offsets(scene: &Scene) -> (Vec<u32>, usize) {
+    let mut total = 0;
+    let offsets = scene
+        .nodes
+        .iter()
+        .map(|node| {
+            let start = total;
+            total += node.weights.len();
+            start as u32
+        })
+        .collect();
+    (offsets, total)
+}
+
+fn fill_joints(
+    scene: &Scene,
+    pose: &Pose,
+    offsets: &[Option<u32>],
+    count: usize,
+    joints: &mut Vec<Mat4>,
+    first: bool,
+) {
+    joints.resize(2 * count, Mat4::IDENTITY);
+    joints.copy_within(..count, count);
+    for (node, offset) in offsets.iter().enumerate() {
+        let (Some(offset), Some(skin)) = (offset, scene.nodes[node].skin) else { continue };
+        for joint in 0..scene.skins[skin].joints.len() {
+            joints[*offset as usize + joint] = pose.joint_matrix(scene, skin, joint);
+        }
+    }
+    if first {
+        joints.copy_within(..count, count);
+    }
+}
+
+fn fill_weights(pose: &Pose, offsets: &[u32], count: usize, weights: &mut Vec<f32>, first: bool) {
+    weights.resize(2 * count, 0.0);
+    weights.copy_within(..count, count);
+    for (node, own) in pose.weights.iter().enumerate() {
+        let start = offsets[node] as usize;
+        weights[start..start + own.len()].copy_from_slice(own);
+    }
+    if first {
+        weights.copy_within(..count, count);
+    }
+}
+
+impl Buffers {
+    fn new(
+        device: &wgpu::Device,
+        layouts: &Layouts,
+        draws: usize,
+        joints: usize,
+        weights: usize,
+        lights: usize,
+    ) -> Self {
+        let make = |label, size: usize, usage| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: size as u64,
+                usage: usage | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let storage = wgpu::BufferUsages::STORAGE;
+        let frame = make("frame", size_of::<FrameBlock>(), wgpu::BufferUsages::UNIFORM);
+        let instances = make("instances", draws.max(1) * size_of::<InstanceBlock>(), storage);
+        let joints = make("joints", 2 * joints.max(1) * size_of::<Mat4>(), storage);
+        let weights = make("weights", 2 * weights.max(1) * size_of::<f32>(), storage);
+        let lights = make("lights", lights.max(1) * size_of::<LightBlock>(), storage);
+        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("frame"),
+            layout: &layouts.frame,
+            entries: &[
+                bind_buffer(0, &frame),
+                bind_buffer(1, &instances),
+                bind_buffer(2, &joints),
+                bind_buffer(3, &weights),
+                bind_buffer(4, &lights),
+            ],
+        });
+        Self { frame, instances, joints, weights, lights, bind_group }
+    }
+}
+
+fn make_shadow_map(device: &wgpu::Device, layouts: &Layouts) -> (wgpu::TextureView, wgpu::BindGroup) {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("shadow map"),
+        size: wgpu::Extent3d { width: SHADOW_SIZE, height: SHADOW_SIZE, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: DEPTH_FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    let view = texture.create_view(&Default::default());
+    let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("shadow map"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        compare: Some(wgpu::CompareFunction::LessEqual),
+        ..Default::default()
+    });
+    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("shadow map"),
+        layout: &layouts.shadow,
+        entries: &[bind_view(0, &view), bind_sampler(1, &sampler)],
+    });
+    (view, group)
+}
+
+impl ToneMap {
+    fn new(device: &wgpu::Device, targets: &Targets) -> Self {
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("tone map"),
+            entries: &[
+                layouts::texture(0, wgpu::TextureSampleType::Float { filterable: false }),
+                layouts::uniform(1, wgpu::ShaderStages::FRAGMENT),
+            ],
+        });
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("tone map"),
+            source: wgpu::ShaderSource::Wgsl(include_str!("../../shaders/tone_map.wgsl").into()),
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("tone map"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = pipelines::full_screen(device, &pipeline_layout, &module, "tone_map", COLOR_FORMAT, None, 1);
+        let settings = upload::filled_buffer(device, "tone map", &[0; 16], wgpu::BufferUsages::UNIFORM);
+        let bind_group = Self::group(device, &layout, &settings, targets);
+        Self { layout, pipeline, settings, bind_group }
+    }
+
+    fn group(
+        device: &wgpu::Device,
+        layout: &wgpu::BindGroupLayout,
+        settings: &wgpu::Buffer,
+        targets: &Targets,
+    ) -> wgpu::BindGroup {
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("tone map"),
+            layout,
+            entries: &[bind_view(0, &targets.radiance.view), bind_buffer(1, settings)],
+        })
+    }
+
+    fn bind(&mut self, device: &wgpu::Device, targets: &Targets) {
+        self.bind_group = Self::group(device, &self.layout, &self.settings, targets);
+    }
+
+    fn encode(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("tone map"),
+            color_attachments: &[Some(layouts::cleared(&targets.color.view, wgpu::Color::BLACK))],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.bind_group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}

@@ -1,0 +1,232 @@
+//! Render pipelines, made when a scene first needs them and kept.
+
+use std::collections::HashMap;
+
+use super::layouts::Layouts;
+use super::targets::{
+    COLOR_FORMAT, DEPTH_FORMAT, LINEAR_DEPTH_FORMAT, MOTION_FORMAT, NORMAL_FORMAT, OBJECT_ID_FORMAT, SAMPLES,
+};
+use crate::scene::{AlphaMode, Material, Vertex};
+
+/// The passes over the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Pass {
+    /// Depth as the sun sees it.
+    Shadow,
+    /// Colours.
+    Surface,
+    /// The geometry buffer.
+    Geometry,
+}
+
+/// What tells one pipeline of a pass from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Variant {
+    /// The pass.
+    pub pass: Pass,
+    /// 0 opaque, 1 mask, 2 blend.
+    pub alpha: u8,
+    /// Shows backs.
+    pub double_sided: bool,
+    /// The transform mirrors, so that front faces run clockwise.
+    pub mirrored: bool,
+}
+
+impl Variant {
+    /// The variant that draws a material, with no distinctions that the pass does not make.
+    pub fn new(pass: Pass, material: &Material, mirrored: bool) -> Self {
+        let alpha = match material.alpha_mode {
+            AlphaMode::Opaque => 0,
+            AlphaMode::Mask { .. } => 1,
+            AlphaMode::Blend => 2,
+        };
+        match pass {
+            Pass::Shadow => Self { pass, alpha: alpha.min(1), double_sided: true, mirrored: false },
+            Pass::Geometry => Self { pass, alpha: alpha.min(1), double_sided: material.double_sided, mirrored },
+            Pass::Surface => Self { pass, alpha, double_sided: material.double_sided, mirrored },
+        }
+    }
+}
+
+/// Shaders, layouts and the pipelines made so far.
+#[derive(Debug)]
+pub struct Pipelines {
+    layout: wgpu::PipelineLayout,
+    shadow_layout: wgpu::PipelineLayout,
+    surface: wgpu::ShaderModule,
+    geometry: wgpu::ShaderModule,
+    shadow: wgpu::ShaderModule,
+    made: HashMap<Variant, wgpu::RenderPipeline>,
+    /// Draws the sky.
+    pub background: wgpu::RenderPipeline,
+}
+
+const SCENE: &str = include_str!("../../shaders/scene.wgsl");
+const MATERIAL: &str = include_str!("../../shaders/material.wgsl");
+const SKY: &str = include_str!("../../shaders/sky.wgsl");
+
+impl Pipelines {
+    /// Compiles the shaders.
+    pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
+        let module = |label, parts: &[&str]| {
+            device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(label),
+                source: wgpu::ShaderSource::Wgsl(parts.concat().into()),
+            })
+        };
+        let pipeline_layout = |label, groups: &[Option<&wgpu::BindGroupLayout>]| {
+            device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some(label),
+                bind_group_layouts: groups,
+                immediate_size: 0,
+            })
+        };
+        let scene = [Some(&layouts.frame), Some(&layouts.geometry), Some(&layouts.material)];
+        let background = module("background", &[SCENE, SKY, include_str!("../../shaders/background.wgsl")]);
+        let background_layout = pipeline_layout("background", &scene[..1]);
+        let behind_everything = wgpu::DepthStencilState {
+            format: DEPTH_FORMAT,
+            depth_write_enabled: Some(false),
+            depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
+            stencil: Default::default(),
+            bias: Default::default(),
+        };
+        Self {
+            layout: pipeline_layout("scene", &[scene[0], scene[1], scene[2], Some(&layouts.shadow)]),
+            shadow_layout: pipeline_layout("shadow", &scene),
+            surface: module("surface", &[SCENE, MATERIAL, SKY, include_str!("../../shaders/surface.wgsl")]),
+            geometry: module("geometry buffer", &[SCENE, MATERIAL, include_str!("../../shaders/geometry_buffer.wgsl")]),
+            shadow: module("shadow", &[SCENE, MATERIAL, include_str!("../../shaders/shadow.wgsl")]),
+            background: full_screen(
+                device,
+                &background_layout,
+                &background,
+                "background",
+                COLOR_FORMAT,
+                Some(behind_everything),
+                SAMPLES,
+            ),
+            made: HashMap::new(),
+        }
+    }
+
+    /// Makes a pipeline unless it is there.
+    pub fn prepare(&mut self, device: &wgpu::Device, variant: Variant) {
+        if !self.made.contains_key(&variant) {
+            let pipeline = self.make(device, variant);
+            self.made.insert(variant, pipeline);
+        }
+    }
+
+    /// A pipeline that was prepared.
+    pub fn get(&self, variant: Variant) -> Option<&wgpu::RenderPipeline> {
+        self.made.get(&variant)
+    }
+
+    fn make(&self, device: &wgpu::Device, variant: Variant) -> wgpu::RenderPipeline {
+        let attributes = wgpu::vertex_attr_array![
+            0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x2, 4 => Float32x2, 5 => Float32x4
+        ];
+        let buffers = [Some(wgpu::VertexBufferLayout {
+            array_stride: size_of::<Vertex>() as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &attributes,
+        })];
+        let target = |format, blend| Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL });
+        let blend = (variant.alpha == 2).then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
+        let alpha_mode = [("ALPHA_MODE", f64::from(variant.alpha))];
+        let cutout = [("CUTOUT", f64::from(variant.alpha))];
+        let (module, name, targets, constants): (_, _, Vec<_>, &[(&str, f64)]) = match variant.pass {
+            Pass::Shadow => (&self.shadow, "shadow", vec![], &[]),
+            Pass::Surface => (&self.surface, "surface", vec![target(COLOR_FORMAT, blend)], &alpha_mode),
+            Pass::Geometry => {
+                let formats = [NORMAL_FORMAT, LINEAR_DEPTH_FORMAT, OBJECT_ID_FORMAT, MOTION_FORMAT];
+                (&self.geometry, "geometry", formats.map(|f| target(f, None)).to_vec(), &cutout)
+            }
+        };
+        let in_shadow = variant.pass == Pass::Shadow;
+        let solid_shadow = in_shadow && variant.alpha == 0;
+        let entry = |stage| format!("{name}_{stage}");
+        let (vertex_entry, fragment_entry) = (entry("vertex"), entry("fragment"));
+        // Constants may only be given to stages whose module declares them, and the vertex stage shares it.
+        let options = wgpu::PipelineCompilationOptions { constants, ..Default::default() };
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(name),
+            layout: Some(if in_shadow { &self.shadow_layout } else { &self.layout }),
+            vertex: wgpu::VertexState {
+                module,
+                entry_point: Some(&vertex_entry),
+                compilation_options: options.clone(),
+                buffers: &buffers,
+            },
+            primitive: wgpu::PrimitiveState {
+                front_face: if variant.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
+                cull_mode: (!variant.double_sided).then_some(wgpu::Face::Back),
+                ..Default::default()
+            },
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(variant.pass != Pass::Surface || variant.alpha < 2),
+                depth_compare: Some(if in_shadow {
+                    wgpu::CompareFunction::Less
+                } else {
+                    // Depth is reversed.
+                    wgpu::CompareFunction::Greater
+                }),
+                stencil: Default::default(),
+                bias: if in_shadow {
+                    wgpu::DepthBiasState { constant: 1, slope_scale: 1.5, clamp: 0.0 }
+                } else {
+                    Default::default()
+                },
+            }),
+            multisample: wgpu::MultisampleState {
+                count: if variant.pass == Pass::Surface { SAMPLES } else { 1 },
+                alpha_to_coverage_enabled: variant.pass == Pass::Surface && variant.alpha == 1,
+                ..Default::default()
+            },
+            fragment: (!solid_shadow).then_some(wgpu::FragmentState {
+                module,
+                entry_point: Some(&fragment_entry),
+                compilation_options: options,
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+/// A pipeline that covers its target with one triangle; entry points are `<name>_vertex` and
+/// `<name>_fragment`.
+pub fn full_screen(
+    device: &wgpu::Device,
+    layout: &wgpu::PipelineLayout,
+    module: &wgpu::ShaderModule,
+    name: &str,
+    format: wgpu::TextureFormat,
+    depth_stencil: Option<wgpu::DepthStencilState>,
+    samples: u32,
+) -> wgpu::RenderPipeline {
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(name),
+        layout: Some(layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some(&format!("{name}_vertex")),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil,
+        multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some(&format!("{name}_fragment")),
+            compilation_options: Default::default(),
+            targets: &[Some(format.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

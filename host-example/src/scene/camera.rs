@@ -1,0 +1,209 @@
+//! Cameras: those of the file, a default view that frames the scene, and the orbit of turntables and viewers.
+
+use std::f32::consts::TAU;
+
+use glam::camera::rh::{proj::directx as clip, view};
+use glam::{Mat4, Vec3};
+
+use super::Scene;
+use super::pose::Pose;
+
+/// How the view is projected.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Pinhole camera without a far plane.
+    Perspective {
+        /// Vertical field of view in radians.
+        vertical_fov: f32,
+        /// Distance of the near plane, above 0.
+        near: f32,
+    },
+    /// Parallel projection.
+    Orthographic {
+        /// Half the height of the view in scene units.
+        half_height: f32,
+        /// Distance of the near plane.
+        near: f32,
+        /// Distance of the far plane.
+        far: f32,
+    },
+}
+
+/// A camera in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// From the world to the camera, which looks along -Z with +Y up.
+    pub world_to_view: Mat4,
+    /// The projection.
+    pub projection: Projection,
+}
+
+impl View {
+    /// From camera space to clip space with reversed depth: 1 at the near plane, 0 far away. Reversing gives
+    /// floating-point depth nearly even precision over distance.
+    pub fn projection_matrix(&self, aspect: f32) -> Mat4 {
+        match self.projection {
+            Projection::Perspective { vertical_fov, near } => {
+                clip::perspective_infinite_reverse(vertical_fov, aspect, near)
+            }
+            Projection::Orthographic { half_height, near, far } => {
+                let half_width = half_height * aspect;
+                clip::orthographic(-half_width, half_width, -half_height, half_height, far, near)
+            }
+        }
+    }
+
+    /// Position of the camera in the world.
+    pub fn eye(&self) -> Vec3 {
+        self.world_to_view.inverse().w_axis.truncate()
+    }
+
+    /// The camera at a node of the file.
+    pub fn from_node(scene: &Scene, pose: &Pose, node: usize) -> Option<Self> {
+        let projection = *scene.cameras.get(scene.nodes.get(node)?.camera?)?;
+        // Cameras are placed without the scale of their node.
+        let (_, rotation, translation) = pose.world.get(node)?.to_scale_rotation_translation();
+        let world_to_view = Mat4::from_rotation_translation(rotation, translation).inverse();
+        world_to_view.is_finite().then_some(Self { world_to_view, projection })
+    }
+}
+
+/// First visible node with a camera.
+pub fn file_camera(scene: &Scene) -> Option<usize> {
+    scene.nodes.iter().position(|n| n.visible && n.camera.is_some())
+}
+
+/// A camera on a sphere around a target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orbit {
+    /// What it looks at.
+    pub target: Vec3,
+    /// How far away it is.
+    pub distance: f32,
+    /// Angle about the vertical in radians; 0 looks from +Z, growing towards +X.
+    pub azimuth: f32,
+    /// Angle above the horizon in radians, within (-pi/2, pi/2).
+    pub elevation: f32,
+    /// Vertical field of view in radians.
+    pub vertical_fov: f32,
+}
+
+/// Steepest elevation; straight up has no defined azimuth.
+const STEEPEST: f32 = 1.55;
+
+/// Free space kept around the scene, as a share of the view.
+const MARGIN: f32 = 0.06;
+
+impl Orbit {
+    /// A three-quarter view that frames the whole scene in a picture of this aspect (width over height).
+    pub fn framing(scene: &Scene, aspect: f32) -> Self {
+        let mut orbit = Self::default_angles(scene.bounds.center());
+        orbit.fit(&scene.bounds.extremes, aspect);
+        orbit
+    }
+
+    /// Like [`Orbit::framing`], but the scene stays in frame at every azimuth.
+    pub fn turntable(scene: &Scene, aspect: f32) -> Self {
+        let center = scene.bounds.center();
+        let mut orbit = Self::default_angles(center);
+        let swept: Vec<Vec3> = scene
+            .bounds
+            .extremes
+            .iter()
+            .flat_map(|p| {
+                let radius = (*p - center).with_y(0.0).length();
+                (0..16).map(move |step| {
+                    let (sine, cosine) = (step as f32 / 16.0 * TAU).sin_cos();
+                    Vec3::new(center.x + radius * sine, p.y, center.z + radius * cosine)
+                })
+            })
+            .collect();
+        let (target, distance) = (center, orbit.fit_distance(&swept, aspect));
+        (orbit.target, orbit.distance) = (target, distance);
+        orbit
+    }
+
+    fn default_angles(target: Vec3) -> Self {
+        Self { target, distance: 1.0, azimuth: 0.55, elevation: 0.28, vertical_fov: 0.6 }
+    }
+
+    /// This orbit with another azimuth added, in radians.
+    pub fn turned(mut self, angle: f32) -> Self {
+        self.azimuth += angle;
+        self
+    }
+
+    /// The camera.
+    pub fn view(&self) -> View {
+        let eye = self.target + self.direction() * self.distance;
+        View {
+            world_to_view: view::look_at_mat4(eye, self.target, Vec3::Y),
+            projection: Projection::Perspective {
+                vertical_fov: self.vertical_fov,
+                near: (self.distance * 0.01).max(1e-5),
+            },
+        }
+    }
+
+    /// Unit vector from the target to the camera.
+    pub fn direction(&self) -> Vec3 {
+        let (sin_e, cos_e) = self.elevation.clamp(-STEEPEST, STEEPEST).sin_cos();
+        let (sin_a, cos_a) = self.azimuth.sin_cos();
+        Vec3::new(sin_a * cos_e, sin_e, cos_a * cos_e)
+    }
+
+    /// Turns by angles in radians, as when dragging.
+    pub fn rotate(&mut self, azimuth: f32, elevation: f32) {
+        self.azimuth = (self.azimuth + azimuth) % TAU;
+        self.elevation = (self.elevation + elevation).clamp(-STEEPEST, STEEPEST);
+    }
+
+    /// Multiplies the distance by a factor, as when scrolling.
+    pub fn zoom(&mut self, factor: f32) {
+        self.distance = (self.distance * factor).clamp(1e-4, 1e7);
+    }
+
+    /// Moves the target across the view; 1 is the height of the picture at the target.
+    pub fn pan(&mut self, right: f32, up: f32) {
+        let height = 2.0 * self.distance * (self.vertical_fov * 0.5).tan();
+        let backward = self.direction();
+        let across = Vec3::Y.cross(backward).normalize_or(Vec3::X);
+        self.target += (across * right + backward.cross(across) * up) * height;
+    }
+
+    /// Distance at which all points, seen from this direction, lie within the picture.
+    fn fit_distance(&self, points: &[Vec3], aspect: f32) -> f32 {
+        let rotation = view::look_to_mat4(Vec3::ZERO, -self.direction(), Vec3::Y);
+        let tan_y = (self.vertical_fov * 0.5).tan() * (1.0 - MARGIN);
+        let tan_x = tan_y * aspect.max(1e-3);
+        let needed = |p: &Vec3| {
+            let q = rotation.transform_vector3(*p - self.target);
+            q.z + (q.x.abs() / tan_x).max(q.y.abs() / tan_y)
+        };
+        points.iter().map(needed).fold(1e-4, f32::max)
+    }
+
+    /// Moves target and distance so that the points fill the picture evenly. The extents on the screen
+    /// depend on the distance, so centring and fitting alternate a few times.
+    fn fit(&mut self, points: &[Vec3], aspect: f32) {
+        self.distance = self.fit_distance(points, aspect);
+        for _ in 0..8 {
+            let view = self.view().world_to_view;
+            let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+            let (mut left, mut right) = (f32::INFINITY, f32::NEG_INFINITY);
+            for p in points {
+                let q = view.transform_point3(*p);
+                let (x, y) = (q.x / -q.z, q.y / -q.z);
+                (left, right, low, high) = (left.min(x), right.max(x), low.min(y), high.max(y));
+            }
+            let backward = self.direction();
+            let across = Vec3::Y.cross(backward).normalize_or(Vec3::X);
+            let shift = across * (left + right) * 0.5 + backward.cross(across) * (low + high) * 0.5;
+            if !shift.is_finite() {
+                return;
+            }
+            self.target += shift * self.distance;
+            self.distance = self.fit_distance(points, aspect);
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! Surfaces: materials, textures, samplers, and decoding of PNG and JPEG images.
+
+use std::io::Cursor;
+
+use glam::{Affine2, Vec2, Vec3, Vec4};
+
+/// How the bytes of an image are to be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ColorSpace {
+    /// sRGB-encoded colour: base colour and emission.
+    Srgb,
+    /// Plain numbers: normals, roughness, occlusion.
+    Linear,
+}
+
+/// A decoded image: RGBA, 8 bit, rows from the top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Image {
+    /// Name or file name, for messages.
+    pub name: String,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// `width * height * 4` bytes.
+    pub rgba: Vec<u8>,
+}
+
+/// What kept an image from being decoded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum DecodeProblem {
+    /// A format that this program does not read; the scene can do without.
+    Unsupported(&'static str),
+    /// The file is damaged.
+    Damaged(String),
+}
+
+impl Image {
+    /// Decodes PNG or JPEG, told apart by their first bytes.
+    ///
+    /// # Errors
+    /// [`DecodeProblem`]: another format, or a damaged file.
+    pub fn decode(name: &str, bytes: &[u8]) -> Result<Self, DecodeProblem> {
+        let format = match bytes {
+            [0x89, b'P', b'N', b'G', ..] => image::ImageFormat::Png,
+            [0xff, 0xd8, 0xff, ..] => image::ImageFormat::Jpeg,
+            [0xab, b'K', b'T', b'X', ..] => return Err(DecodeProblem::Unsupported("KTX2")),
+            [b'R', b'I', b'F', b'F', ..] => return Err(DecodeProblem::Unsupported("WebP")),
+            [b'D', b'D', b'S', b' ', ..] => return Err(DecodeProblem::Unsupported("DDS")),
+            [] => return Err(DecodeProblem::Damaged("the image is empty".into())),
+            _ => return Err(DecodeProblem::Unsupported("unknown")),
+        };
+        let mut reader = image::ImageReader::with_format(Cursor::new(bytes), format);
+        let mut limits = image::Limits::default();
+        limits.max_image_width = Some(1 << 15);
+        limits.max_image_height = Some(1 << 15);
+        limits.max_alloc = Some(1 << 30);
+        reader.limits(limits);
+        let decoded = reader.decode().map_err(|e| DecodeProblem::Damaged(e.to_string()))?.into_rgba8();
+        Ok(Self {
+            name: name.to_owned(),
+            width: decoded.width(),
+            height: decoded.height(),
+            rgba: decoded.into_raw(),
+        })
+    }
+
+    /// An image of one colour.
+    pub fn solid(name: &str, rgba: [u8; 4]) -> Self {
+        Self { name: name.to_owned(), width: 1, height: 1, rgba: rgba.to_vec() }
+    }
+}
+
+/// How a texture continues outside of [0, 1].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Wrap {
+    /// Tiles.
+    #[default]
+    Repeat,
+    /// Tiles, every other one mirrored.
+    Mirror,
+    /// Repeats the edge.
+    Clamp,
+}
+
+/// How a texture is sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Sampler {
+    /// Along U.
+    pub wrap_u: Wrap,
+    /// Along V.
+    pub wrap_v: Wrap,
+    /// Interpolate when magnified.
+    pub linear_mag: bool,
+    /// Interpolate when minified.
+    pub linear_min: bool,
+    /// Use and blend smaller copies when minified.
+    pub mipmaps: bool,
+}
+
+impl Default for Sampler {
+    fn default() -> Self {
+        Self { wrap_u: Wrap::Repeat, wrap_v: Wrap::Repeat, linear_mag: true, linear_min: true, mipmaps: true }
+    }
+}
+
+/// An image with a sampler.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Texture {
+    /// Index into [`super::Scene::images`]; `None` when it could not be decoded.
+    pub image: Option<usize>,
+    /// How it is sampled.
+    pub sampler: Sampler,
+}
+
+/// A texture as a material uses it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureUse {
+    /// Index into [`super::Scene::textures`].
+    pub texture: usize,
+    /// Which set of texture coordinates, 0 or 1.
+    pub uv_set: u32,
+    /// Applied to the coordinates before sampling (KHR_texture_transform).
+    pub transform: Affine2,
+}
+
+impl TextureUse {
+    /// A texture on the first set of coordinates, untransformed.
+    pub fn plain(texture: usize) -> Self {
+        Self { texture, uv_set: 0, transform: Affine2::IDENTITY }
+    }
+
+    /// The matrix of KHR_texture_transform: scale, then rotate, then offset. The extension turns
+    /// counter-clockwise as seen in the image, whose V axis points down, hence the sign.
+    pub fn uv_transform(offset: [f32; 2], rotation: f32, scale: [f32; 2]) -> Affine2 {
+        Affine2::from_scale_angle_translation(Vec2::ONE, -rotation, Vec2::from(offset))
+            * Affine2::from_scale(Vec2::from(scale))
+    }
+}
+
+/// How alpha is treated.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum AlphaMode {
+    /// Ignored.
+    #[default]
+    Opaque,
+    /// Present where alpha is at least the cutoff.
+    Mask {
+        /// The cutoff.
+        cutoff: f32,
+    },
+    /// Blended over what lies behind.
+    Blend,
+}
+
+/// A metallic-roughness surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Name from the file, or empty.
+    pub name: String,
+    /// Linear colour and coverage; multiplies the texture and the vertex colour.
+    pub base_color: Vec4,
+    /// sRGB texture of the base colour.
+    pub base_color_texture: Option<TextureUse>,
+    /// 0 for dielectrics, 1 for metals; multiplies the texture's blue channel.
+    pub metallic: f32,
+    /// Perceptual roughness; multiplies the texture's green channel.
+    pub roughness: f32,
+    /// Linear texture of roughness (G) and metalness (B).
+    pub metallic_roughness_texture: Option<TextureUse>,
+    /// Linear tangent-space normal map.
+    pub normal_texture: Option<TextureUse>,
+    /// Multiplies x and y of the normal map.
+    pub normal_scale: f32,
+    /// Linear texture of ambient occlusion (R).
+    pub occlusion_texture: Option<TextureUse>,
+    /// 0 ignores the occlusion, 1 applies it fully.
+    pub occlusion_strength: f32,
+    /// Linear emitted radiance, strength included.
+    pub emissive: Vec3,
+    /// sRGB texture of the emission.
+    pub emissive_texture: Option<TextureUse>,
+    /// Treatment of alpha.
+    pub alpha_mode: AlphaMode,
+    /// Whether the back is shown, with its normal turned.
+    pub double_sided: bool,
+    /// Shows the base colour as it is (KHR_materials_unlit).
+    pub unlit: bool,
+}
+
+impl Default for Material {
+    /// The material glTF gives to primitives without one.
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            base_color: Vec4::ONE,
+            base_color_texture: None,
+            metallic: 1.0,
+            roughness: 1.0,
+            metallic_roughness_texture: None,
+            normal_texture: None,
+            normal_scale: 1.0,
+            occlusion_texture: None,
+            occlusion_strength: 1.0,
+            emissive: Vec3::ZERO,
+            emissive_texture: None,
+            alpha_mode: AlphaMode::Opaque,
+            double_sided: false,
+            unlit: false,
+        }
+    }
+}
+
+impl Material {
+    /// All textures with the colour space each is read in.
+    pub fn textures(&self) -> [(Option<TextureUse>, ColorSpace); 5] {
+        [
+            (self.base_color_texture, ColorSpace::Srgb),
+            (self.metallic_roughness_texture, ColorSpace::Linear),
+            (self.normal_texture, ColorSpace::Linear),
+            (self.occlusion_texture, ColorSpace::Linear),
+            (self.emissive_texture, ColorSpace::Srgb),
+        ]
+    }
+}
