@@ -68,7 +68,9 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
         Some((width.trim().parse().ok()?, height.trim().parse().ok()?))
     };
     match parse() {
-        Some((width, height)) if width > 0 && height > 0 && u64::from(width) * u64::from(height) <= MOST_PIXELS => {
+        Some((width, height))
+            if width > 0 && height > 0 && u64::from(width) * u64::from(height) <= MOST_PIXELS =>
+        {
             Ok((width, height))
         }
         _ => Err("give width and height such as 1280x720, both at least 1".into()),

@@ -5,7 +5,9 @@ use std::fs;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, SmallVec, WritableImage};
+use exr::prelude::{
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, SmallVec, WritableImage,
+};
 use half::f16;
 
 use crate::error::{Error, Result};
@@ -118,9 +120,7 @@ pub fn save_exr(path: &Path, picture: &Picture, names: &[&str], precision: Preci
         AnyChannels::sort(channels),
     );
     let image = exr::prelude::Image::from_layer(layer);
-    write_beside(path, |file| {
-        image.write().to_buffered(file).map_err(|e| e.to_string())
-    })
+    write_beside(path, |file| image.write().to_buffered(file).map_err(|e| e.to_string()))
 }
 
 /// Writes a file under another name in its folder and renames it when `write` has succeeded.
@@ -135,7 +135,9 @@ pub fn write_beside(
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let fail = |problem: String| Error::file(path, format!("cannot be written: {problem}"), "name a writable folder");
+    let fail = |problem: String| {
+        Error::file(path, format!("cannot be written: {problem}"), "name a writable folder")
+    };
     let mut builder = tempfile::Builder::new();
     builder.prefix(".isophote-");
     #[cfg(unix)]

@@ -28,7 +28,11 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         return Err(Error::input("--style", format!("'{}' is not known", args.style), "use none"));
     }
     if !args.fps.is_finite() || args.fps <= 0.0 || !args.start.is_finite() {
-        return Err(Error::input("--fps, --start", "must be finite, and frames per second above 0", "use 24 and 0"));
+        return Err(Error::input(
+            "--fps, --start",
+            "must be finite, and frames per second above 0",
+            "use 24 and 0",
+        ));
     }
     let scene = Scene::load(&args.scene, args.texture.as_deref())?;
     for warning in &scene.warnings {
@@ -78,9 +82,11 @@ fn choose_animation(args: &RenderArgs, scene: &Scene) -> Result<Option<usize>> {
                 Error::input("--animation", format!("'{name}' is not an animation of the scene"), mend)
             })
         }
-        None if args.animate && scene.animations.is_empty() => {
-            Err(Error::file(&args.scene, "has no animation to play", "leave out --animate or use --turntable"))
-        }
+        None if args.animate && scene.animations.is_empty() => Err(Error::file(
+            &args.scene,
+            "has no animation to play",
+            "leave out --animate or use --turntable",
+        )),
         None => Ok(args.animate.then_some(0)),
     }
 }
@@ -105,7 +111,9 @@ impl Camera {
     /// The view at a share of the sequence in [0, 1).
     fn view(&self, scene: &Scene, pose: &Pose, share: f32) -> View {
         match self {
-            Self::File(node, fallback) => View::from_node(scene, pose, *node).unwrap_or_else(|| fallback.view()),
+            Self::File(node, fallback) => {
+                View::from_node(scene, pose, *node).unwrap_or_else(|| fallback.view())
+            }
             Self::Framing(orbit) => orbit.view(),
             Self::Turntable(orbit) => orbit.turned(share * TAU).view(),
         }

@@ -6,8 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use crate::error::{Error, Result};
 
 /// What a machine without any adapter is told.
-const NO_ADAPTER: &str =
-    "install a graphics driver; a software one will do (on Debian: apt install mesa-vulkan-drivers libvulkan1)";
+const NO_ADAPTER: &str = "install a graphics driver; a software one will do (on Debian: apt install mesa-vulkan-drivers libvulkan1)";
 
 /// A device with its queue and the errors it has reported.
 #[derive(Clone, Debug)]
@@ -112,8 +111,8 @@ impl Gpu {
     pub fn wait(&self) -> Result<()> {
         let waited = self.device.poll(wgpu::PollType::Wait { submission_index: None, timeout: None });
         self.check()?;
-        waited
-            .map(|_| ())
-            .map_err(|e| Error::failure(format!("waiting for the graphics device failed: {e}"), "start again"))
+        waited.map(|_| ()).map_err(|e| {
+            Error::failure(format!("waiting for the graphics device failed: {e}"), "start again")
+        })
     }
 }

@@ -111,7 +111,8 @@ impl Renderer {
         let (joints, joint_count) = joint_offsets(scene);
         let (weights, weight_count) = weight_offsets(scene);
         let light_count = look::visible_lights(scene).count();
-        let buffers = Buffers::new(device, &layouts, scene.draws.len(), joint_count, weight_count, light_count);
+        let buffers =
+            Buffers::new(device, &layouts, scene.draws.len(), joint_count, weight_count, light_count);
         let (shadow_map, shadow_group) = make_shadow_map(device, &layouts);
         let tone_map = ToneMap::new(device, &targets);
         Ok(Self {
@@ -461,7 +462,8 @@ impl ToneMap {
             bind_group_layouts: &[Some(&layout)],
             immediate_size: 0,
         });
-        let pipeline = pipelines::full_screen(device, &pipeline_layout, &module, "tone_map", COLOR_FORMAT, None, 1);
+        let pipeline =
+            pipelines::full_screen(device, &pipeline_layout, &module, "tone_map", COLOR_FORMAT, None, 1);
         let settings = upload::filled_buffer(device, "tone map", &[0; 16], wgpu::BufferUsages::UNIFORM);
         let bind_group = Self::group(device, &layout, &settings, targets);
         Self { layout, pipeline, settings, bind_group }

@@ -42,7 +42,9 @@ impl Variant {
         };
         match pass {
             Pass::Shadow => Self { pass, alpha: alpha.min(1), double_sided: true, mirrored: false },
-            Pass::Geometry => Self { pass, alpha: alpha.min(1), double_sided: material.double_sided, mirrored },
+            Pass::Geometry => {
+                Self { pass, alpha: alpha.min(1), double_sided: material.double_sided, mirrored }
+            }
             Pass::Surface => Self { pass, alpha, double_sided: material.double_sided, mirrored },
         }
     }
@@ -95,7 +97,10 @@ impl Pipelines {
             layout: pipeline_layout("scene", &[scene[0], scene[1], scene[2], Some(&layouts.shadow)]),
             shadow_layout: pipeline_layout("shadow", &scene),
             surface: module("surface", &[SCENE, MATERIAL, SKY, include_str!("../../shaders/surface.wgsl")]),
-            geometry: module("geometry buffer", &[SCENE, MATERIAL, include_str!("../../shaders/geometry_buffer.wgsl")]),
+            geometry: module(
+                "geometry buffer",
+                &[SCENE, MATERIAL, include_str!("../../shaders/geometry_buffer.wgsl")],
+            ),
             shadow: module("shadow", &[SCENE, MATERIAL, include_str!("../../shaders/shadow.wgsl")]),
             background: full_screen(
                 device,
@@ -132,7 +137,9 @@ impl Pipelines {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &attributes,
         })];
-        let target = |format, blend| Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL });
+        let target = |format, blend| {
+            Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL })
+        };
         let blend = (variant.alpha == 2).then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
         let alpha_mode = [("ALPHA_MODE", f64::from(variant.alpha))];
         let cutout = [("CUTOUT", f64::from(variant.alpha))];

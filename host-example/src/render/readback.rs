@@ -26,7 +26,12 @@ impl Readback {
             wgpu::TextureFormat::Rg32Float => (2, 8),
             wgpu::TextureFormat::R32Float => (1, 4),
             wgpu::TextureFormat::Rgba8Unorm => (4, 4),
-            other => return Err(Error::failure(format!("textures of format {other:?} are not read"), "use another")),
+            other => {
+                return Err(Error::failure(
+                    format!("textures of format {other:?} are not read"),
+                    "use another",
+                ));
+            }
         };
         let row = (width * bytes) as usize;
         let pitch = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
@@ -45,7 +50,11 @@ impl Readback {
             texture.as_image_copy(),
             wgpu::TexelCopyBufferInfo {
                 buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch as u32), rows_per_image: None },
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(pitch as u32),
+                    rows_per_image: None,
+                },
             },
             texture.size(),
         );
@@ -57,7 +66,10 @@ impl Readback {
         let mut data = Vec::with_capacity(width as usize * height as usize * channels);
         {
             let mapped = slice.get_mapped_range().map_err(|e| {
-                Error::failure(format!("a picture could not be read from the graphics device: {e}"), "start again")
+                Error::failure(
+                    format!("a picture could not be read from the graphics device: {e}"),
+                    "start again",
+                )
             })?;
             for line in mapped.chunks_exact(pitch) {
                 let line = &line[..row];
@@ -65,7 +77,9 @@ impl Readback {
                     wgpu::TextureFormat::Rgba16Float => {
                         data.extend(line.as_chunks::<2>().0.iter().map(|b| f16::from_le_bytes(*b).to_f32()));
                     }
-                    wgpu::TextureFormat::Rgba8Unorm => data.extend(line.iter().map(|b| f32::from(*b) / 255.0)),
+                    wgpu::TextureFormat::Rgba8Unorm => {
+                        data.extend(line.iter().map(|b| f32::from(*b) / 255.0))
+                    }
                     _ => data.extend(line.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b))),
                 }
             }

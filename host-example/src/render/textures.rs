@@ -71,7 +71,11 @@ fn make_sampler(device: &wgpu::Device, sampler: Sampler) -> wgpu::Sampler {
         address_mode_v: wrap(sampler.wrap_v),
         mag_filter: filter(sampler.linear_mag),
         min_filter: filter(sampler.linear_min),
-        mipmap_filter: if sampler.mipmaps { wgpu::MipmapFilterMode::Linear } else { wgpu::MipmapFilterMode::Nearest },
+        mipmap_filter: if sampler.mipmaps {
+            wgpu::MipmapFilterMode::Linear
+        } else {
+            wgpu::MipmapFilterMode::Nearest
+        },
         lod_max_clamp: if sampler.mipmaps { 32.0 } else { 0.0 },
         anisotropy_clamp: if anisotropic { 8 } else { 1 },
         ..Default::default()
@@ -148,8 +152,11 @@ impl Mipmaps {
                 | wgpu::TextureUsages::RENDER_ATTACHMENT,
             view_formats: &[],
         });
-        let layout =
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(width * 4), rows_per_image: Some(height) };
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(width * 4),
+            rows_per_image: Some(height),
+        };
         queue.write_texture(texture.as_image_copy(), rgba, layout, size);
         let level_view = |level| {
             texture.create_view(&wgpu::TextureViewDescriptor {

@@ -166,7 +166,8 @@ fn light_block(light: &Light, place: Mat4, scale: f32) -> LightBlock {
     };
     LightBlock {
         position: place.w_axis.truncate().extend(kind),
-        color: (light.color * light.intensity * scale / std::f32::consts::PI).extend(light.range.unwrap_or(0.0)),
+        color: (light.color * light.intensity * scale / std::f32::consts::PI)
+            .extend(light.range.unwrap_or(0.0)),
         direction: direction.extend(0.0),
         spot,
     }

@@ -19,9 +19,15 @@ pub struct GpuPrimitive {
 ///
 /// # Errors
 /// [`Error::Input`] when it is larger than a buffer of the device may be.
-pub fn primitive(device: &wgpu::Device, layouts: &Layouts, name: &str, source: &Primitive) -> Result<GpuPrimitive> {
+pub fn primitive(
+    device: &wgpu::Device,
+    layouts: &Layouts,
+    name: &str,
+    source: &Primitive,
+) -> Result<GpuPrimitive> {
     let deltas: Vec<MorphDelta> = source.morph_targets.iter().flatten().copied().collect();
-    let influences: &[Influence] = if source.influences.is_empty() { &[Influence::default()] } else { &source.influences };
+    let influences: &[Influence] =
+        if source.influences.is_empty() { &[Influence::default()] } else { &source.influences };
     let deltas = if deltas.is_empty() { vec![MorphDelta::default()] } else { deltas };
     let limits = device.limits();
     let make = |label, bytes: &[u8], usage: wgpu::BufferUsages| {
@@ -84,8 +90,14 @@ pub fn material(
 }
 
 /// A buffer with contents, padded to the alignment of copies.
-pub fn filled_buffer(device: &wgpu::Device, label: &str, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
-    let size = (bytes.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT).max(wgpu::COPY_BUFFER_ALIGNMENT);
+pub fn filled_buffer(
+    device: &wgpu::Device,
+    label: &str,
+    bytes: &[u8],
+    usage: wgpu::BufferUsages,
+) -> wgpu::Buffer {
+    let size =
+        (bytes.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT).max(wgpu::COPY_BUFFER_ALIGNMENT);
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size,

@@ -91,8 +91,12 @@ impl Channel {
             }
             Interpolation::CubicSpline => {
                 let (t2, t3) = (t * t, t * t * t);
-                let basis =
-                    [2.0 * t3 - 3.0 * t2 + 1.0, (t3 - 2.0 * t2 + t) * span, 3.0 * t2 - 2.0 * t3, (t3 - t2) * span];
+                let basis = [
+                    2.0 * t3 - 3.0 * t2 + 1.0,
+                    (t3 - 2.0 * t2 + t) * span,
+                    3.0 * t2 - 2.0 * t3,
+                    (t3 - t2) * span,
+                ];
                 let (start, out_tangent) = (self.value(k), self.part(k, 2));
                 let (end, in_tangent) = (self.value(next), self.part(next, 0));
                 for (i, o) in out.iter_mut().enumerate() {

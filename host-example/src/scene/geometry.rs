@@ -123,8 +123,8 @@ pub fn tangents(primitive: &mut Primitive, uv_set: u32) {
     for corners in primitive.indices.as_chunks::<3>().0 {
         let (tangent, sign) = face_tangent(primitive, corners, uv_set);
         for k in 0..3 {
-            let [p, q, r] =
-                [k, (k + 1) % 3, (k + 2) % 3].map(|i| Vec3::from(primitive.vertices[corners[i] as usize].position));
+            let [p, q, r] = [k, (k + 1) % 3, (k + 2) % 3]
+                .map(|i| Vec3::from(primitive.vertices[corners[i] as usize].position));
             let angle = (q - p).angle_between(r - p);
             if angle.is_finite() {
                 let sum = &mut sums[corners[k] as usize];

@@ -35,7 +35,10 @@ const SUPPORTED: [&str; 5] = [
 /// Extensions without which a scene still has its shape: a file may demand them and is shown without.
 fn only_looks(extension: &str) -> bool {
     extension.starts_with("KHR_materials_")
-        || matches!(extension, "KHR_texture_basisu" | "EXT_texture_webp" | "MSFT_texture_dds" | "KHR_xmp_json_ld")
+        || matches!(
+            extension,
+            "KHR_texture_basisu" | "EXT_texture_webp" | "MSFT_texture_dds" | "KHR_xmp_json_ld"
+        )
 }
 
 /// Loads a file. The order of nodes, draws and bounds are left to [`Scene::load`].
@@ -91,7 +94,8 @@ fn parse(bytes: &[u8]) -> std::result::Result<(gltf::Document, Option<Vec<u8>>, 
     for extension in std::mem::take(&mut root.extensions_required) {
         if SUPPORTED.contains(&extension.as_str()) {
         } else if only_looks(&extension) {
-            warnings.push(format!("the file demands {extension}, which is not supported; it is shown without"));
+            warnings
+                .push(format!("the file demands {extension}, which is not supported; it is shown without"));
         } else {
             return Err(format!("demands the extension {extension}, which is not supported"));
         }
@@ -117,7 +121,8 @@ fn validate(root: &json::Root) -> std::result::Result<(), String> {
         // Bounds of positions are computed here and not believed, so they may be missing.
         let bounds = path.as_str().ends_with(".min") || path.as_str().ends_with(".max");
         if first.is_none() && !(bounds && matches!(flaw, Flaw::Missing | Flaw::Invalid)) {
-            first = Some(format!("is not valid glTF: {} at {}", flaw.to_string().to_lowercase(), path.as_str()));
+            first =
+                Some(format!("is not valid glTF: {} at {}", flaw.to_string().to_lowercase(), path.as_str()));
         }
     });
     first.map_or(Ok(()), Err)
@@ -176,9 +181,10 @@ fn read_lights(document: &gltf::Document) -> Vec<Light> {
             kind: match light.kind() {
                 Kind::Directional => LightKind::Directional,
                 Kind::Point => LightKind::Point,
-                Kind::Spot { inner_cone_angle, outer_cone_angle } => {
-                    LightKind::Spot { inner: inner_cone_angle, outer: outer_cone_angle.max(inner_cone_angle + 1e-4) }
-                }
+                Kind::Spot { inner_cone_angle, outer_cone_angle } => LightKind::Spot {
+                    inner: inner_cone_angle,
+                    outer: outer_cone_angle.max(inner_cone_angle + 1e-4),
+                },
             },
         })
         .collect()
@@ -221,7 +227,8 @@ fn read_nodes(document: &gltf::Document, scene: &mut Scene) -> std::result::Resu
         Some(shown) => shown.nodes().map(|n| n.index()).collect(),
         None => (0..scene.nodes.len()).filter(|n| scene.nodes[*n].parent.is_none()).collect(),
     };
-    let children: Vec<Vec<usize>> = document.nodes().map(|n| n.children().map(|c| c.index()).collect()).collect();
+    let children: Vec<Vec<usize>> =
+        document.nodes().map(|n| n.children().map(|c| c.index()).collect()).collect();
     while let Some(index) = pending.pop() {
         if !std::mem::replace(&mut scene.nodes[index].visible, true) {
             pending.extend_from_slice(&children[index]);

@@ -314,7 +314,11 @@ impl Scene {
             "gltf" | "glb" => gltf_file::load(path)?,
             "obj" => obj_file::load(path, texture)?,
             _ => {
-                return Err(Error::file(path, "is not a kind of scene known here", "give a .gltf, .glb or .obj file"));
+                return Err(Error::file(
+                    path,
+                    "is not a kind of scene known here",
+                    "give a .gltf, .glb or .obj file",
+                ));
             }
         };
         if texture.is_some() && extension != "obj" {
@@ -339,8 +343,9 @@ impl Scene {
         if self.draws.is_empty() {
             return Err(Error::file(path, "holds no triangles to draw", "give a scene with visible meshes"));
         }
-        self.bounds = pose::bounds(self)
-            .ok_or_else(|| Error::file(path, "has positions that are not finite", "export the scene again"))?;
+        self.bounds = pose::bounds(self).ok_or_else(|| {
+            Error::file(path, "has positions that are not finite", "export the scene again")
+        })?;
         Ok(())
     }
 

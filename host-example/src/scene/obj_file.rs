@@ -12,7 +12,8 @@ use glam::{Vec3, Vec4};
 use super::gltf_file::resolve;
 use super::material::DecodeProblem;
 use super::{
-    AlphaMode, Bounds, Image, Material, Mesh, Node, Primitive, Sampler, Scene, Texture, TextureUse, Vertex, geometry,
+    AlphaMode, Bounds, Image, Material, Mesh, Node, Primitive, Sampler, Scene, Texture, TextureUse, Vertex,
+    geometry,
 };
 use crate::error::{Error, Result};
 
@@ -54,13 +55,18 @@ pub fn load(path: &Path, texture: Option<&Path>) -> Result<Scene> {
     }
     let mut scene = loader.scene;
     for model in models {
-        let primitive = primitive(&model.mesh, scene.materials.len() - 1)
-            .map_err(|problem| Error::file(path, format!("object '{}' {problem}", model.name), "export it again"))?;
+        let primitive = primitive(&model.mesh, scene.materials.len() - 1).map_err(|problem| {
+            Error::file(path, format!("object '{}' {problem}", model.name), "export it again")
+        })?;
         if primitive.indices.is_empty() {
             continue;
         }
         let mesh = Some(scene.meshes.len());
-        scene.meshes.push(Mesh { name: model.name.clone(), primitives: vec![primitive], weights: Vec::new() });
+        scene.meshes.push(Mesh {
+            name: model.name.clone(),
+            primitives: vec![primitive],
+            weights: Vec::new(),
+        });
         scene.nodes.push(Node { name: model.name, mesh, ..Node::default() });
     }
     Ok(scene)
@@ -117,7 +123,8 @@ fn load_mtl(path: &Path, name: &Path, warnings: &RefCell<Vec<String>>) -> tobj::
 
 /// An image named by the caller.
 fn named_texture(scene: &mut Scene, path: &Path) -> Result<usize> {
-    let bytes = fs::read(path).map_err(|e| Error::file(path, e, "give the path of a readable PNG or JPEG file"))?;
+    let bytes =
+        fs::read(path).map_err(|e| Error::file(path, e, "give the path of a readable PNG or JPEG file"))?;
     let image = Image::decode(&path.display().to_string(), &bytes).map_err(|problem| {
         let problem = match problem {
             DecodeProblem::Unsupported(_) => "is neither a PNG nor a JPEG image".into(),
@@ -180,12 +187,12 @@ impl Loader<'_> {
         if let Some(known) = self.images.get(&path) {
             return known.map(TextureUse::plain);
         }
-        let decoded = fs::read(&path)
-            .map_err(|e| e.to_string())
-            .and_then(|bytes| Image::decode(name, &bytes).map_err(|problem| match problem {
+        let decoded = fs::read(&path).map_err(|e| e.to_string()).and_then(|bytes| {
+            Image::decode(name, &bytes).map_err(|problem| match problem {
                 DecodeProblem::Unsupported(_) => "is neither PNG nor JPEG".to_owned(),
                 DecodeProblem::Damaged(problem) => problem,
-            }));
+            })
+        });
         let texture = match decoded {
             Ok(image) => Some(add_texture(&mut self.scene, image)),
             Err(problem) => {
@@ -206,7 +213,9 @@ fn without_options(statement: &str) -> &str {
         loop {
             after = after.trim_start();
             match after.split_once(char::is_whitespace) {
-                Some((word, tail)) if word.parse::<f32>().is_ok() || matches!(word, "on" | "off") => after = tail,
+                Some((word, tail)) if word.parse::<f32>().is_ok() || matches!(word, "on" | "off") => {
+                    after = tail
+                }
                 _ => break,
             }
         }

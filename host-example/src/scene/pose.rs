@@ -80,10 +80,9 @@ impl Pose {
         let primitive = scene.primitive(draw);
         let node = &scene.nodes[draw.node];
         let weights = &self.weights[draw.node];
-        let joints: Option<Vec<Mat4>> = node
-            .skin
-            .filter(|_| !primitive.influences.is_empty())
-            .map(|skin| (0..scene.skins[skin].joints.len()).map(|j| self.joint_matrix(scene, skin, j)).collect());
+        let joints: Option<Vec<Mat4>> = node.skin.filter(|_| !primitive.influences.is_empty()).map(|skin| {
+            (0..scene.skins[skin].joints.len()).map(|j| self.joint_matrix(scene, skin, j)).collect()
+        });
         for (index, vertex) in primitive.vertices.iter().enumerate() {
             let mut position = Vec3::from(vertex.position);
             for (target, &weight) in primitive.morph_targets.iter().zip(weights) {

@@ -47,7 +47,10 @@ impl Accessors<'_> {
     pub fn floats(&self, accessor: &Accessor, widths: &[usize]) -> Result<Floats, String> {
         let width = accessor.dimensions().multiplicity();
         if !widths.contains(&width) {
-            return Err(format!("accessor {} has {width} numbers per element, not {widths:?}", accessor.index()));
+            return Err(format!(
+                "accessor {} has {width} numbers per element, not {widths:?}",
+                accessor.index()
+            ));
         }
         let normalized = accessor.normalized();
         let mut values = Vec::new();
@@ -97,14 +100,15 @@ impl Accessors<'_> {
         mut put: impl FnMut(DataType, &[u8], usize) -> Option<()>,
     ) -> Result<(), String> {
         let name = accessor.index();
-        let (kind, width, count) = (accessor.data_type(), accessor.dimensions().multiplicity(), accessor.count());
+        let (kind, width, count) =
+            (accessor.data_type(), accessor.dimensions().multiplicity(), accessor.count());
         let layout = Layout::of(kind, accessor.dimensions());
         let wrong_type = || format!("accessor {name} has an unsuitable component type");
         match accessor.view() {
             Some(view) => {
-                let bytes = self.range(&view, accessor.offset(), count, layout.size).ok_or_else(|| {
-                    format!("accessor {name} reaches beyond the end of its buffer")
-                })?;
+                let bytes = self
+                    .range(&view, accessor.offset(), count, layout.size)
+                    .ok_or_else(|| format!("accessor {name} reaches beyond the end of its buffer"))?;
                 let stride = view.stride().unwrap_or(layout.size);
                 for element in 0..count {
                     for component in 0..width {

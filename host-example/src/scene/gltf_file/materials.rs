@@ -81,7 +81,11 @@ fn read_images(
         let file = image.uri.as_deref().filter(|uri| !uri.starts_with("data:"));
         let name = label(image.name.as_deref().or(file), index);
         let damaged = |problem: String| {
-            Error::file(path, format!("image {name}: {problem}"), "replace the image or export the scene again")
+            Error::file(
+                path,
+                format!("image {name}: {problem}"),
+                "replace the image or export the scene again",
+            )
         };
         let read: std::borrow::Cow<[u8]> = match (&image.uri, image.buffer_view) {
             (Some(uri), _) => sources::read_uri(path, uri)?.into(),
@@ -117,7 +121,9 @@ fn read_material(material: &gltf::Material, scene: &mut Scene) -> Material {
         let (transform, set) = texture_transform(extensions, set);
         let use_ = TextureUse { texture, uv_set: set.min(1), transform };
         if set > 1 {
-            scene.warnings.push(format!("material {name} uses texture coordinates {set}; the second set is used"));
+            scene
+                .warnings
+                .push(format!("material {name} uses texture coordinates {set}; the second set is used"));
         }
         scene.textures.get(texture).and_then(|t| t.image).map(|_| use_)
     };
@@ -174,7 +180,8 @@ fn read_material(material: &gltf::Material, scene: &mut Scene) -> Material {
 /// Matrix and set of texture coordinates of KHR_texture_transform as plain JSON.
 fn texture_transform(extension: Option<&Value>, set: u32) -> (Affine2, u32) {
     let Some(extension) = extension else { return (Affine2::IDENTITY, set) };
-    let number = |value: Option<&Value>, default: f32| value.and_then(Value::as_f64).map_or(default, |v| v as f32);
+    let number =
+        |value: Option<&Value>, default: f32| value.and_then(Value::as_f64).map_or(default, |v| v as f32);
     let pair = |key: &str, default: f32| {
         let list = extension.get(key);
         [0, 1].map(|i| number(list.and_then(|l| l.get(i)), default))
@@ -184,6 +191,7 @@ fn texture_transform(extension: Option<&Value>, set: u32) -> (Affine2, u32) {
         number(extension.get("rotation"), 0.0),
         pair("scale", 1.0),
     );
-    let set = extension.get("texCoord").and_then(Value::as_u64).map_or(set, |s| s.min(u64::from(u32::MAX)) as u32);
+    let set =
+        extension.get("texCoord").and_then(Value::as_u64).map_or(set, |s| s.min(u64::from(u32::MAX)) as u32);
     (transform, set)
 }

@@ -22,7 +22,9 @@ pub fn read(document: &gltf::Document, accessors: &Accessors, scene: &mut Scene)
                 Mode::TriangleStrip => Topology::Strip,
                 Mode::TriangleFan => Topology::Fan,
                 other => {
-                    scene.warnings.push(format!("mesh {name} has a primitive of {other:?}, which is left out"));
+                    scene
+                        .warnings
+                        .push(format!("mesh {name} has a primitive of {other:?}, which is left out"));
                     continue;
                 }
             };
@@ -98,7 +100,11 @@ fn fill<T>(primitive: &mut Primitive, values: Option<Vec<T>>, set: impl Fn(&mut 
     }
 }
 
-fn read_influences(source: &gltf::Primitive, accessors: &Accessors, primitive: &mut Primitive) -> Result<(), String> {
+fn read_influences(
+    source: &gltf::Primitive,
+    accessors: &Accessors,
+    primitive: &mut Primitive,
+) -> Result<(), String> {
     let count = primitive.vertices.len();
     let mut sets = Vec::new();
     while let (Some(joints), Some(weights)) =
