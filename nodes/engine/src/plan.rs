@@ -157,7 +157,9 @@ impl Plan {
             for input in &pass.inputs {
                 let level = self.desc(*input).level;
                 let needed = match pass.support {
-                    Support::Pixels(n) => self.clip(rescale(out, out_level, level).grown(n as i32), level),
+                    Support::Pixels(n) => {
+                        self.clip(rescale(out, out_level, level).grown(n.min(MAX_HALO) as i32), level)
+                    }
                     Support::Global => self.whole(level),
                 };
                 windows[input.index()] = windows[input.index()].union(&needed);
@@ -166,12 +168,14 @@ impl Plan {
         windows
     }
 
-    /// How far outside a region the inputs are read, in pixels of level 0, or `Global`.
+    /// How far outside a region the inputs are read, in pixels of level 0, or `Global`. Holds for
+    /// every region; with pyramids a region aligned to them may need a little less.
     pub fn support(&self) -> Support {
         // A region far from every border shows the full halo.
         let wide = Plan { size: [1 << 24, 1 << 24], ..self.clone() };
-        let centre = 1 << 23;
-        let region = Rect { x0: centre, y0: centre, x1: centre + 1, y1: centre + 1 };
+        let coarsest = wide.images.iter().map(|i| i.level).max().unwrap_or(0).clamp(0, 22);
+        let step = 1 << coarsest;
+        let region = Rect { x0: 1 << 23, y0: 1 << 23, x1: (1 << 23) + step, y1: (1 << 23) + step };
         let windows = wide.windows(region);
         let mut halo = 0;
         for port in &wide.inputs {
@@ -185,7 +189,8 @@ impl Plan {
             halo = halo.max(region.x0 - window.x0).max(window.x1 - region.x1);
             halo = halo.max(region.y0 - window.y0).max(window.y1 - region.y1);
         }
-        Support::Pixels(halo as u32)
+        // That was a region of whole coarse pixels; any other lies inside such a one.
+        Support::Pixels((halo + step - 1) as u32)
     }
 
     /// The last pass that reads each image (or writes it, when nobody reads it); images that leave
@@ -206,7 +211,11 @@ impl Plan {
     /// Describes the plan again with other uniform bytes, in place and without allocating.
     ///
     /// Returns false when the description took another course (other passes, other connections, or
-    /// passes that were shared and now differ); the plan is then spoiled and must be made anew.
+    /// passes that were shared and now differ); the plan is then spoiled and must be made anew, as it
+    /// is after an error.
+    ///
+    /// # Errors
+    /// What `describe` returns.
     pub fn edit<E>(
         &mut self,
         describe: impl FnOnce(&mut PlanBuilder) -> std::result::Result<(), E>,
@@ -235,9 +244,13 @@ impl Plan {
     }
 }
 
+/// Wider halos than any picture are cut to this, so that sums of positions cannot overflow.
+const MAX_HALO: u32 = 1 << 25;
+
 /// The pixels of level `to` that lie under `rect` of level `from`.
 fn rescale(rect: Rect, from: i8, to: i8) -> Rect {
-    let shift = i32::from(to) - i32::from(from);
+    // Beyond these every picture is one pixel, or none is that large.
+    let shift = (i32::from(to) - i32::from(from)).clamp(-8, 30);
     if shift >= 0 {
         let up = |v: i32| (v + (1 << shift) - 1) >> shift;
         Rect { x0: rect.x0 >> shift, y0: rect.y0 >> shift, x1: up(rect.x1), y1: up(rect.y1) }
@@ -292,7 +305,9 @@ impl PlanBuilder {
 
     /// Shape of an image described so far.
     pub fn desc(&self, image: ImageId) -> ImageDesc {
-        self.plan.desc(image)
+        // A replay that took another course may hold ids that the plan does not have.
+        let nothing = ImageDesc { channels: 4, class: Class::Colour, level: 0 };
+        self.plan.images.get(image.index()).copied().unwrap_or(nothing)
     }
 
     /// Declares an image that enters; the same name twice is the same image.
@@ -352,7 +367,7 @@ impl PlanBuilder {
         assert_eq!(classes.len(), kernel.outputs.len(), "{}: wrong number of outputs", kernel.name);
         debug_assert!(inputs.len() <= MAX_INPUTS);
         if self.replay.is_some() {
-            return self.replayed(kernel, inputs, params, support, level);
+            return self.replayed(kernel, inputs, params, classes, support, level);
         }
         let key = PassKey {
             kernel,
@@ -411,6 +426,7 @@ impl PlanBuilder {
         kernel: &'static Kernel,
         inputs: &[ImageId],
         params: &[u8],
+        classes: &[Class],
         support: Support,
         level: i8,
     ) -> ImageId {
@@ -422,8 +438,9 @@ impl PlanBuilder {
         };
         replay.call += 1;
         let pass = &mut plan.passes[index as usize];
-        let out_level = plan.images[pass.outputs[0].index()].level;
-        if !std::ptr::eq(pass.kernel, kernel) || pass.inputs != inputs || out_level != level {
+        let descs = pass.outputs.iter().map(|o| plan.images[o.index()]);
+        let same_outputs = descs.map(|d| (d.class, d.level)).eq(classes.iter().map(|c| (*c, level)));
+        if !std::ptr::eq(pass.kernel, kernel) || pass.inputs != inputs || !same_outputs {
             replay.diverged = true;
             return pass.outputs[0];
         }

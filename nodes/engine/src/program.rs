@@ -10,7 +10,7 @@
 use crate::error::{Error, Result};
 use crate::image::Rect;
 use crate::kernel::{Kernel, MAX_INPUTS, WORKGROUP};
-use crate::plan::{Class, Plan};
+use crate::plan::{Class, Plan, Support};
 
 /// What a texture of a program is for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -77,8 +77,8 @@ pub struct Program {
     /// All dispatches in order. Between two there must be a barrier wherever one reads what the
     /// other wrote (wgpu and WebGPU place it by themselves).
     pub dispatches: Vec<Dispatch>,
-    /// Which pass of the plan each dispatch came from.
-    passes: Vec<usize>,
+    /// Which pass of the plan each dispatch came from, and its support where windows depend on it.
+    passes: Vec<(usize, Option<Support>)>,
 }
 
 impl Program {
@@ -94,6 +94,8 @@ impl Program {
                 "region {region:?} is not inside the picture of {width}x{height}"
             )));
         }
+        // The windows of the whole picture are whole, however far the passes read.
+        let is_whole = region == Rect::of_size(width, height);
         let windows = plan.windows(region);
         let last_uses = plan.last_uses();
         let mut program = Self::default();
@@ -132,7 +134,7 @@ impl Program {
                 });
             }
             program.dispatches.push(dispatch(plan, &windows, index, &slots));
-            program.passes.push(index);
+            program.passes.push((index, (!is_whole).then_some(pass.support)));
             for image in pass.inputs.iter().chain(&pass.outputs) {
                 let slot = slots[image.index()];
                 if last_uses[image.index()] == index
@@ -147,11 +149,25 @@ impl Program {
         Ok(program)
     }
 
-    /// Takes over the uniform bytes of a plan that was edited in place.
-    pub fn repack(&mut self, plan: &Plan) {
-        for (dispatch, pass) in self.dispatches.iter_mut().zip(&self.passes) {
-            dispatch.params.copy_from_slice(&plan.passes()[*pass].params);
+    /// Takes over the uniform bytes of a plan that was edited in place, without allocating.
+    ///
+    /// Returns false, with nothing changed, when the plan must be lowered again: its passes are
+    /// others, or the program is for a part of the picture and a pass now reads less or farther.
+    pub fn repack(&mut self, plan: &Plan) -> bool {
+        let fits = |dispatch: &Dispatch, (index, support): &(usize, Option<Support>)| {
+            plan.passes().get(*index).is_some_and(|pass| {
+                pass.kernel == dispatch.kernel
+                    && pass.inputs.len() == dispatch.inputs.len()
+                    && support.is_none_or(|s| s == pass.support)
+            })
+        };
+        if !self.dispatches.iter().zip(&self.passes).all(|(d, p)| fits(d, p)) {
+            return false;
         }
+        for (dispatch, (index, _)) in self.dispatches.iter_mut().zip(&self.passes) {
+            dispatch.params.copy_from_slice(&plan.passes()[*index].params);
+        }
+        true
     }
 
     /// Index of the input texture of this name.

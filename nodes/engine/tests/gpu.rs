@@ -295,7 +295,7 @@ fn an_edit_is_one_write() {
     let outputs = ["joined", "position", "soft"].map(|name| prepared.own_output(name).unwrap());
     let before = device.counts();
     assert!(plan.edit(|b| describe(b, 3.0)).unwrap());
-    program.repack(&plan);
+    assert!(program.repack(&plan));
     prepared.repack(&program).unwrap();
     prepared.repack(&program).unwrap();
     let mut expected = before;
