@@ -318,5 +318,6 @@ fn rank(device: wgpu::DeviceType) -> u32 {
 
 /// A driver's or validator's message without its line breaks and runs of blanks.
 pub(super) fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    line.strip_prefix("Validation Error Caused by: ").map_or(line.clone(), str::to_owned)
 }

@@ -133,6 +133,9 @@ impl Executor {
                 tiles.push(Tile { region: tile, program });
             }
         }
+        // The largest first: the others then fit into its textures.
+        let area = |t: &Texture| u64::from(t.window.width()) * u64::from(t.window.height());
+        tiles.sort_by_key(|t| std::cmp::Reverse(t.program.textures.iter().map(area).sum::<u64>()));
         Ok(Some(tiles))
     }
 
