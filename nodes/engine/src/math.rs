@@ -10,10 +10,12 @@ use fearless_simd::{Simd, f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, prelude::*
 const LN2_HIGH: f32 = 0.693_359_4;
 const LN2_LOW: f32 = -2.121_944_4e-4;
 
-/// exp, log, pow and tanh on lanes.
+/// exp, exp2, log, pow and tanh on lanes.
 pub trait Elementary: Sized {
     /// e^x; 0 below -87.3 and saturated above 88.3.
     fn exp(self) -> Self;
+    /// 2^x; saturated below -126 and above 127.
+    fn exp2(self) -> Self;
     /// Natural logarithm of a positive, normal number.
     fn ln(self) -> Self;
     /// x^y for positive x; 0 for x <= 0.
@@ -44,6 +46,25 @@ macro_rules! elementary {
                 let scale: $float<S> = ((n + $int::splat(simd, 127)) << 23).bitcast();
                 let result = p * scale;
                 self.simd_lt(c(-87.3)).select(c(0.0), result)
+            }
+
+            #[inline(always)]
+            fn exp2(self) -> Self {
+                let simd = self.simd;
+                let c = |v: f32| $float::splat(simd, v);
+                let x = self.min(c(127.0)).max(c(-126.0));
+                let n = x.round_ties_even();
+                let r = x - n;
+                let p = c(1.535_336_2e-4);
+                let p = p.mul_add(r, c(1.339_887_4e-3));
+                let p = p.mul_add(r, c(9.618_437e-3));
+                let p = p.mul_add(r, c(5.550_332_5e-2));
+                let p = p.mul_add(r, c(2.402_264_8e-1));
+                let p = p.mul_add(r, c(6.931_472e-1));
+                let p = p.mul_add(r, c(1.0));
+                let n: $int<S> = n.to_int();
+                let scale: $float<S> = ((n + $int::splat(simd, 127)) << 23).bitcast();
+                p * scale
             }
 
             #[inline(always)]
@@ -235,6 +256,7 @@ mod tests {
             move |x: &[f32; 16]| on_lanes(x, f).unwrap()
         };
         apply(|x| f64::from(x).exp(), run(|v| v.exp()), -80.0, 80.0, 3e-7);
+        apply(|x| f64::from(x).exp2(), run(|v| v.exp2()), -120.0, 120.0, 3e-7);
         apply(|x| f64::from(x).tanh(), run(|v| v.tanh()), -9.0, -1e-4, 3e-7);
         apply(|x| f64::from(x).powf(1.0 / 2.4), run(|v| v.powf(1.0 / 2.4)), 1e-5, 9e3, 1e-6);
         apply(|x| f64::from(x).ln(), run(|v| v.ln()), 2.0, 1e6, 3e-7);

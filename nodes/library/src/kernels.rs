@@ -6,6 +6,8 @@
 //! ([`params!`](crate::params)), the twin and `pub static KERNEL` ([`kernel!`](crate::kernel)).
 
 pub mod colour_space;
+pub mod coverage;
+pub mod stream_line;
 pub mod support;
 pub mod tensor_algebra;
 

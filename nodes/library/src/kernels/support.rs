@@ -78,3 +78,15 @@ pub fn map_pixels4<S: Simd>(
         }
     }
 }
+
+/// Writes eight four-channel pixels to the start of `row`, or as many as it still has.
+#[inline(always)]
+pub fn put_pixels4<S: Simd>(values: [f32x8<S>; 4], row: &mut [f32]) {
+    if let Some(full) = row.get_mut(..32) {
+        store4(values, full);
+    } else {
+        let mut block = [0.0; 32];
+        store4(values, &mut block);
+        row.copy_from_slice(&block[..row.len()]);
+    }
+}

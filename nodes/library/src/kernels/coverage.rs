@@ -1,0 +1,37 @@
+//! Colours multiplied by their coverage, for kernels that mix pixels at arbitrary positions; the twin
+//! of `shaders/shared/coverage.wgsl`.
+
+use isophote_engine::{Band, Image, Rect, View};
+
+/// A colour image whose colours are multiplied by their alpha, around one band.
+///
+/// Opaque pictures, the usual case, are used as they are: the product with 1 is exact, so which of
+/// the two happens never shows.
+#[derive(Debug)]
+pub struct Covered(Option<Image>);
+
+impl Covered {
+    /// Prepares the rows that `band` reads of `view` when it reaches `support` pixels far.
+    pub fn new(view: &View<'_>, band: &Band<'_>, support: i32) -> Self {
+        let held = view.window();
+        let rows = Rect { y0: band.window.y0 - support, y1: band.window.y1 + support, ..held };
+        let rows = rows.intersection(&held);
+        let at = view.offset(rows.x0, rows.y0);
+        let source = &view.data()[at..at + view.stride() * rows.height() as usize];
+        if source.chunks_exact(4).all(|p| p[3] == 1.0) {
+            return Self(None);
+        }
+        let image = Image::with_window(rows, 4).ok().map(|mut image| {
+            for (s, t) in source.chunks_exact(4).zip(image.data_mut().chunks_exact_mut(4)) {
+                t.copy_from_slice(&[s[0] * s[3], s[1] * s[3], s[2] * s[3], s[3]]);
+            }
+            image
+        });
+        Self(image)
+    }
+
+    /// The multiplied colours, where `view` is the image that this was made from.
+    pub fn view<'a>(&'a self, view: &View<'a>) -> View<'a> {
+        self.0.as_ref().map_or(*view, |image| View::new(image, view.full()))
+    }
+}

@@ -1,0 +1,25 @@
+#import sampling
+
+// Colours that are to be mixed count by their coverage, so that transparent pixels lend no colour.
+
+// The pixel at absolute position p of input `slot`, its colour multiplied by its alpha.
+fn fetch_covered(image: texture_2d<f32>, slot: u32, p: vec2i) -> vec4f {
+    let v = fetch(image, slot, p);
+    return vec4f(v.rgb * v.a, v.a);
+}
+
+// `sample_linear` of colours multiplied by their alpha.
+fn sample_covered(image: texture_2d<f32>, slot: u32, p: vec2f) -> vec4f {
+    let last = vec2f(grid.inputs[slot].zw);
+    let q = min(max(p - 0.5, vec2f(-2.0)), last + 2.0);
+    let corner = floor(q);
+    let f = q - corner;
+    let i = vec2i(corner);
+    let a = fetch_covered(image, slot, i);
+    let b = fetch_covered(image, slot, i + vec2i(1, 0));
+    let c = fetch_covered(image, slot, i + vec2i(0, 1));
+    let d = fetch_covered(image, slot, i + vec2i(1, 1));
+    let top = a + (b - a) * f.x;
+    let bottom = c + (d - c) * f.x;
+    return top + (bottom - top) * f.y;
+}

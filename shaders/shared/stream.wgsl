@@ -1,0 +1,61 @@
+#import sampling
+#import tensor
+
+// Stream lines of the minor eigenvectors of a tensor field (thesis § 2.9, Listing 2.6).
+// Twin of kernels/stream_line.rs.
+//
+// Tensors are interpolated, never eigenvectors: those are defined up to sign, and opposite ones would
+// cancel. A line is traced from its centre in one direction and then in the other:
+//
+//   var line = stream_begin(centre(id), side * stream_tangent(field, slot, centre(id)));
+//   for (u = h; u <= radius; u += h) {
+//       stream_step(&line, field, slot, h, midpoint);
+//       if stream_outside(slot, line.position) { break; }
+//       ...
+//   }
+//
+// Every tensor is then read within `radius` of the centre: a kernel's support is floor(radius) + 1.
+
+struct Stream {
+    // Where the line has come to, absolute.
+    position: vec2f,
+    // Unit vector of the last step; the next one takes the sign that turns less.
+    direction: vec2f,
+    // Cosine of the angle between the last two steps, 0..1.
+    turn: f32,
+    // True until the first step, whose tangent is already known.
+    begins: bool,
+}
+
+// Unit minor eigenvector at p, of either sign.
+fn stream_tangent(field: texture_2d<f32>, slot: u32, p: vec2f) -> vec2f {
+    return tensor_tangent(sample_linear(field, slot, p));
+}
+
+// A line that starts at p towards the unit vector `direction`, which is the tangent at p or its opposite.
+fn stream_begin(p: vec2f, direction: vec2f) -> Stream {
+    return Stream(p, direction, 1.0, true);
+}
+
+// Moves by `h` pixels: Euler's method (2.176, 2.177) or, with `midpoint`, the second-order
+// Runge-Kutta method (2.182).
+fn stream_step(line: ptr<function, Stream>, field: texture_2d<f32>, slot: u32, h: f32, midpoint: bool) {
+    let from_here = (*line).position;
+    let last = (*line).direction;
+    var t = last;
+    if !(*line).begins {
+        t = stream_tangent(field, slot, from_here);
+    }
+    if midpoint {
+        let k1 = select(t, -t, dot(last, t) < 0.0);
+        t = stream_tangent(field, slot, from_here + (0.5 * h) * k1);
+    }
+    let along = dot(last, t);
+    t = select(t, -t, along < 0.0);
+    *line = Stream(from_here + h * t, t, abs(along), false);
+}
+
+// True when p has left the picture of input `slot`.
+fn stream_outside(slot: u32, p: vec2f) -> bool {
+    return any(p < vec2f(0.0)) || any(p >= vec2f(grid.inputs[slot].zw));
+}

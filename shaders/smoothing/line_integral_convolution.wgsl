@@ -1,0 +1,68 @@
+// Line integral convolution of a colour with a Gaussian (2.186) along the stream lines of a tensor
+// field, with the length adapted to the anisotropy (§ 6.3.1) or to the curvature (§ 6.3.2).
+// Cost: per step one bilinear colour sample and one (Euler) or two tensor samples with their tangents.
+#import coverage
+#import stream
+
+struct Params {
+    // Standard deviation along the line, pixels.
+    sigma: f32,
+    // Step size h, pixels.
+    step: f32,
+    // A side ends at a step that turns by more than the angle of this cosine.
+    least_turn: f32,
+    // 1: second-order Runge-Kutta; 0: Euler.
+    midpoint: u32,
+    // 0: none; 1: anisotropy; 2: angle.
+    adapt: u32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var source: texture_2d<f32>;
+@group(0) @binding(3) var tensors: texture_2d<f32>;
+@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+
+const INPUT_TENSORS = 1u;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let origin = centre(id);
+    let tensor = fetch(tensors, INPUT_TENSORS, pixel(id));
+    var sigma = params.sigma;
+    if params.adapt == 1u {
+        let a = 1.0 + tensor_anisotropy(tensor);
+        sigma *= 0.25 * a * a;
+    }
+    // A last bit must not decide whether a whole number of pixels is reached.
+    let radius = floor(2.0 * sigma + 1e-3);
+    let limit = radius + 1e-3;
+    // exp(-u^2 / 2 sigma^2) as a power of two.
+    let falloff = -0.72134752 / max(sigma * sigma, 1e-6);
+
+    let tangent = tensor_tangent(tensor);
+    var sum = fetch_covered(source, 0u, pixel(id));
+    var norm = 1.0;
+    for (var side = -1.0; side <= 1.0; side += 2.0) {
+        var line = stream_begin(origin, side * tangent);
+        var u = 0.0;
+        while u + params.step <= limit {
+            stream_step(&line, tensors, INPUT_TENSORS, params.step, params.midpoint != 0u);
+            var du = params.step;
+            if params.adapt == 2u {
+                du = max(du, acos(min(line.turn, 1.0)) * radius / 3.14159265);
+            }
+            u += du;
+            if u > limit || line.turn < params.least_turn || stream_outside(0u, line.position) {
+                break;
+            }
+            let weight = exp2(falloff * u * u);
+            sum += weight * sample_covered(source, 0u, line.position);
+            norm += weight;
+        }
+    }
+    let color = select(vec3f(0.0), sum.rgb / sum.a, sum.a > 1e-6);
+    textureStore(target_image, vec2i(id.xy), vec4f(color, sum.a / norm));
+}
