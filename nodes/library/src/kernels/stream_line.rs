@@ -161,8 +161,7 @@ mod tests {
     #[test]
     fn ended_lanes_stay_where_they_are() {
         let image = circles();
-        let field =
-            StreamField { tensors: View::new(&image, [SIDE as i32; 2]), step: 1.0, midpoint: true };
+        let field = StreamField { tensors: View::new(&image, [SIDE as i32; 2]), step: 1.0, midpoint: true };
         dispatch!(Level::new(), simd => {
             let at = centres(simd, 40, 9, 90);
             let mut line = Stream::begin(at[0], at[1], field.tangent(simd, at[0], at[1]));
