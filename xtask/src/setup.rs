@@ -1,0 +1,126 @@
+//! What the other chores need of the machine: Debian packages, asked for only when the thing they
+//! bring is missing.
+
+use crate::error::{Failure, Result};
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// Something that a chore needs, how to see whether it is there, and what brings it.
+pub struct Need {
+    what: &'static str,
+    present: fn() -> bool,
+    packages: &'static [&'static str],
+}
+
+/// A Vulkan driver: a real one, or Mesa's software rasteriser.
+pub const VULKAN: Need = Need {
+    what: "a Vulkan driver",
+    present: || shared_library("libvulkan.so.1") && vulkan_driver(),
+    packages: &["libvulkan1", "mesa-vulkan-drivers"],
+};
+
+/// A C compiler.
+pub const C_COMPILER: Need =
+    Need { what: "a C compiler", present: || program("cc"), packages: &["gcc", "libc6-dev"] };
+
+/// A C++ compiler.
+pub const CPP_COMPILER: Need = Need { what: "a C++ compiler", present: || program("c++"), packages: &["g++"] };
+
+/// `nm`, to list exported symbols.
+pub const BINUTILS: Need = Need { what: "binutils", present: || program("nm"), packages: &["binutils"] };
+
+/// The memory checker; it reads the C library's debug symbols.
+pub const VALGRIND: Need = Need {
+    what: "valgrind",
+    present: || program("valgrind") && Path::new("/usr/lib/debug/.build-id").exists(),
+    packages: &["valgrind", "libc6-dbg"],
+};
+
+/// A display without a screen, and what winit loads to open a window on it.
+pub const XVFB: Need = Need {
+    what: "Xvfb and the X11 libraries",
+    present: || {
+        program("Xvfb")
+            && ["libX11.so.6", "libX11-xcb.so.1", "libXcursor.so.1", "libXi.so.6", "libXrandr.so.2", "libxkbcommon-x11.so.0"]
+                .into_iter()
+                .all(shared_library)
+    },
+    packages: &["xvfb", "xauth", "libx11-6", "libx11-xcb1", "libxcursor1", "libxi6", "libxrandr2", "libxkbcommon-x11-0"],
+};
+
+/// Makes sure that everything in `needs` is there, installing packages where this machine is a
+/// Debian and the user may.
+///
+/// # Errors
+/// Names what is missing and the command that mends it.
+pub fn ensure(needs: &[&Need]) -> Result<()> {
+    let missing: Vec<&&Need> = needs.iter().filter(|n| !(n.present)()).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let packages: Vec<&str> = missing.iter().flat_map(|n| n.packages.iter().copied()).collect();
+    let what = missing.iter().map(|n| n.what).collect::<Vec<_>>().join(", ");
+    let by_hand = format!("apt-get install {}", packages.join(" "));
+    let Some(prefix) = apt() else {
+        return Err(Failure(format!(
+            "this machine lacks {what}, and packages cannot be installed from here; on Debian, run as root: {by_hand}"
+        )));
+    };
+    println!("installing what is missing ({what}): {by_hand}");
+    let apt = |arguments: &[&str]| {
+        let mut line: Vec<&str> = prefix.to_vec();
+        line.extend(["apt-get", "-q"]);
+        line.extend(arguments);
+        Command::new(line[0]).args(&line[1..]).env("DEBIAN_FRONTEND", "noninteractive").status().is_ok_and(|s| s.success())
+    };
+    let mut install = vec!["install", "-y", "--no-install-recommends"];
+    install.extend(&packages);
+    if !(apt(&["update"]) && apt(&install)) {
+        return Err(Failure(format!("could not install {what}; run as root: {by_hand}")));
+    }
+    match missing.iter().find(|n| !(n.present)()) {
+        Some(need) => Err(Failure(format!("{} is still missing after: {by_hand}", need.what))),
+        None => Ok(()),
+    }
+}
+
+/// How to run apt-get: as it is, through a sudo that asks nothing, or not at all.
+fn apt() -> Option<&'static [&'static str]> {
+    if !program("apt-get") {
+        return None;
+    }
+    let quiet = |name: &str, arguments: &[&str]| {
+        Command::new(name).args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).stdin(Stdio::null()).status()
+    };
+    let root = Command::new("id").arg("-u").output().is_ok_and(|o| o.stdout.trim_ascii() == b"0");
+    if root {
+        Some(&["env"])
+    } else if quiet("sudo", &["-n", "true"]).is_ok_and(|s| s.success()) {
+        Some(&["sudo", "-n", "env"])
+    } else {
+        None
+    }
+}
+
+fn program(name: &str) -> bool {
+    std::env::var_os("PATH")
+        .is_some_and(|path| std::env::split_paths(&path).any(|dir| dir.join(name).is_file()))
+}
+
+/// Where Debian and its relatives keep libraries; other systems manage their own.
+fn shared_library(name: &str) -> bool {
+    if !cfg!(target_os = "linux") {
+        return true;
+    }
+    let arch = format!("/usr/lib/{}-linux-gnu", std::env::consts::ARCH);
+    [arch.as_str(), "/usr/lib64", "/usr/lib", "/usr/local/lib", "/lib"].iter().any(|dir| Path::new(dir).join(name).exists())
+}
+
+fn vulkan_driver() -> bool {
+    if !cfg!(target_os = "linux") || std::env::var_os("VK_DRIVER_FILES").is_some() || std::env::var_os("VK_ICD_FILENAMES").is_some() {
+        return true;
+    }
+    ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d", "/usr/local/share/vulkan/icd.d"]
+        .iter()
+        .any(|dir| std::fs::read_dir(dir).is_ok_and(|mut entries| entries.next().is_some()))
+}

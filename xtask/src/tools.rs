@@ -1,0 +1,60 @@
+//! Running cargo and the host from a chore.
+
+use crate::error::{Failure, Result};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The root of the repository.
+pub fn root() -> PathBuf {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.parent().unwrap_or(here).to_owned()
+}
+
+/// Says what comes next.
+pub fn heading(what: &str) {
+    println!("\n== {what}");
+}
+
+/// A cargo command at the root of the repository. Warnings of documents are errors, and tests that
+/// need a graphics adapter must find one.
+pub fn cargo_command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(arguments).current_dir(root()).env("RUSTDOCFLAGS", "-D warnings").env("ISOPHOTE_REQUIRE_GPU", "1");
+    command
+}
+
+/// Runs cargo at the root of the repository.
+///
+/// # Errors
+/// The command line, when it fails.
+pub fn cargo(arguments: &[&str]) -> Result<()> {
+    run(&mut cargo_command(arguments))
+}
+
+/// Where a build leaves its programs and libraries: `release` or `debug`.
+pub fn target_dir(profile: &str) -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
+    target.join(profile)
+}
+
+/// The sample host of a build.
+pub fn host(profile: &str) -> Command {
+    Command::new(target_dir(profile).join(format!("isophote{}", std::env::consts::EXE_SUFFIX)))
+}
+
+/// Runs a command to its end.
+///
+/// # Errors
+/// The command line, when it fails or cannot be started.
+pub fn run(command: &mut Command) -> Result<()> {
+    let line = || {
+        let words = std::iter::once(command.get_program()).chain(command.get_args());
+        words.map(|w| w.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
+    };
+    let line = line();
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(Failure(format!("`{line}` ended with {status}"))),
+        Err(error) => Err(Failure(format!("`{line}` cannot be started: {error}"))),
+    }
+}
