@@ -83,7 +83,7 @@ impl Control<'_> {
 #[derive(Clone, Debug)]
 pub struct PassTime {
     /// The kernel's name.
-    pub kernel: &'static str,
+    pub kernel: String,
     /// Wall-clock time.
     pub time: Duration,
     /// Output pixels computed.
@@ -193,7 +193,7 @@ impl CpuExecutor {
             }
             if let Some(times) = &mut self.times {
                 let pixels = u64::from(window.width()) * u64::from(window.height());
-                times.push(PassTime { kernel: pass.kernel.name, time: started.elapsed(), pixels });
+                times.push(PassTime { kernel: pass.kernel.name.to_owned(), time: started.elapsed(), pixels });
             }
             if let Some(progress) = control.progress {
                 progress((index + 1) as f32 / total);

@@ -11,6 +11,8 @@ use crate::error::{Error, Result};
 use crate::image::Rect;
 use crate::kernel::{Kernel, MAX_INPUTS, WORKGROUP};
 use crate::plan::{Class, Plan, Support};
+use std::borrow::Cow;
+use std::sync::Arc;
 
 /// What a texture of a program is for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -52,11 +54,39 @@ pub struct Grid {
     pub inputs: [[i32; 4]; MAX_INPUTS],
 }
 
+/// The shader of a kernel, as data: it may come from this library's kernels or, through the C ABI,
+/// from another's.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Shader {
+    /// The kernel's name.
+    pub name: Cow<'static, str>,
+    /// Complete WGSL module, entry point `main`.
+    pub source: Cow<'static, str>,
+    /// Number of sampled textures.
+    pub inputs: usize,
+    /// Channels of the storage textures.
+    pub outputs: Cow<'static, [u32]>,
+    /// Size of the uniform block at binding 1, in bytes.
+    pub params_size: usize,
+}
+
+impl From<&'static Kernel> for Shader {
+    fn from(kernel: &'static Kernel) -> Self {
+        Self {
+            name: Cow::Borrowed(kernel.name),
+            source: Cow::Borrowed(kernel.shader),
+            inputs: kernel.inputs,
+            outputs: Cow::Borrowed(kernel.outputs),
+            params_size: kernel.params_size,
+        }
+    }
+}
+
 /// One dispatch.
 #[derive(Clone, Debug)]
 pub struct Dispatch {
-    /// The kernel; its `shader` is the WGSL module, entry point `main`.
-    pub kernel: &'static Kernel,
+    /// What to run.
+    pub shader: Arc<Shader>,
     /// Uniform at binding 0.
     pub grid: Grid,
     /// Uniform at binding 1.
@@ -210,7 +240,7 @@ fn dispatch(plan: &Plan, windows: &[Rect], index: usize, slots: &[Option<u32>]) 
     // Every image of a pass got its texture above or in an earlier pass.
     let textures = |ids: &[crate::plan::ImageId]| ids.iter().filter_map(|i| slots[i.index()]).collect();
     Dispatch {
-        kernel: pass.kernel,
+        shader: Arc::new(Shader::from(pass.kernel)),
         grid: Grid { origin: [window.x0, window.y0], size, full, reserved: [0; 2], inputs },
         params: pass.params.clone(),
         inputs: textures(&pass.inputs),

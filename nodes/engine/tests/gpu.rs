@@ -335,7 +335,7 @@ fn passes_are_timed() {
         prepared.encode(&mut encoder).unwrap();
         device.queue().submit([encoder.finish()]);
         let times = prepared.times().unwrap();
-        let names: Vec<_> = times.iter().map(|t| t.kernel).collect();
+        let names: Vec<_> = times.iter().map(|t| t.kernel.as_str()).collect();
         assert_eq!(names, ["box", "shift", "shift", "box", "shift", "box", "split", "join"]);
         assert_eq!((times[0].pixels, times[2].pixels), (64 * 48, 32 * 24));
         assert!(times.iter().any(|t| !t.time.is_zero()));

@@ -2,8 +2,7 @@
 
 use super::device::{Device, count};
 use crate::error::Result;
-use crate::kernel::Kernel;
-use crate::program::Grid;
+use crate::program::{Grid, Shader};
 use std::collections::HashMap;
 use std::num::NonZeroU64;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -29,50 +28,35 @@ pub(super) struct Pipeline {
     pub layout: wgpu::BindGroupLayout,
 }
 
-/// Everything of a kernel that its pipeline depends on.
-#[derive(Debug, PartialEq, Eq, Hash)]
-struct Key {
-    shader: &'static str,
-    inputs: usize,
-    outputs: &'static [u32],
-    params_size: usize,
-}
-
 #[derive(Debug, Default)]
-pub(super) struct Pipelines(Mutex<HashMap<Key, Arc<Pipeline>>>);
+pub(super) struct Pipelines(Mutex<HashMap<Arc<Shader>, Arc<Pipeline>>>);
 
 impl Device {
-    /// The pipeline of `kernel`, compiled at the first request.
+    /// The pipeline of `shader`, compiled at the first request.
     ///
     /// # Errors
     /// [`Error::Device`](crate::Error::Device) with the compiler's words when the shader is refused.
-    pub(super) fn pipeline(&self, kernel: &'static Kernel) -> Result<Arc<Pipeline>> {
-        let key = Key {
-            shader: kernel.shader,
-            inputs: kernel.inputs,
-            outputs: kernel.outputs,
-            params_size: kernel.params_size,
-        };
+    pub(super) fn pipeline(&self, shader: &Arc<Shader>) -> Result<Arc<Pipeline>> {
         let mut known = self.pipelines.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(pipeline) = known.get(&key) {
+        if let Some(pipeline) = known.get(shader) {
             return Ok(Arc::clone(pipeline));
         }
-        let what = format!("kernel '{}'", kernel.name);
-        let pipeline = Arc::new(self.guarded(&what, |device| create(device, kernel))?);
+        let what = format!("kernel '{}'", shader.name);
+        let pipeline = Arc::new(self.guarded(&what, |device| create(device, shader))?);
         count(&self.counters.pipelines);
-        known.insert(key, Arc::clone(&pipeline));
+        known.insert(Arc::clone(shader), Arc::clone(&pipeline));
         Ok(pipeline)
     }
 }
 
-fn create(device: &wgpu::Device, kernel: &Kernel) -> Pipeline {
-    let label = Some(kernel.name);
+fn create(device: &wgpu::Device, shader: &Shader) -> Pipeline {
+    let label = Some(shader.name.as_ref());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label,
-        source: wgpu::ShaderSource::Wgsl(kernel.shader.into()),
+        source: wgpu::ShaderSource::Wgsl(shader.source.as_ref().into()),
     });
     let layout = device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries(kernel) });
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries(shader) });
     let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label,
         bind_group_layouts: &[Some(&layout)],
@@ -89,7 +73,7 @@ fn create(device: &wgpu::Device, kernel: &Kernel) -> Pipeline {
     Pipeline { compute, layout }
 }
 
-fn entries(kernel: &Kernel) -> Vec<wgpu::BindGroupLayoutEntry> {
+fn entries(shader: &Shader) -> Vec<wgpu::BindGroupLayoutEntry> {
     let uniform = |size: u64| wgpu::BindingType::Buffer {
         ty: wgpu::BufferBindingType::Uniform,
         has_dynamic_offset: false,
@@ -101,12 +85,12 @@ fn entries(kernel: &Kernel) -> Vec<wgpu::BindGroupLayoutEntry> {
         multisampled: false,
     };
     let mut types = vec![(0, uniform(size_of::<Grid>() as u64))];
-    if kernel.params_size > 0 {
-        types.push((1, uniform(bound_size(kernel.params_size))));
+    if shader.params_size > 0 {
+        types.push((1, uniform(bound_size(shader.params_size))));
     }
-    let first_output = 2 + kernel.inputs as u32;
+    let first_output = 2 + shader.inputs as u32;
     types.extend((2..first_output).map(|binding| (binding, sampled)));
-    types.extend((first_output..).zip(kernel.outputs).map(|(binding, channels)| {
+    types.extend((first_output..).zip(shader.outputs.iter()).map(|(binding, channels)| {
         let storage = wgpu::BindingType::StorageTexture {
             access: wgpu::StorageTextureAccess::WriteOnly,
             format: texture_format(*channels),

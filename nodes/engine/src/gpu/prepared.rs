@@ -6,8 +6,7 @@ use super::pipeline::{Pipeline, bound_size, texture_format};
 use super::timing::Timer;
 use crate::cpu::PassTime;
 use crate::error::{Error, Result};
-use crate::kernel::Kernel;
-use crate::program::{Grid, Program, Role};
+use crate::program::{Grid, Program, Role, Shader};
 use std::num::NonZeroU64;
 use std::sync::Arc;
 
@@ -25,7 +24,7 @@ struct Slot {
 
 #[derive(Debug)]
 struct Pass {
-    kernel: &'static Kernel,
+    shader: Arc<Shader>,
     pipeline: Arc<Pipeline>,
     /// Made when all textures are bound; dropped when one of them changes.
     group: Option<wgpu::BindGroup>,
@@ -67,8 +66,8 @@ impl Prepared {
         let mut passes = Vec::with_capacity(program.dispatches.len());
         for dispatch in &program.dispatches {
             passes.push(Pass {
-                kernel: dispatch.kernel,
-                pipeline: device.pipeline(dispatch.kernel)?,
+                shader: Arc::clone(&dispatch.shader),
+                pipeline: device.pipeline(&dispatch.shader)?,
                 group: None,
                 inputs: dispatch.inputs.clone(),
                 outputs: dispatch.outputs.clone(),
@@ -211,18 +210,18 @@ impl Prepared {
                 binding: 0,
                 resource: buffer(pass.grid_at, size_of::<Grid>() as u64),
             }];
-            if pass.kernel.params_size > 0 {
-                let resource = buffer(pass.params_at, bound_size(pass.kernel.params_size));
+            if pass.shader.params_size > 0 {
+                let resource = buffer(pass.params_at, bound_size(pass.shader.params_size));
                 entries.push(wgpu::BindGroupEntry { binding: 1, resource });
             }
             entries.extend((2..).zip(textures().flatten()).map(|(binding, view)| wgpu::BindGroupEntry {
                 binding,
                 resource: wgpu::BindingResource::TextureView(view),
             }));
-            let what = format!("textures of kernel '{}'", pass.kernel.name);
+            let what = format!("textures of kernel '{}'", pass.shader.name);
             let group = self.device.guarded(&what, |raw| {
                 raw.create_bind_group(&wgpu::BindGroupDescriptor {
-                    label: Some(pass.kernel.name),
+                    label: Some(&pass.shader.name),
                     layout: &pass.pipeline.layout,
                     entries: &entries,
                 })
@@ -266,7 +265,7 @@ impl Prepared {
                 && height <= room[1]
         };
         let pass_fits = |(pass, dispatch): (&Pass, &crate::program::Dispatch)| {
-            pass.kernel == dispatch.kernel
+            pass.shader == dispatch.shader
                 && pass.inputs == dispatch.inputs
                 && pass.outputs == dispatch.outputs
         };
@@ -321,7 +320,7 @@ impl Prepared {
         };
         for (index, pass) in self.passes.iter().enumerate() {
             let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some(pass.kernel.name),
+                label: Some(&pass.shader.name),
                 timestamp_writes: Some(timer.writes(index)),
             });
             record(&mut compute, pass);
@@ -352,7 +351,7 @@ impl Prepared {
         let Some(timer) = &self.timer else { return Ok(Vec::new()) };
         let times = timer.read()?;
         let entry = |(pass, time): (&Pass, _)| PassTime {
-            kernel: pass.kernel.name,
+            kernel: pass.shader.name.to_string(),
             time,
             pixels: pass.size[0].unsigned_abs() as u64 * pass.size[1].unsigned_abs() as u64,
         };
