@@ -186,7 +186,7 @@ impl Program {
     pub fn repack(&mut self, plan: &Plan) -> bool {
         let fits = |dispatch: &Dispatch, (index, support): &(usize, Option<Support>)| {
             plan.passes().get(*index).is_some_and(|pass| {
-                pass.kernel == dispatch.kernel
+                dispatch.shader.source == pass.kernel.shader
                     && pass.inputs.len() == dispatch.inputs.len()
                     && support.is_none_or(|s| s == pass.support)
             })
