@@ -230,6 +230,50 @@ impl Plan {
         described.map(|()| complete && !replay.diverged)
     }
 
+    /// A plan of pass `index` alone, run by `kernel`: the pass's own, or one of the same bindings in its
+    /// place. Its inputs and outputs are named "0", "1", ... in their order. This is how the two twins
+    /// of a kernel are compared on equal input.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when there is no such pass or the kernel has other bindings.
+    pub fn single_pass(&self, index: usize, kernel: &'static Kernel) -> Result<Self> {
+        let Some(pass) = self.passes.get(index) else {
+            return Err(Error::Input(format!("the plan has no pass {index}")));
+        };
+        let same = kernel.inputs == pass.kernel.inputs
+            && kernel.outputs == pass.kernel.outputs
+            && kernel.params_size == pass.kernel.params_size;
+        if !same {
+            return Err(Error::Input(format!("{} cannot stand in for {}", kernel.name, pass.kernel.name)));
+        }
+        let images = pass.inputs.iter().chain(&pass.outputs).map(|i| self.desc(*i)).collect();
+        let ids = |from: usize, count: usize| (from..from + count).map(|i| ImageId(i as u32));
+        let ports = |from: usize, count: usize| {
+            ids(from, count)
+                .enumerate()
+                .map(|(name, image)| Port { name: name.to_string(), image })
+                .collect::<Vec<_>>()
+        };
+        let (inputs, outputs) = (pass.inputs.len(), pass.outputs.len());
+        let alone = Pass {
+            kernel,
+            inputs: ids(0, inputs).collect(),
+            outputs: ids(inputs, outputs).collect(),
+            params: pass.params.clone(),
+            support: pass.support,
+        };
+        Ok(Self {
+            size: self.size,
+            images,
+            passes: vec![alone],
+            inputs: ports(0, inputs),
+            outputs: ports(inputs, outputs),
+            calls: vec![0],
+            stamps: vec![0],
+            edit: 0,
+        })
+    }
+
     fn whole(&self, level: i8) -> Rect {
         let [w, h] = self.level_size(level);
         Rect { x0: 0, y0: 0, x1: w, y1: h }
