@@ -1,1 +1,15 @@
-//! Placeholder.
+//! What the tests of this crate share: generated pictures, parameter sets from the registry, running
+//! plans pass by pass, comparing images, opening a device, and pictures on disk.
+//!
+//! The tests themselves lie in `tests/`, one file per kind. Everything that can be is generated from
+//! the registry, so a new node or kernel is covered without an edit here.
+
+pub mod cases;
+pub mod compare;
+pub mod device;
+pub mod pictures;
+pub mod png;
+pub mod random;
+pub mod run;
+pub mod shaders;
+pub mod sweep;

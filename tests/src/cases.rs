@@ -1,0 +1,202 @@
+//! Graphs and parameter sets generated from the registry.
+
+use crate::pictures::Kind;
+use crate::random::Random;
+use isophote::graph::GraphInput;
+use isophote::request::Guides;
+use isophote::spec::{ImageKind, NodeSpec, Param, ParamKind, Unit};
+use isophote::{ColourSpace, Graph, NodeId, Request, Value};
+
+/// A node in a graph that can be planned, with the nodes that stand before it.
+#[derive(Debug)]
+pub struct Setup {
+    /// The graph; its output is the node under test.
+    pub graph: Graph,
+    /// The node under test.
+    pub node: NodeId,
+    /// Nodes whose outputs it reads, for its ports that a graph has no input for.
+    pub producers: Vec<NodeId>,
+}
+
+/// A graph around `spec`. Ports that a graph has an input for are connected to it; the others to the
+/// first node that makes such an image from colour alone, the optional ones only if `wired`.
+///
+/// # Panics
+/// When a required port cannot be fed, which no node may ask for.
+pub fn setup(spec: &'static NodeSpec, wired: bool) -> Setup {
+    let build = || -> isophote::Result<Setup> {
+        let mut graph = Graph::new();
+        let mut feeds = Vec::new();
+        for port in spec.inputs {
+            if GraphInput::from_id(port.kind.id()).is_some() || (port.optional && !wired) {
+                continue;
+            }
+            let name = format!("before-{}", port.id);
+            let producer = graph.add(&name, producer(port.kind).id)?;
+            graph.connect_input(GraphInput::Color, producer, "color")?;
+            feeds.push((producer, port.id));
+        }
+        let node = graph.add("node", spec.id)?;
+        for port in spec.inputs {
+            if let Some(input) = GraphInput::from_id(port.kind.id()) {
+                graph.connect_input(input, node, port.id)?;
+            }
+        }
+        for (producer, port) in &feeds {
+            graph.connect(*producer, node, port)?;
+        }
+        graph.set_output(node)?;
+        Ok(Setup { graph, node, producers: feeds.into_iter().map(|(p, _)| p).collect() })
+    };
+    match build() {
+        Ok(setup) => setup,
+        Err(e) => panic!("{} cannot stand in a graph: {e}", spec.id),
+    }
+}
+
+/// The first node that makes `kind` from colour alone.
+fn producer(kind: ImageKind) -> &'static NodeSpec {
+    let able = |n: &&&'static NodeSpec| {
+        n.output.kind == kind
+            && n.inputs.iter().all(|p| p.optional || (p.kind == ImageKind::Color && p.id == "color"))
+    };
+    match isophote::registry::nodes().iter().find(able) {
+        Some(node) => node,
+        None => panic!("no node makes a {} from colour", kind.id()),
+    }
+}
+
+/// A set of parameter values with a name for messages.
+#[derive(Clone, Debug)]
+pub struct Setting {
+    /// What distinguishes it.
+    pub label: String,
+    /// Values by parameter id; the others keep their defaults.
+    pub values: Vec<(&'static str, Value)>,
+}
+
+impl Setting {
+    /// Sets the values in a graph.
+    ///
+    /// # Panics
+    /// When the node refuses a value from its own ranges.
+    pub fn apply(&self, graph: &mut Graph, node: NodeId) {
+        for (id, value) in &self.values {
+            if let Err(e) = graph.set(node, id, *value) {
+                panic!("{}: {e}", self.label);
+            }
+        }
+    }
+}
+
+/// Defaults, least and greatest values (hard ranges and sliders), each option of each choice and both
+/// states of each switch, and `count` random sets.
+pub fn settings(spec: &'static NodeSpec, count: usize) -> Vec<Setting> {
+    let set = |label: &str, value: &dyn Fn(&Param) -> Value| Setting {
+        label: label.to_owned(),
+        values: spec.params().map(|p| (p.id, value(p))).collect(),
+    };
+    let mut sets = vec![
+        Setting { label: "default".into(), values: Vec::new() },
+        set("least", &|p| extreme(p, 0, false)),
+        set("greatest", &|p| extreme(p, 1, false)),
+        set("slider's least", &|p| extreme(p, 0, true)),
+        set("slider's greatest", &|p| extreme(p, 1, true)),
+    ];
+    for param in spec.params() {
+        let others: Vec<Value> = match param.kind {
+            ParamKind::Bool { default } => vec![Value::Bool(!default)],
+            ParamKind::Choice { default, options } => {
+                (0..options.len()).filter(|o| *o != default).map(Value::Choice).collect()
+            }
+            _ => Vec::new(),
+        };
+        for value in others {
+            sets.push(Setting {
+                label: format!("{}={}", param.id, name_of(param, value)),
+                values: vec![(param.id, value)],
+            });
+        }
+    }
+    let seed = spec.id.bytes().fold(7u64, |h, b| h.wrapping_mul(31).wrapping_add(u64::from(b)));
+    let mut random = Random::new(seed);
+    for index in 0..count {
+        let values: Vec<_> = spec.params().map(|p| (p.id, any(p, &mut random))).collect();
+        sets.push(Setting { label: format!("random {index}"), values });
+    }
+    sets
+}
+
+/// A value other than `now` for a parameter, somewhere inside its slider; `None` for a parameter that
+/// has only one value.
+pub fn other(param: &Param, now: Value, random: &mut Random) -> Option<Value> {
+    (0..64).map(|_| within_slider(param, random)).find(|v| *v != now)
+}
+
+/// The least (`end` 0) or greatest (1) value. Choices and switches have no ends: they take the first
+/// and the last.
+fn extreme(param: &Param, end: usize, of_slider: bool) -> Value {
+    match param.kind {
+        ParamKind::Float { range, slider, .. } => Value::Float(if of_slider { slider } else { range }[end]),
+        ParamKind::Int { range, slider, .. } => Value::Int(if of_slider { slider } else { range }[end]),
+        ParamKind::Bool { .. } => Value::Bool(end == 1),
+        ParamKind::Choice { options, .. } => Value::Choice(end * (options.len() - 1)),
+        ParamKind::Color { .. } => Value::Color([end as f32, 0.5, 0.25, end as f32]),
+    }
+}
+
+fn any(param: &Param, random: &mut Random) -> Value {
+    match param.kind {
+        // Lengths decide the cost; the sliders hold what people use.
+        ParamKind::Float { range, .. } if param.unit != Unit::Pixels && random.below(3) == 0 => {
+            Value::Float(random.range(range[0], range[1]))
+        }
+        _ => within_slider(param, random),
+    }
+}
+
+fn within_slider(param: &Param, random: &mut Random) -> Value {
+    match param.kind {
+        ParamKind::Float { slider, .. } => Value::Float(random.range(slider[0], slider[1])),
+        ParamKind::Int { slider, .. } => {
+            Value::Int(slider[0] + random.below((slider[1] - slider[0]) as usize + 1) as i32)
+        }
+        ParamKind::Bool { .. } => Value::Bool(random.below(2) == 1),
+        ParamKind::Choice { options, .. } => Value::Choice(random.below(options.len())),
+        ParamKind::Color { .. } => Value::Color([(); 4].map(|()| random.unit() as f32)),
+    }
+}
+
+fn name_of(param: &Param, value: Value) -> String {
+    match (param.kind, value) {
+        (ParamKind::Choice { options, .. }, Value::Choice(index)) => options[index].id.to_owned(),
+        (_, Value::Bool(on)) => on.to_string(),
+        (_, other) => format!("{other:?}"),
+    }
+}
+
+/// The request that suits a kind of picture, with all guides or none.
+pub fn request(kind: Kind, width: u32, height: u32, guides: bool) -> Request {
+    let space = match kind {
+        Kind::Hdr if width < 10 => ColourSpace::AcesCg,
+        Kind::Hdr => ColourSpace::Linear,
+        _ => ColourSpace::Srgb,
+    };
+    Request {
+        space,
+        premultiplied: kind != Kind::Noise,
+        guides: Guides { normal: guides, depth: guides, object_id: guides },
+        ..Request::new(width, height)
+    }
+}
+
+/// True when the node has an optional input that is not a picture of the graph's own.
+pub fn has_optional_field(spec: &NodeSpec) -> bool {
+    spec.inputs.iter().any(|p| p.optional && GraphInput::from_id(p.kind.id()).is_none())
+}
+
+/// True when the node takes guides.
+pub fn has_guides(spec: &NodeSpec) -> bool {
+    let is_guide = |k| matches!(k, ImageKind::Normal | ImageKind::Depth | ImageKind::ObjectId);
+    spec.inputs.iter().any(|p| is_guide(p.kind))
+}

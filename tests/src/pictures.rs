@@ -1,0 +1,172 @@
+//! Generated pictures, guides and fields: the awkward ones that kernels are compared on.
+
+use crate::random::Random;
+use isophote::spec::ImageKind;
+use isophote_engine::Image;
+
+/// A kind of picture that may go wrong in a way of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// Independent uniform values, opaque.
+    Noise,
+    /// Flat patches with sharp straight and slanted edges, opaque.
+    Steps,
+    /// Scene-linear light from -2 to 10,000.
+    Hdr,
+    /// Steps with parts that are transparent, sharply and gradually; premultiplied.
+    CutOut,
+    /// Noise with some values that are not finite.
+    Broken,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Noise, Self::Steps, Self::Hdr, Self::CutOut, Self::Broken];
+}
+
+/// An image of `width` x `height` from a function of the pixel's position.
+///
+/// # Panics
+/// For a size that no image can have.
+pub fn from_fn<const N: usize>(
+    width: u32,
+    height: u32,
+    mut value: impl FnMut(i32, i32) -> [f32; N],
+) -> Image {
+    let mut data = Vec::with_capacity((width * height) as usize * N);
+    for y in 0..height as i32 {
+        for x in 0..width as i32 {
+            data.extend_from_slice(&value(x, y));
+        }
+    }
+    match Image::from_vec(width, height, N as u32, data) {
+        Ok(image) => image,
+        Err(e) => panic!("{e}"),
+    }
+}
+
+/// A colour picture, premultiplied.
+pub fn color(kind: Kind, width: u32, height: u32) -> Image {
+    let mut random = Random::new(u64::from(width) << 20 | u64::from(height) << 4 | kind as u64);
+    match kind {
+        Kind::Noise => from_fn(width, height, |_, _| {
+            let mut v = || random.unit() as f32;
+            [v(), v(), v(), 1.0]
+        }),
+        Kind::Steps => from_fn(width, height, |x, y| {
+            let [r, g, b] = steps(x, y);
+            [r, g, b, 1.0]
+        }),
+        Kind::Hdr => from_fn(width, height, |x, y| {
+            let [r, g, b] = steps(x, y);
+            let light = match random.below(12) {
+                0 => random.range(-2.0, 0.0),
+                1 => random.range(100.0, 10_000.0),
+                _ => random.range(0.0, 4.0),
+            };
+            [r * light, g * light, b * light + 0.01, 1.0]
+        }),
+        Kind::CutOut => from_fn(width, height, |x, y| {
+            let alpha = match (x / 9 + y / 6) % 3 {
+                0 => 0.0,
+                1 => 1.0,
+                _ => (x % 9) as f32 / 8.0,
+            };
+            let [r, g, b] = steps(x + 3, y);
+            [r * alpha, g * alpha, b * alpha, alpha]
+        }),
+        Kind::Broken => broken(from_fn(width, height, |_, _| {
+            let mut v = || random.unit() as f32;
+            [v(), v(), v(), 1.0]
+        })),
+    }
+}
+
+/// Replaces some values by NaN and infinities of both signs; a single pixel loses its first value.
+pub fn broken(mut image: Image) -> Image {
+    const BAD: [f32; 4] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -f32::NAN];
+    for (i, v) in image.data_mut().iter_mut().enumerate().step_by(59) {
+        *v = BAD[(i / 59) % 4];
+    }
+    image
+}
+
+fn steps(x: i32, y: i32) -> [f32; 3] {
+    let slanted = 2 * x - 3 * y > 7;
+    let disc = (x - 31) * (x - 31) + (y - 19) * (y - 19) < 150;
+    let stripe = (x / 5) % 4 == 1;
+    let base = if slanted { [0.85, 0.62, 0.2] } else { [0.1, 0.25, 0.55] };
+    let base = if stripe { [base[0], 0.5 * base[1], 0.9] } else { base };
+    if disc { [0.95, 0.95, 0.9] } else { base }
+}
+
+/// An image of some other kind: valid tensors, scalars 0..=1, unit normals, depths, object numbers;
+/// guides with a part that is empty.
+pub fn field(kind: ImageKind, width: u32, height: u32) -> Image {
+    let mut random = Random::new(u64::from(width) << 20 | u64::from(height) << 4 | kind as u64 | 1 << 40);
+    let empty = |x: i32, y: i32| (x + 2 * y) % 23 > 18;
+    match kind {
+        ImageKind::Color => color(Kind::Noise, width, height),
+        ImageKind::Scalar => {
+            from_fn(width, height, |x, _| [if x % 11 == 0 { (x % 2) as f32 } else { random.unit() as f32 }])
+        }
+        ImageKind::Tensor => from_fn(width, height, |x, y| tensor(&mut random, x, y)),
+        ImageKind::Normal => from_fn(width, height, |x, y| {
+            if empty(x, y) {
+                return [0.0; 4];
+            }
+            let v: [f32; 3] = if x > 20 { [0.6, 0.0, 0.8] } else { [random.range(-0.5, 0.5), 0.3, 0.9] };
+            let length = v.iter().map(|c| c * c).sum::<f32>().sqrt();
+            [v[0] / length, v[1] / length, v[2] / length, 1.0]
+        }),
+        ImageKind::Depth => from_fn(width, height, |x, y| {
+            if empty(x, y) { [0.0] } else { [2.0 + 0.01 * x as f32 + if y > 20 { 7.0 } else { 0.0 }] }
+        }),
+        ImageKind::ObjectId => {
+            from_fn(width, height, |x, y| [if empty(x, y) { 0.0 } else { (1 + x / 13 + 7 * (y / 9)) as f32 }])
+        }
+    }
+}
+
+/// A positive semidefinite tensor: zero, of one direction, isotropic or in between.
+fn tensor(random: &mut Random, x: i32, y: i32) -> [f32; 4] {
+    // A smooth turn with some jitter, so that stream lines have somewhere to go.
+    let angle = 0.05 * x as f32 + 0.08 * y as f32 + random.range(-0.2, 0.2);
+    let (sin, cos) = angle.sin_cos();
+    let major = 10f32.powf(random.range(-4.0, 0.0));
+    let minor = match random.below(6) {
+        0 => return [0.0, 0.0, 0.0, 1.0],
+        1 => major,
+        2 => 0.0,
+        _ => major * random.range(0.0, 0.9),
+    };
+    let (e, g) = (major * cos * cos + minor * sin * sin, major * sin * sin + minor * cos * cos);
+    [e, (major - minor) * sin * cos, g, 1.0]
+}
+
+/// A smooth picture with edges, curves, a gradient and some texture, as photographs have: sRGB, opaque.
+pub fn scenery(width: u32, height: u32) -> Image {
+    let mut random = Random::new(11);
+    let grain: Vec<f32> = (0..width * height).map(|_| random.normal() as f32 * 0.012).collect();
+    let scale = height as f32 / 192.0;
+    from_fn(width, height, |x, y| {
+        let (u, v) = ((x as f32 + 0.5) / scale, (y as f32 + 0.5) / scale);
+        // Edges are as sharp as a lens makes them: one pixel of the 192 lines wide.
+        let cover = |distance: f32| (0.5 + distance).clamp(0.0, 1.0);
+        let mix = |a: [f32; 3], b: [f32; 3], t: f32| [0, 1, 2].map(|i| a[i] + (b[i] - a[i]) * t);
+        let sky = mix([0.45, 0.65, 0.92], [0.85, 0.9, 0.95], v / 110.0);
+        let hill = 110.0 + 14.0 * (u * 0.035).sin() - v;
+        let ground = mix([0.35, 0.52, 0.2], [0.5, 0.42, 0.25], (u * 0.02).sin() * 0.5 + 0.5);
+        let mut c = mix(sky, ground, cover(-hill));
+        let disc = 34.0 - ((u - 80.0).powi(2) + (v - 112.0).powi(2)).sqrt();
+        let shade = 0.55 + 0.4 * ((u - 70.0) * 0.02 - (v - 100.0) * 0.015).clamp(-1.0, 1.0);
+        c = mix(c, [0.9 * shade, 0.35 * shade, 0.25 * shade], cover(disc));
+        let wall = (u - 150.0).min(235.0 - u).min(v - 60.0).min(165.0 - v);
+        c = mix(c, [0.82, 0.76, 0.66], cover(wall));
+        let (bu, bv) = ((u - 150.0) % 17.0, (v - 60.0) % 21.0);
+        let window = (bu - 5.0).min(12.0 - bu).min(bv - 6.0).min(16.0 - bv).min(wall);
+        c = mix(c, [0.16, 0.19, 0.26], cover(window));
+        let g = grain[(y as u32 * width + x as u32) as usize];
+        [c[0] + g, c[1] + g, c[2] + g, 1.0]
+    })
+}

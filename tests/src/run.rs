@@ -1,0 +1,106 @@
+//! Running graphs and plans on the CPU.
+
+use isophote::request::Planned;
+use isophote::{Graph, Request};
+use isophote_engine::cpu::{CallingThread, Control, CpuExecutor, Pool, Threads};
+use isophote_engine::{Image, Plan, Rect};
+use std::sync::OnceLock;
+
+/// One pool for all tests of a binary.
+///
+/// # Panics
+/// When the system refuses threads.
+pub fn pool() -> &'static Pool {
+    static POOL: OnceLock<Pool> = OnceLock::new();
+    POOL.get_or_init(|| match Pool::new(0) {
+        Ok(pool) => pool,
+        Err(e) => panic!("{e}"),
+    })
+}
+
+/// Plans a graph.
+///
+/// # Panics
+/// When it cannot be planned.
+pub fn planned(graph: &Graph, request: Request) -> Planned {
+    match Planned::new(graph, request) {
+        Ok(planned) => planned,
+        Err(e) => panic!("cannot plan: {e}"),
+    }
+}
+
+/// A region of the first output of a plan, its inputs cut to exactly what the plan says it reads.
+///
+/// # Panics
+/// When the executor refuses.
+pub fn region(
+    executor: &mut CpuExecutor,
+    plan: &Plan,
+    inputs: &[(&str, Image)],
+    region: Rect,
+    threads: &dyn Threads,
+) -> Image {
+    let windows = plan.windows(region);
+    let mut parts: Vec<(&str, Image)> = Vec::new();
+    for port in plan.inputs() {
+        let window = windows[port.image.index()];
+        if let Some((name, image)) = inputs.iter().find(|(name, _)| *name == port.name)
+            && !window.is_empty()
+        {
+            parts.push((name, image.crop(window).expect("the picture holds every window of its plan")));
+        }
+    }
+    let borrowed: Vec<(&str, &Image)> = parts.iter().map(|(name, image)| (*name, image)).collect();
+    match executor.run(plan, &borrowed, region, threads, Control::default()) {
+        Ok(mut images) => images.swap_remove(0),
+        Err(e) => panic!("cannot run: {e}"),
+    }
+}
+
+/// The whole first output of a plan.
+///
+/// # Panics
+/// When the executor refuses.
+pub fn whole(plan: &Plan, inputs: &[(&str, Image)]) -> Image {
+    let [width, height] = plan.size();
+    region(&mut CpuExecutor::new(), plan, inputs, Rect::of_size(width, height), pool())
+}
+
+/// A graph on one colour picture, whole.
+///
+/// # Panics
+/// When it cannot be planned or run.
+pub fn graph(graph: &Graph, request: Request, color: &Image) -> Image {
+    whole(planned(graph, request).plan(), &[("color", color.clone())])
+}
+
+/// A graph of one node on one colour picture in sRGB, with parameters as a person writes them.
+///
+/// # Panics
+/// For unknown names and values, and as [`graph()`].
+pub fn node(id: &str, params: &[(&str, &str)], color: &Image) -> Image {
+    let single = single(id, params);
+    graph(&single, Request::new(color.width(), color.height()), color)
+}
+
+/// A graph of one node with parameters as a person writes them.
+///
+/// # Panics
+/// For unknown names and values.
+pub fn single(id: &str, params: &[(&str, &str)]) -> Graph {
+    let build = || -> isophote::Result<Graph> {
+        let mut graph = Graph::single(id)?;
+        let node = graph.node(0)?;
+        for (param, value) in params {
+            graph.set_text(node, param, value)?;
+        }
+        Ok(graph)
+    };
+    match build() {
+        Ok(graph) => graph,
+        Err(e) => panic!("{e}"),
+    }
+}
+
+/// The calling thread as [`Threads`].
+pub static CALLING: CallingThread = CallingThread;

@@ -1,0 +1,224 @@
+//! A part of a picture computed alone is the same part of the whole, bit for bit on the CPU, whatever
+//! the threads; other instruction sets differ by rounding only; a proxy looks like the full frame.
+
+use isophote::registry;
+use isophote::request::Planned;
+use isophote::spec::{ImageKind, NodeSpec};
+use isophote::{Request, Value};
+use isophote_engine::cpu::{CallingThread, CpuExecutor, Pool, Threads};
+use isophote_engine::fearless_simd::Level;
+use isophote_engine::{Image, Plan, Rect, Support};
+use isophote_tests::cases::{self, Setting};
+use isophote_tests::compare::{distance, psnr};
+use isophote_tests::pictures::{self, Kind};
+use isophote_tests::{run, sweep};
+
+const SIZE: [u32; 2] = [61, 37];
+
+/// Odd offsets, odd widths, single pixels, whole rows and columns, all four corners.
+const TILES: [[i32; 4]; 12] = [
+    [13, 5, 42, 30],
+    [17, 11, 24, 36],
+    [0, 0, 1, 1],
+    [60, 36, 61, 37],
+    [30, 18, 31, 19],
+    [0, 7, 61, 8],
+    [29, 0, 30, 37],
+    [0, 0, 19, 13],
+    [45, 23, 61, 37],
+    [1, 20, 10, 37],
+    [52, 0, 61, 3],
+    [8, 8, 16, 16],
+];
+
+/// Multiply-adds of one plan that this test spends at most.
+const COST_LIMIT: f64 = 4e8;
+
+struct Run {
+    label: String,
+    planned: Planned,
+    inputs: Vec<(&'static str, Image)>,
+}
+
+/// Every node with several parameter sets, pictures and guides.
+fn runs(size: [u32; 2]) -> Vec<Run> {
+    let mut all = Vec::new();
+    for spec in registry::nodes() {
+        for (index, setting) in cases::settings(spec, 3).into_iter().enumerate() {
+            let kind = Kind::ALL[(index + 2) % Kind::ALL.len()];
+            let wired = cases::has_optional_field(spec) && index % 2 == 1;
+            let run = one(spec, &setting, kind, wired, cases::has_guides(spec) && index % 3 == 1, size);
+            if cost(run.planned.plan()) < COST_LIMIT {
+                all.push(run);
+            }
+        }
+    }
+    all
+}
+
+fn one(
+    spec: &'static NodeSpec,
+    setting: &Setting,
+    kind: Kind,
+    wired: bool,
+    guides: bool,
+    size: [u32; 2],
+) -> Run {
+    let mut setup = cases::setup(spec, wired);
+    setting.apply(&mut setup.graph, setup.node);
+    let planned = run::planned(&setup.graph, cases::request(kind, size[0], size[1], guides));
+    let names = ["color", "normal", "depth", "object_id"];
+    let inputs = names.into_iter().map(|n| (n, sweep::input(n, kind, size))).collect();
+    Run { label: format!("{} ({}) {kind:?} guides={guides}", spec.id, setting.label), planned, inputs }
+}
+
+fn cost(plan: &Plan) -> f64 {
+    let [w, h] = plan.size();
+    plan.passes().iter().map(|p| (p.kernel.cost)(&p.params)).sum::<f64>() * f64::from(w * h)
+}
+
+fn equal(a: &Image, b: &Image) -> bool {
+    a.window() == b.window() && a.data().iter().zip(b.data()).all(|(a, b)| a.to_bits() == b.to_bits())
+}
+
+#[test]
+fn a_tile_is_the_same_part_of_the_full_frame_bit_for_bit() {
+    let mut wrong = Vec::new();
+    let mut compared = 0;
+    for run in runs(SIZE) {
+        let plan = run.planned.plan();
+        if plan.support() == Support::Global {
+            continue;
+        }
+        let full = run::whole(plan, &run.inputs);
+        let mut executor = CpuExecutor::new();
+        for [x0, y0, x1, y1] in TILES {
+            let tile = Rect { x0, y0, x1, y1 };
+            let alone = run::region(&mut executor, plan, &run.inputs, tile, &CallingThread);
+            compared += 1;
+            if !equal(&alone, &full.crop(tile).unwrap()) {
+                let (worst, _) = distance(&alone, &full.crop(tile).unwrap());
+                wrong.push(format!("{} {tile:?} differs by up to {worst:e}", run.label));
+                break;
+            }
+        }
+    }
+    println!("{compared} tiles compared");
+    assert!(compared > TILES.len() && wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let pools: Vec<Pool> = [1, 2, 3, 7].into_iter().map(|n| Pool::new(n).unwrap()).collect();
+    let mut wrong = Vec::new();
+    for run in runs(SIZE).into_iter().step_by(2) {
+        let plan = run.planned.plan();
+        let all = Rect::of_size(SIZE[0], SIZE[1]);
+        let mut executor = CpuExecutor::new();
+        let reference = run::region(&mut executor, plan, &run.inputs, all, &CallingThread);
+        for pool in &pools {
+            let other = run::region(&mut executor, plan, &run.inputs, all, pool);
+            if !equal(&reference, &other) {
+                wrong.push(format!("{} differs with {} threads", run.label, pool.count()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+/// Every instruction set that this machine can run.
+fn levels() -> Vec<(&'static str, Level)> {
+    #[cfg_attr(not(target_arch = "x86_64"), allow(unused_mut))]
+    let mut levels = vec![("baseline", Level::baseline())];
+    #[cfg(target_arch = "x86_64")]
+    {
+        let best = Level::new();
+        levels.extend(best.as_sse4_2().map(|l| ("SSE4.2", Level::Sse4_2(l))));
+        levels.extend(best.as_avx2().map(|l| ("AVX2", Level::Avx2(l))));
+        levels.extend(best.as_avx512().map(|l| ("AVX-512", Level::Avx512(l))));
+    }
+    levels
+}
+
+#[test]
+fn instruction_sets_differ_by_rounding_only() {
+    let best = Level::new();
+    let mut wrong = Vec::new();
+    for (name, level) in levels() {
+        let mut worst = (0.0, String::new());
+        for spec in registry::nodes() {
+            let default = &cases::settings(spec, 0)[0];
+            let run = one(spec, default, Kind::Steps, false, cases::has_guides(spec), SIZE);
+            let all = Rect::of_size(SIZE[0], SIZE[1]);
+            let by = |level| {
+                let mut executor = CpuExecutor::with_level(level);
+                run::region(&mut executor, run.planned.plan(), &run.inputs, all, run::pool())
+            };
+            let (here, there) = (by(best), by(level));
+            // A stream line or a threshold may turn on the last bit; few pixels may.
+            let scale = here.data().iter().fold(1e-3f32, |m, v| m.max(v.abs()));
+            let far = here.data().iter().zip(there.data()).filter(|(a, b)| (*a - *b).abs() > 2e-3 * scale);
+            let share = far.count() as f64 / here.data().len() as f64;
+            if share > worst.0 {
+                worst = (share, spec.id.to_owned());
+            }
+            if share > 0.01 || there.data().iter().any(|v| !v.is_finite()) {
+                wrong.push(format!("{}: {share:.4} of the values differ on {name}", spec.id));
+            }
+        }
+        println!("{name}: worst share of differing values {:.5} {}", worst.0, worst.1);
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+/// Means of 2 x 2 pixels.
+fn halved(image: &Image) -> Image {
+    let channels = image.channels() as usize;
+    let (w, h) = (image.width() / 2, image.height() / 2);
+    let mut data = Vec::new();
+    for y in 0..h as i32 {
+        for x in 0..w as i32 {
+            for c in 0..channels {
+                let at = |dx: i32, dy: i32| image.pixel(2 * x + dx, 2 * y + dy)[c];
+                data.push(0.25 * (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1)));
+            }
+        }
+    }
+    Image::from_vec(w, h, image.channels(), data).unwrap()
+}
+
+#[test]
+fn a_proxy_looks_like_the_full_frame() {
+    let picture = pictures::scenery(256, 192);
+    let small = halved(&picture);
+    let mut wrong = Vec::new();
+    for spec in registry::nodes() {
+        // Tensors change with the gradient's scale, and views of them show noise that is not scaled.
+        let takes_color = spec.inputs.iter().any(|p| p.kind == ImageKind::Color && !p.optional);
+        if spec.output.kind == ImageKind::Tensor || !takes_color {
+            continue;
+        }
+        let at = |image: &Image, scale: f32, values: &[(&str, Value)]| {
+            let mut setup = cases::setup(spec, false);
+            for (id, value) in values {
+                setup.graph.set(setup.node, id, *value).unwrap();
+            }
+            let request = Request { scale, ..Request::new(image.width(), image.height()) };
+            let planned = run::planned(&setup.graph, request);
+            run::whole(planned.plan(), &[("color", image.clone())])
+        };
+        let full = halved(&at(&picture, 1.0, &[]));
+        let proxy = at(&small, 0.5, &[]);
+        let unscaled = at(&small, 1.0, &[]);
+        let (close, far) = (psnr(&full, &proxy), psnr(&full, &unscaled));
+        println!("{:28} proxy {close:5.1} dB, without scaling {far:5.1} dB", spec.id);
+        if close < 20.0 {
+            wrong.push(format!("{}: a proxy is only {close:.1} dB like the full frame", spec.id));
+        }
+        let has_lengths = spec.params().any(|p| p.unit == isophote::spec::Unit::Pixels);
+        if has_lengths && close < far {
+            wrong.push(format!("{}: a proxy is better without scaling its lengths ({far:.1} dB)", spec.id));
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
