@@ -1,4 +1,5 @@
-// The sky behind everything, as one triangle over the whole picture.
+// The sky behind everything, as one triangle over the whole picture. Below the horizon it fades to a pale
+// ground, against which dark and light objects both stand out.
 
 struct Background {
     @builtin(position) clip: vec4f,
@@ -16,5 +17,8 @@ fn background_vertex(@builtin(vertex_index) index: u32) -> Background {
 
 @fragment
 fn background_fragment(in: Background) -> @location(0) vec4f {
-    return vec4f(sky(normalize(in.ray), 0.6), 1.0);
+    let y = normalize(in.ray).y;
+    let above = mix(frame.horizon.rgb, frame.zenith.rgb, smoothstep(-0.05, 0.9, y));
+    let below = mix(frame.horizon.rgb, frame.ground.rgb, 0.45);
+    return vec4f(mix(above, below, smoothstep(0.1, -0.45, y)), 1.0);
 }

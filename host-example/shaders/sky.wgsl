@@ -1,5 +1,5 @@
 // The surroundings: a gradient from the ground over the horizon to the zenith, without any texture. It
-// lights diffuse surfaces, is mirrored by glossy ones, and is the background.
+// lights diffuse surfaces and is mirrored by glossy ones.
 
 // Radiance from a direction; blur 0 is the sky itself, 1 its mean over most of a hemisphere.
 fn sky(direction: vec3f, blur: f32) -> vec3f {

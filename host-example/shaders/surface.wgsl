@@ -28,9 +28,10 @@ struct SurfaceInput {
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
     @location(2) tangent: vec4f,
-    @location(3) uv0: vec2f,
-    @location(4) uv1: vec2f,
-    @location(5) color: vec4f,
+    // At edges the middle of a pixel may lie outside of the triangle, where its texture ends.
+    @location(3) @interpolate(perspective, centroid) uv0: vec2f,
+    @location(4) @interpolate(perspective, centroid) uv1: vec2f,
+    @location(5) @interpolate(perspective, centroid) color: vec4f,
 }
 
 @vertex
@@ -190,8 +191,9 @@ fn surface_fragment(in: SurfaceInput, @builtin(front_facing) front: bool) -> @lo
 
         color = emissive + punctual(s, in.position);
         if frame.sun_color.w > 0.5 && dot(normal, frame.sun_direction.xyz) > 0.0 {
-            // Where the surface itself turns away, a bent normal does not bring the sun back.
-            let facing = smoothstep(-0.05, 0.1, dot(smooth_normal, frame.sun_direction.xyz));
+            // Where the surface itself turns away, a bent normal does not bring the sun back. Fading early also
+            // hides that coarse meshes shade themselves facet by facet where the light grazes them.
+            let facing = smoothstep(0.0, 0.25, dot(smooth_normal, frame.sun_direction.xyz));
             color += reflected(s, frame.sun_direction.xyz) * frame.sun_color.rgb * facing
                 * sunlight(in.position, smooth_normal);
         }

@@ -48,6 +48,12 @@ pub struct RenderArgs {
     /// Frames per second of the animation.
     #[arg(long, value_name = "N", default_value_t = 24.0)]
     pub fps: f32,
+    /// Degrees by which the default camera and turntables are turned to the right around the scene.
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub azimuth: f32,
+    /// Height of the default camera and turntables above the horizon in degrees, below 90.
+    #[arg(long, value_name = "DEGREES", default_value_t = 16.0, allow_negative_numbers = true)]
+    pub elevation: f32,
     /// Also writes normal, depth, object_id and motion of each frame as EXR into this folder.
     #[arg(long, value_name = "DIR")]
     pub aov: Option<PathBuf>,

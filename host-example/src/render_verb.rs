@@ -15,7 +15,7 @@ use crate::render::look::Look;
 use crate::render::readback::Readback;
 use crate::render::targets::Target;
 use crate::scene::Scene;
-use crate::scene::camera::{self, Orbit, View};
+use crate::scene::camera::{self, Direction, Orbit, View};
 use crate::scene::pose::Pose;
 
 /// Runs the verb.
@@ -33,6 +33,9 @@ pub fn run(args: &RenderArgs) -> Result<()> {
             "must be finite, and frames per second above 0",
             "use 24 and 0",
         ));
+    }
+    if !args.azimuth.is_finite() || !args.elevation.is_finite() {
+        return Err(Error::input("--azimuth, --elevation", "must be finite", "give angles in degrees"));
     }
     let scene = Scene::load(&args.scene, args.texture.as_deref())?;
     for warning in &scene.warnings {
@@ -101,10 +104,14 @@ enum Camera {
 impl Camera {
     fn choose(args: &RenderArgs, scene: &Scene) -> Self {
         let aspect = args.size.0 as f32 / args.size.1 as f32;
+        let direction = Direction {
+            azimuth: Direction::default().azimuth + args.azimuth.to_radians(),
+            elevation: args.elevation.to_radians(),
+        };
         match camera::file_camera(scene) {
-            _ if args.turntable => Self::Turntable(Orbit::turntable(scene, aspect)),
-            Some(node) => Self::File(node, Orbit::framing(scene, aspect)),
-            None => Self::Framing(Orbit::framing(scene, aspect)),
+            _ if args.turntable => Self::Turntable(Orbit::turntable(scene, aspect, direction)),
+            Some(node) => Self::File(node, Orbit::framing(scene, aspect, direction)),
+            None => Self::Framing(Orbit::framing(scene, aspect, direction)),
         }
     }
 

@@ -31,10 +31,10 @@ impl Default for Look {
         Self {
             exposure: 1.0,
             sun_direction: Vec3::new(-0.25, 0.85, 0.75).normalize(),
-            sun_color: Some(Vec3::new(1.0, 0.95, 0.87) * 1.15),
-            zenith: Vec3::new(0.26, 0.36, 0.50),
-            horizon: Vec3::new(0.62, 0.67, 0.72),
-            ground: Vec3::new(0.17, 0.155, 0.14),
+            sun_color: Some(Vec3::new(1.0, 0.95, 0.87) * 0.95),
+            zenith: Vec3::new(0.19, 0.30, 0.47),
+            horizon: Vec3::new(0.56, 0.62, 0.68),
+            ground: Vec3::new(0.15, 0.14, 0.125),
             light_scale: 1.0,
         }
     }
@@ -43,7 +43,7 @@ impl Default for Look {
 /// The light that files with lights of their own should put on the middle of the scene, in multiples of what
 /// makes white white; outside of this range they are scaled.
 const LEAST_LIGHT: f32 = 0.7;
-const MOST_LIGHT: f32 = 1.6;
+const MOST_LIGHT: f32 = 1.4;
 
 impl Look {
     /// The default look, or, where the file has lights, those: its first directional light is the sun, and

@@ -88,6 +88,22 @@ pub struct Orbit {
     pub vertical_fov: f32,
 }
 
+/// Where an orbit looks from, in radians as in [`Orbit`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Direction {
+    /// About the vertical.
+    pub azimuth: f32,
+    /// Above the horizon.
+    pub elevation: f32,
+}
+
+impl Default for Direction {
+    /// A three-quarter view from slightly above.
+    fn default() -> Self {
+        Self { azimuth: 0.55, elevation: 0.28 }
+    }
+}
+
 /// Steepest elevation; straight up has no defined azimuth.
 const STEEPEST: f32 = 1.55;
 
@@ -95,17 +111,17 @@ const STEEPEST: f32 = 1.55;
 const MARGIN: f32 = 0.06;
 
 impl Orbit {
-    /// A three-quarter view that frames the whole scene in a picture of this aspect (width over height).
-    pub fn framing(scene: &Scene, aspect: f32) -> Self {
-        let mut orbit = Self::default_angles(scene.bounds.center());
+    /// A view that frames the whole scene in a picture of this aspect (width over height).
+    pub fn framing(scene: &Scene, aspect: f32, direction: Direction) -> Self {
+        let mut orbit = Self::towards(scene.bounds.center(), direction);
         orbit.fit(&scene.bounds.extremes, aspect);
         orbit
     }
 
     /// Like [`Orbit::framing`], but the scene stays in frame at every azimuth.
-    pub fn turntable(scene: &Scene, aspect: f32) -> Self {
+    pub fn turntable(scene: &Scene, aspect: f32, direction: Direction) -> Self {
         let center = scene.bounds.center();
-        let mut orbit = Self::default_angles(center);
+        let mut orbit = Self::towards(center, direction);
         let swept: Vec<Vec3> = scene
             .bounds
             .extremes
@@ -123,8 +139,10 @@ impl Orbit {
         orbit
     }
 
-    fn default_angles(target: Vec3) -> Self {
-        Self { target, distance: 1.0, azimuth: 0.55, elevation: 0.28, vertical_fov: 0.6 }
+    fn towards(target: Vec3, direction: Direction) -> Self {
+        let Direction { azimuth, elevation } = direction;
+        let elevation = elevation.clamp(-STEEPEST, STEEPEST);
+        Self { target, distance: 1.0, azimuth, elevation, vertical_fov: 0.6 }
     }
 
     /// This orbit with another azimuth added, in radians.

@@ -18,7 +18,10 @@ use super::{
 use crate::error::{Error, Result};
 
 /// Faces that meet at more than this keep a sharp edge between them when normals are averaged.
-const CREASE: f32 = 40.0 * std::f32::consts::PI / 180.0;
+const CREASE: f32 = 60.0 * std::f32::consts::PI / 180.0;
+
+/// Colour of surfaces that say nothing about it.
+const PLAIN: Vec3 = Vec3::new(0.45, 0.44, 0.42);
 
 /// Roughness of surfaces that say nothing about it.
 const DEFAULT_ROUGHNESS: f32 = 0.55;
@@ -94,7 +97,7 @@ fn empty_scene(warnings: Vec<String>) -> Scene {
 /// OBJ says nothing reliable about the side a face is seen from, so both are shown.
 fn plain_material() -> Material {
     Material {
-        base_color: Vec4::new(0.6, 0.6, 0.6, 1.0),
+        base_color: PLAIN.extend(1.0),
         metallic: 0.0,
         roughness: DEFAULT_ROUGHNESS,
         double_sided: true,
@@ -154,7 +157,7 @@ impl Loader<'_> {
         let diffuse = match source.diffuse {
             Some(kd) if base_color_texture.is_none() || kd != [0.0; 3] => Vec3::from(kd),
             _ if base_color_texture.is_some() => Vec3::ONE,
-            _ => Vec3::splat(0.6),
+            _ => PLAIN,
         };
         let opacity = source.dissolve.unwrap_or(1.0).clamp(0.0, 1.0);
         let emissive = source.emissive.map_or(Vec3::ZERO, |ke| Vec3::from(ke).max(Vec3::ZERO));

@@ -182,11 +182,21 @@ fn moves_geometry(scene: &Scene, animation: &animation::Animation) -> bool {
     })
 }
 
-/// The 26 directions from the middle of a cube to its faces, edges and corners.
+/// Directions in which extremes are kept: the axes, so that flat scenes keep their corners, and an even
+/// spiral over the sphere.
 fn fan() -> Vec<Vec3> {
-    (0..27)
-        .map(|i| Vec3::new((i % 3) as f32, (i / 3 % 3) as f32, (i / 9) as f32) - 1.0)
-        .filter(|d| *d != Vec3::ZERO)
-        .map(Vec3::normalize)
-        .collect()
+    const SPIRAL: usize = 90;
+    let golden = std::f32::consts::PI * (3.0 - 5.0f32.sqrt());
+    let spiral = (0..SPIRAL).map(|i| {
+        let y = 1.0 - (2 * i + 1) as f32 / SPIRAL as f32;
+        let (sine, cosine) = (golden * i as f32).sin_cos();
+        let radius = (1.0 - y * y).sqrt();
+        Vec3::new(radius * cosine, y, radius * sine)
+    });
+    let corners = (0..8).map(|i| {
+        let sign = |bit: usize| if i >> bit & 1 == 0 { 1.0 } else { -1.0 };
+        Vec3::new(sign(0), sign(1), sign(2)).normalize()
+    });
+    let axes = [Vec3::X, Vec3::Y, Vec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
+    axes.chain(corners).chain(spiral).collect()
 }
