@@ -11,7 +11,10 @@ pub mod look;
 mod pipelines;
 pub mod readback;
 pub mod targets;
+#[cfg(test)]
+mod tests;
 mod textures;
+mod tone_map;
 mod uniforms;
 mod upload;
 
@@ -20,8 +23,9 @@ use glam::{Mat4, Vec3};
 use self::layouts::{Layouts, bind_buffer, bind_sampler, bind_view};
 use self::look::Look;
 use self::pipelines::{Pass, Pipelines, Variant};
-use self::targets::{COLOR_FORMAT, DEPTH_FORMAT, Targets};
+use self::targets::{DEPTH_FORMAT, Targets};
 use self::textures::TextureStore;
+use self::tone_map::ToneMap;
 use self::uniforms::{FrameBlock, InstanceBlock, LightBlock};
 use self::upload::GpuPrimitive;
 use crate::error::Result;
@@ -59,13 +63,6 @@ struct Buffers {
     joints: wgpu::Buffer,
     weights: wgpu::Buffer,
     lights: wgpu::Buffer,
-    bind_group: wgpu::BindGroup,
-}
-
-struct ToneMap {
-    layout: wgpu::BindGroupLayout,
-    pipeline: wgpu::RenderPipeline,
-    settings: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
 }
 
@@ -225,7 +222,7 @@ impl Renderer {
         write(&self.buffers.joints, bytemuck::cast_slice(&scratch.joints));
         write(&self.buffers.weights, bytemuck::cast_slice(&scratch.weights));
         write(&self.buffers.lights, bytemuck::cast_slice(&scratch.lights));
-        write(&self.tone_map.settings, bytemuck::bytes_of(&[look.exposure, 0.0, 0.0, 0.0]));
+        self.tone_map.set_exposure(&self.queue, look.exposure);
         frame
     }
 
@@ -442,58 +439,4 @@ fn make_shadow_map(device: &wgpu::Device, layouts: &Layouts) -> (wgpu::TextureVi
         entries: &[bind_view(0, &view), bind_sampler(1, &sampler)],
     });
     (view, group)
-}
-
-impl ToneMap {
-    fn new(device: &wgpu::Device, targets: &Targets) -> Self {
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("tone map"),
-            entries: &[
-                layouts::texture(0, wgpu::TextureSampleType::Float { filterable: false }),
-                layouts::uniform(1, wgpu::ShaderStages::FRAGMENT),
-            ],
-        });
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("tone map"),
-            source: wgpu::ShaderSource::Wgsl(include_str!("../../shaders/tone_map.wgsl").into()),
-        });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("tone map"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline =
-            pipelines::full_screen(device, &pipeline_layout, &module, "tone_map", COLOR_FORMAT, None, 1);
-        let settings = upload::filled_buffer(device, "tone map", &[0; 16], wgpu::BufferUsages::UNIFORM);
-        let bind_group = Self::group(device, &layout, &settings, targets);
-        Self { layout, pipeline, settings, bind_group }
-    }
-
-    fn group(
-        device: &wgpu::Device,
-        layout: &wgpu::BindGroupLayout,
-        settings: &wgpu::Buffer,
-        targets: &Targets,
-    ) -> wgpu::BindGroup {
-        device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("tone map"),
-            layout,
-            entries: &[bind_view(0, &targets.radiance.view), bind_buffer(1, settings)],
-        })
-    }
-
-    fn bind(&mut self, device: &wgpu::Device, targets: &Targets) {
-        self.bind_group = Self::group(device, &self.layout, &self.settings, targets);
-    }
-
-    fn encode(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets) {
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("tone map"),
-            color_attachments: &[Some(layouts::cleared(&targets.color.view, wgpu::Color::BLACK))],
-            ..Default::default()
-        });
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.bind_group, &[]);
-        pass.draw(0..3, 0..1);
-    }
 }

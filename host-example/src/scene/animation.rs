@@ -74,8 +74,17 @@ impl Channel {
         if next == 0 || next > last {
             let key = if next == 0 { 0 } else { last };
             out.copy_from_slice(self.value(key));
-            return;
+        } else {
+            self.interpolate(next, time, out);
         }
+        if self.property == Property::Rotation {
+            let unit = quaternion(out);
+            out.copy_from_slice(&unit.to_array());
+        }
+    }
+
+    /// The value at a time between two keys, the later of which is `next`.
+    fn interpolate(&self, next: usize, time: f32, out: &mut [f32]) {
         let (k, span) = (next - 1, self.times[next] - self.times[next - 1]);
         let t = (time - self.times[k]) / span;
         match self.interpolation {
@@ -106,10 +115,6 @@ impl Channel {
                         + basis[3] * in_tangent[i];
                 }
             }
-        }
-        if self.property == Property::Rotation {
-            let unit = quaternion(out);
-            out.copy_from_slice(&unit.to_array());
         }
     }
 
@@ -160,5 +165,84 @@ impl Animation {
     pub fn looped(&self, time: f32) -> f32 {
         let duration = self.duration();
         if duration > 0.0 { time.rem_euclid(duration) } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn channel(property: Property, interpolation: Interpolation, times: &[f32], values: &[f32]) -> Channel {
+        let width = if property == Property::Rotation { 4 } else { 3 };
+        let channel = Channel {
+            node: 0,
+            property,
+            interpolation,
+            times: times.to_vec(),
+            values: values.to_vec(),
+            width,
+        };
+        channel.validate().unwrap();
+        channel
+    }
+
+    fn at(channel: &Channel, time: f32) -> Vec<f32> {
+        let mut out = vec![0.0; channel.width];
+        channel.sample(time, &mut out);
+        out
+    }
+
+    #[test]
+    fn steps_and_lines() {
+        let values = [0.0, 0.0, 0.0, 2.0, 4.0, 8.0];
+        let step = channel(Property::Scale, Interpolation::Step, &[1.0, 3.0], &values);
+        let line = channel(Property::Scale, Interpolation::Linear, &[1.0, 3.0], &values);
+        for (time, stepped, lined) in [
+            (0.0, 0.0, 0.0),
+            (1.0, 0.0, 0.0),
+            (2.0, 0.0, 4.0),
+            (2.999, 0.0, 7.996),
+            (3.0, 8.0, 8.0),
+            (9.0, 8.0, 8.0),
+        ] {
+            assert_eq!(at(&step, time)[2], stepped);
+            assert!((at(&line, time)[2] - lined).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn splines_meet_their_keys_with_their_slopes() {
+        // A cubic is reproduced exactly: x(t) = t^3 over [0, 2], with slopes 0 and 12 per second.
+        let key =
+            |slope_in: f32, value: f32, slope_out: f32| [[slope_in; 3], [value; 3], [slope_out; 3]].concat();
+        let values = [key(99.0, 0.0, 0.0), key(12.0, 8.0, 99.0)].concat();
+        let spline = channel(Property::Translation, Interpolation::CubicSpline, &[0.0, 2.0], &values);
+        for time in [0.0f32, 0.3, 1.0, 1.7, 2.0] {
+            assert!((at(&spline, time)[0] - time.powi(3)).abs() < 1e-5);
+        }
+        assert_eq!(at(&spline, 5.0), [8.0; 3], "the value, not a tangent, is kept after the end");
+    }
+
+    #[test]
+    fn rotations_take_the_shorter_arc_at_constant_speed() {
+        let start = Quat::IDENTITY;
+        let end = -Quat::from_rotation_y(2.0);
+        let values = [start.to_array(), end.to_array()].concat();
+        let turn = channel(Property::Rotation, Interpolation::Linear, &[0.0, 1.0], &values);
+        for t in [0.25, 0.5, 0.75] {
+            let angle = quaternion(&at(&turn, t)).angle_between(start);
+            assert!((angle - 2.0 * t).abs() < 1e-3, "{angle} at {t}");
+        }
+        let zero = channel(Property::Rotation, Interpolation::Linear, &[0.0], &[0.0; 4]);
+        assert_eq!(at(&zero, 0.0), [0.0, 0.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn time_loops() {
+        let line = channel(Property::Scale, Interpolation::Linear, &[0.0, 4.0], &[0.0; 6]);
+        let animation = Animation { name: String::new(), channels: vec![line] };
+        assert_eq!(animation.duration(), 4.0);
+        assert_eq!((animation.looped(5.0), animation.looped(-1.0)), (1.0, 3.0));
+        assert_eq!(Animation::default().looped(3.0), 0.0);
     }
 }

@@ -225,3 +225,65 @@ impl Orbit {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec4;
+
+    #[test]
+    fn points_fill_the_picture_and_stay_in_it() {
+        let points: Vec<Vec3> = (0..8)
+            .map(|i| Vec3::new((i & 1) as f32 * 9.0, (i >> 1 & 1) as f32 * 3.0, (i >> 2) as f32) - 40.0)
+            .collect();
+        for aspect in [0.3, 1.0, 1.78, 4.0] {
+            for azimuth in [0.0, 0.55, 2.0] {
+                let mut orbit =
+                    Orbit::towards(Vec3::new(4.5, 1.5, 0.5) - 40.0, Direction { azimuth, elevation: 0.28 });
+                orbit.fit(&points, aspect);
+                let view = orbit.view();
+                let clip = view.projection_matrix(aspect) * view.world_to_view;
+                let reach = points.iter().map(|p| {
+                    let q = clip * p.extend(1.0);
+                    assert!(q.w > 0.0);
+                    (q.x / q.w).abs().max((q.y / q.w).abs())
+                });
+                let most = reach.fold(0.0, f32::max);
+                assert!(
+                    (1.0 - MARGIN - 0.02..=1.0 - MARGIN + 1e-3).contains(&most),
+                    "{most} at {aspect}, {azimuth}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn depth_is_reversed() {
+        let depth = |projection: Projection, z: f32| {
+            let view = View { world_to_view: Mat4::IDENTITY, projection };
+            let q = view.projection_matrix(1.5) * Vec4::new(0.0, 0.0, z, 1.0);
+            q.z / q.w
+        };
+        let perspective = Projection::Perspective { vertical_fov: 1.0, near: 0.1 };
+        assert!((depth(perspective, -0.1) - 1.0).abs() < 1e-6);
+        assert!(depth(perspective, -1e6) < 1e-6);
+        let parallel = Projection::Orthographic { half_height: 1.0, near: 0.5, far: 4.0 };
+        assert!((depth(parallel, -0.5) - 1.0).abs() < 1e-6);
+        assert!(depth(parallel, -4.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn an_orbit_can_be_steered() {
+        let mut orbit = Orbit::towards(Vec3::ZERO, Direction { azimuth: 0.0, elevation: 0.0 });
+        assert!(orbit.view().eye().abs_diff_eq(Vec3::Z, 1e-6));
+        orbit.rotate(std::f32::consts::FRAC_PI_2, 0.0);
+        assert!(orbit.view().eye().abs_diff_eq(Vec3::X, 1e-6));
+        orbit.rotate(0.0, 100.0);
+        assert!(orbit.view().world_to_view.is_finite() && orbit.elevation < std::f32::consts::FRAC_PI_2);
+        orbit.zoom(2.0);
+        assert_eq!(orbit.distance, 2.0);
+        orbit.elevation = 0.0;
+        orbit.pan(0.0, 1.0);
+        assert!((orbit.target.y - 4.0 * 0.3f32.tan()).abs() < 1e-5);
+    }
+}

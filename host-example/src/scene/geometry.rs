@@ -65,37 +65,46 @@ pub fn flat_normals(primitive: &mut Primitive) {
     }
 }
 
-/// Smooth normals: the area-weighted mean of the faces around a position, leaving out those that meet this
-/// face at more than `crease` radians, so that the sharp edges of machined parts stay sharp.
+/// Smooth normals: the mean of the faces around a position, weighted by their angles there so that it does
+/// not matter how polygons were cut into triangles. Faces that meet this one at more than `crease` radians
+/// are left out, so that the sharp edges of machined parts stay sharp.
 pub fn smooth_normals(primitive: &mut Primitive, crease: f32) {
-    let position_of = |primitive: &Primitive, index: u32| primitive.vertices[index as usize].position;
-    let faces = primitive.indices.len() / 3;
-    // Vertices that differ only in texture coordinates still share their surface, hence the key.
-    let mut around: HashMap<[u32; 3], Vec<u32>> = HashMap::new();
-    let mut areas = Vec::with_capacity(faces);
-    for (face, corners) in primitive.indices.as_chunks::<3>().0.iter().enumerate() {
-        let [a, b, c] = corners.map(|i| Vec3::from(position_of(primitive, i)));
-        areas.push((b - a).cross(c - a));
-        for &corner in corners {
-            let key = position_of(primitive, corner).map(|x| (x + 0.0).to_bits());
-            around.entry(key).or_default().push(face as u32);
+    let position =
+        |primitive: &Primitive, index: u32| Vec3::from(primitive.vertices[index as usize].position);
+    // Vertices that differ only in texture coordinates still share their surface, hence the key. Adding 0
+    // makes one of the two zeros.
+    let key = |p: Vec3| (p + 0.0).to_array().map(f32::to_bits);
+    let mut around: HashMap<[u32; 3], Vec<(Vec3, f32)>> = HashMap::new();
+    let mut faces = Vec::with_capacity(primitive.indices.len() / 3);
+    for corners in primitive.indices.as_chunks::<3>().0 {
+        let [a, b, c] = corners.map(|i| position(primitive, i));
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        faces.push(normal);
+        for [p, q, r] in [[a, b, c], [b, c, a], [c, a, b]] {
+            let angle = corner_angle(p, q, r);
+            around.entry(key(p)).or_default().push((normal, angle));
         }
     }
     let cosine = crease.cos();
     let mut corner_normals = Vec::with_capacity(primitive.indices.len());
     for (slot, &corner) in primitive.indices.iter().enumerate() {
-        let own = areas[slot / 3].normalize_or_zero();
-        let key = position_of(primitive, corner).map(|x| (x + 0.0).to_bits());
-        let sum: Vec3 = around
-            .get(&key)
+        let own = faces[slot / 3];
+        let neighbours = around.get(&key(position(primitive, corner)));
+        let sum: Vec3 = neighbours
             .into_iter()
             .flatten()
-            .map(|&face| areas[face as usize])
-            .filter(|area| area.normalize_or_zero().dot(own) >= cosine)
+            .filter(|(normal, _)| normal.dot(own) >= cosine)
+            .map(|(normal, angle)| *normal * *angle)
             .sum();
         corner_normals.push(sum.normalize_or(own.normalize_or(Vec3::Z)));
     }
     weld_normals(primitive, &corner_normals);
+}
+
+/// Angle at `p` in a triangle; 0 where it has none.
+fn corner_angle(p: Vec3, q: Vec3, r: Vec3) -> f32 {
+    let angle = (q - p).angle_between(r - p);
+    if angle.is_finite() { angle } else { 0.0 }
 }
 
 /// Splits a vertex only where its corners disagree about the normal.
@@ -125,12 +134,10 @@ pub fn tangents(primitive: &mut Primitive, uv_set: u32) {
         for k in 0..3 {
             let [p, q, r] = [k, (k + 1) % 3, (k + 2) % 3]
                 .map(|i| Vec3::from(primitive.vertices[corners[i] as usize].position));
-            let angle = (q - p).angle_between(r - p);
-            if angle.is_finite() {
-                let sum = &mut sums[corners[k] as usize];
-                sum.0 += tangent * angle;
-                sum.1 += sign * angle;
-            }
+            let angle = corner_angle(p, q, r);
+            let sum = &mut sums[corners[k] as usize];
+            sum.0 += tangent * angle;
+            sum.1 += sign * angle;
         }
     }
     for (vertex, (sum, sign)) in primitive.vertices.iter_mut().zip(sums) {
@@ -190,5 +197,60 @@ fn duplicate(primitive: &mut Primitive, index: usize) {
     }
     for target in &mut primitive.morph_targets {
         target.push(target[index]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Vertex;
+
+    /// A square in the plane z = 0 seen from +Z, with U to the right and V down, or U mirrored.
+    fn square(mirrored: bool) -> Primitive {
+        let corner = |x: f32, y: f32| Vertex {
+            position: [x, y, 0.0],
+            uv0: [if mirrored { 1.0 - x } else { x }, 1.0 - y],
+            ..Vertex::default()
+        };
+        Primitive {
+            vertices: vec![corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)],
+            indices: vec![0, 1, 2, 0, 2, 3],
+            ..Primitive::default()
+        }
+    }
+
+    #[test]
+    fn tangents_follow_u_and_bitangents_point_up_the_image() {
+        for (mirrored, x, sign) in [(false, 1.0, 1.0), (true, -1.0, -1.0)] {
+            let mut primitive = square(mirrored);
+            tangents(&mut primitive, 0);
+            for vertex in &primitive.vertices {
+                assert_eq!(vertex.tangent, [x, 0.0, 0.0, sign]);
+                let bitangent = Vec3::from(vertex.normal).cross(Vec3::X * x) * sign;
+                assert_eq!(bitangent, Vec3::Y, "the image's up is +Y here");
+            }
+        }
+    }
+
+    #[test]
+    fn mirrored_halves_are_split() {
+        // Two triangles that share an edge whose texture is mirrored along it.
+        let mut primitive = square(false);
+        primitive.vertices[3].uv0 = primitive.vertices[1].uv0;
+        tangents(&mut primitive, 0);
+        assert_eq!(primitive.vertices.len(), 6);
+        let sign = |slot: usize| primitive.vertices[primitive.indices[slot] as usize].tangent[3];
+        assert_eq!([sign(0), sign(1), sign(2)], [1.0; 3]);
+        assert_eq!([sign(3), sign(4), sign(5)], [-1.0; 3]);
+    }
+
+    #[test]
+    fn incomplete_and_degenerate_triangles_are_dropped() {
+        assert_eq!(triangle_list(Topology::List, &[0, 1, 2, 3, 3, 4, 5, 6]), [0, 1, 2]);
+        assert_eq!(triangle_list(Topology::Strip, &[0, 1, 2, 3]), [0, 1, 2, 2, 1, 3]);
+        assert_eq!(triangle_list(Topology::Fan, &[0, 1, 2, 3]), [0, 1, 2, 0, 2, 3]);
+        for topology in [Topology::List, Topology::Strip, Topology::Fan] {
+            assert!(triangle_list(topology, &[]).is_empty());
+        }
     }
 }

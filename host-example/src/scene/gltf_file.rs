@@ -48,7 +48,7 @@ fn only_looks(extension: &str) -> bool {
 pub fn load(path: &Path) -> Result<Scene> {
     let bytes = fs::read(path).map_err(|e| Error::file(path, e, "give the path of a readable glTF file"))?;
     let malformed = |problem: String| Error::file(path, problem, "export the scene again");
-    let (document, blob, warnings) = parse(&bytes).map_err(malformed)?;
+    let Parsed { document, blob, warnings } = parse(&bytes).map_err(malformed)?;
     let buffers = read_buffers(path, &document, blob)?;
     let accessors = Accessors { buffers: &buffers };
     let mut scene = Scene {
@@ -75,8 +75,16 @@ pub fn load(path: &Path) -> Result<Scene> {
     Ok(scene)
 }
 
-/// The validated document, the binary chunk and warnings.
-fn parse(bytes: &[u8]) -> std::result::Result<(gltf::Document, Option<Vec<u8>>, Vec<String>), String> {
+/// What a file says, before any of its buffers is read.
+struct Parsed {
+    document: gltf::Document,
+    /// The binary chunk of a `.glb`.
+    blob: Option<Vec<u8>>,
+    warnings: Vec<String>,
+}
+
+/// Parses and validates.
+fn parse(bytes: &[u8]) -> std::result::Result<Parsed, String> {
     if bytes.starts_with(b"glTF") {
         let word = |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
         let length = word(8).filter(|_| bytes.len() >= 20).ok_or("is cut off within its header")?;
@@ -101,7 +109,7 @@ fn parse(bytes: &[u8]) -> std::result::Result<(gltf::Document, Option<Vec<u8>>, 
         }
     }
     validate(&root)?;
-    Ok((gltf::Document::from_json_without_validation(root), blob, warnings))
+    Ok(Parsed { document: gltf::Document::from_json_without_validation(root), blob, warnings })
 }
 
 fn validate(root: &json::Root) -> std::result::Result<(), String> {
@@ -112,6 +120,15 @@ fn validate(root: &json::Root) -> std::result::Result<(), String> {
             let known = primitive.attributes.get(&positions).is_none_or(|a| a.value() < root.accessors.len());
             if !known {
                 return Err(format!("mesh {index} names an accessor that does not exist"));
+            }
+        }
+    }
+    // Targets of animations are not part of it at all.
+    for (index, animation) in root.animations.iter().enumerate() {
+        for channel in &animation.channels {
+            let known = channel.target.node.value() < root.nodes.len();
+            if !known || channel.target.path == json::validation::Checked::Invalid {
+                return Err(format!("animation {index} has a target that does not exist"));
             }
         }
     }
