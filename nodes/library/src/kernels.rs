@@ -7,6 +7,7 @@
 
 pub mod colour_space;
 pub mod coverage;
+pub mod rows;
 pub mod stream_line;
 pub mod support;
 pub mod tensor_algebra;

@@ -15,6 +15,9 @@ macro_rules! nodes {
 }
 
 nodes! {
+    structure {
+        structure_tensor,
+    }
     smoothing {
         gaussian,
     }

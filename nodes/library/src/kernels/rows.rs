@@ -1,0 +1,105 @@
+//! Rings of rows for kernels that look at a small neighbourhood: each row is clamped to the edge,
+//! mapped once and kept channel by channel, ready for vectors that start at any column.
+
+use isophote_engine::View;
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
+use isophote_engine::math::load4;
+
+/// Columns of a strip. Bands are worked through in strips so that their rows stay in the first-level
+/// cache.
+pub const STRIP: i32 = 256;
+
+/// Rows y - radius ..= y + radius of a strip of columns, by channel.
+#[derive(Debug, Default)]
+pub struct Rows {
+    first: i32,
+    columns: usize,
+    len: usize,
+    count: usize,
+    channels: usize,
+    data: Vec<f32>,
+    scratch: Vec<f32>,
+}
+
+impl Rows {
+    /// Prepares for columns `x0..x1` with `radius` pixels on every side.
+    pub fn start(&mut self, x0: i32, x1: i32, radius: i32, channels: usize) {
+        self.first = x0 - radius;
+        self.columns = (x1 - x0 + 2 * radius) as usize;
+        // The last vector of the output and its neighbours to the right.
+        self.len = ((x1 - x0) as usize).next_multiple_of(8) + (2 * radius as usize).next_multiple_of(8);
+        self.count = 2 * radius as usize + 1;
+        self.channels = channels;
+        self.data.resize(self.len * self.count * channels, 0.0);
+    }
+
+    /// Values of one channel of a row, padding included; a multiple of eight.
+    pub fn stride(&self) -> usize {
+        self.len
+    }
+
+    /// One channel of row `y`, from `radius` pixels before the strip.
+    #[inline(always)]
+    pub fn row(&self, y: i32, channel: usize) -> &[f32] {
+        let start = (y.rem_euclid(self.count as i32) as usize * self.channels + channel) * self.len;
+        &self.data[start..start + self.len]
+    }
+
+    /// Takes in row `y` of a four-channel image, which replaces the oldest.
+    #[inline(always)]
+    pub fn load4<S: Simd>(
+        &mut self,
+        simd: S,
+        view: &View<'_>,
+        y: i32,
+        map: impl Fn([f32x8<S>; 4]) -> [f32x8<S>; 4],
+    ) {
+        let at = y.rem_euclid(self.count as i32) as usize * self.channels * self.len;
+        let last = self.first + self.columns as i32;
+        let source = view.padded_row(y, self.first, last, &mut self.scratch);
+        let target = &mut self.data[at..at + 4 * self.len];
+        for (i, block) in source.chunks(32).enumerate() {
+            let values = if block.len() == 32 {
+                load4(simd, block)
+            } else {
+                let mut padded = [0.0; 32];
+                padded[..block.len()].copy_from_slice(block);
+                load4(simd, &padded)
+            };
+            for (channel, values) in map(values).into_iter().enumerate() {
+                values.store_slice(&mut target[channel * self.len + 8 * i..][..8]);
+            }
+        }
+    }
+
+    /// Takes in row `y` of a one-channel image, which replaces the oldest.
+    #[inline(always)]
+    pub fn load1<S: Simd>(&mut self, simd: S, view: &View<'_>, y: i32, map: impl Fn(f32x8<S>) -> f32x8<S>) {
+        let at = y.rem_euclid(self.count as i32) as usize * self.channels * self.len;
+        let last = self.first + self.columns as i32;
+        let source = view.padded_row(y, self.first, last, &mut self.scratch);
+        let target = &mut self.data[at..at + self.len];
+        for (block, target) in source.chunks(8).zip(target.chunks_exact_mut(8)) {
+            let mut padded = [0.0; 8];
+            padded[..block.len()].copy_from_slice(block);
+            map(f32x8::from_slice(simd, &padded)).store_slice(target);
+        }
+    }
+}
+
+/// The strips of columns `x0..x1`.
+pub fn strips(x0: i32, x1: i32) -> impl Iterator<Item = (i32, i32)> {
+    (x0..x1).step_by(STRIP as usize).map(move |x| (x, (x + STRIP).min(x1)))
+}
+
+/// Writes eight four-channel pixels, or the first few of them at the end of a row.
+#[inline(always)]
+pub fn store_pixels4<S: Simd>(values: [f32x8<S>; 4], target: &mut [f32]) {
+    if target.len() >= 32 {
+        isophote_engine::math::store4(values, &mut target[..32]);
+    } else {
+        let mut block = [0.0; 32];
+        isophote_engine::math::store4(values, &mut block);
+        target.copy_from_slice(&block[..target.len()]);
+    }
+}

@@ -1,0 +1,383 @@
+//! The structure tensor of each pixel's gradient (2.34), by a separable derivative operator: central
+//! differences (2.18), Sobel (2.23), the optimized 3x3 and 5x5 operators (2.26-2.29) and Gaussian
+//! derivatives (2.22). Listing 2.2.
+//!
+//! Coverage: a tap counts by its alpha, and as far as it is transparent it stands for the colour of
+//! the centre; the centre's own alpha weights the gradient. With premultiplied colour P and alpha A
+//! that is A grad P - P grad A = A^2 grad(P / A). Hidden colours have no part in it, and where all
+//! is opaque it is the plain gradient to the last bit.
+//!
+//! Cost: 4 radius + 2 multiply-adds on four channels on the CPU, where columns are summed once;
+//! 4 radius (2 radius + 1) in the shader, where they are summed for every pixel.
+
+use crate::kernels::rows::{Rows, store_pixels4, strips};
+use crate::kernels::tensor_algebra;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+
+/// Entries of a table, the centre included.
+const TAPS: usize = 20;
+/// Largest radius of an operator, in pixels.
+const MAX_RADIUS: u32 = TAPS as u32 - 1;
+
+type Table = [[f32; 4]; TAPS / 4];
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for gradient_tensor {
+        /// Pixels on each side of the centre.
+        pub radius: i32,
+        /// Bit 0: the gradient of the luma alone. Bit 1: divide each channel's tensor by its
+        /// gradient's magnitude (2.133).
+        pub flags: u32,
+        /// Factor on the colours.
+        pub scale: f32,
+        /// A tensor is valid (w = 1) above this lambda1 (2.164).
+        pub threshold: f32,
+        /// Weights at distance 0, 1, ... across the derivative.
+        pub smoothing: Table,
+        /// Weights at distance 0, 1, ... along the derivative.
+        pub derivative: Table,
+    }
+}
+
+crate::kernel!(gradient_tensor {
+    cpu: run,
+    cost: |params| {
+        let p: Params = bytemuck::pod_read_unaligned(params);
+        let r = f64::from(p.radius);
+        16.0 * r * (2.0 * r + 1.0) + 30.0
+    },
+    tolerance: Tolerance {
+        absolute: 2e-6,
+        relative: 1e-4,
+        outliers: 0.002,
+        reason: "differences of neighbours magnify the last bits of the colours, F may cancel over the \
+                 channels, and a tensor at the threshold of validity goes either way",
+    },
+});
+
+/// How to take derivatives (§ 2.2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Derivative {
+    /// Central differences (2.18).
+    Central,
+    /// The Sobel operator (2.23).
+    Sobel,
+    /// The 3x3 operator optimized for rotation invariance (2.26, 2.27).
+    Scharr3,
+    /// The 5x5 operator optimized for rotation invariance (2.28, 2.29).
+    Scharr5,
+    /// Derivatives of a Gaussian of this standard deviation in pixels (2.22), cut at three of them.
+    Gaussian(f32),
+}
+
+impl Derivative {
+    /// Radius, smoothing weights and derivative weights. A ramp of slope 1 has derivative 1.
+    fn tables(self) -> (u32, Table, Table) {
+        let optimized = |v: f32| v / 256.0;
+        match self {
+            Self::Central => tables(&[1.0], &[0.0, 0.5]),
+            Self::Sobel => tables(&[0.5, 0.25], &[0.0, 0.5]),
+            Self::Scharr3 => tables(&[optimized(162.32), optimized(46.84)], &[0.0, 0.5]),
+            Self::Scharr5 => tables(
+                &[optimized(120.64), optimized(61.77), optimized(5.91)],
+                &[0.0, optimized(85.46), optimized(21.27)],
+            ),
+            Self::Gaussian(sigma) => {
+                // Below 0.2 the weights next to the centre vanish; the limit is central differences.
+                let sigma = f64::from(sigma).max(0.2);
+                let radius = ((3.0 * sigma).ceil() as u32).clamp(1, MAX_RADIUS);
+                let weight = |i: u32| (-f64::from(i * i) / (2.0 * sigma * sigma)).exp();
+                // Sampling and cutting would lose some of the slope: normalise to a ramp's.
+                let sum = weight(0) + 2.0 * (1..=radius).map(weight).sum::<f64>();
+                let slope = 2.0 * (1..=radius).map(|i| f64::from(i * i) * weight(i)).sum::<f64>();
+                let smoothing: Vec<f32> = (0..=radius).map(|i| (weight(i) / sum) as f32).collect();
+                let derivative: Vec<f32> =
+                    (0..=radius).map(|i| (f64::from(i) * weight(i) / slope) as f32).collect();
+                tables(&smoothing, &derivative)
+            }
+        }
+    }
+}
+
+fn tables(smoothing: &[f32], derivative: &[f32]) -> (u32, Table, Table) {
+    let pack = |weights: &[f32]| {
+        let mut table = Table::default();
+        for (i, weight) in weights.iter().enumerate() {
+            table[i / 4][i % 4] = *weight;
+        }
+        table
+    };
+    (derivative.len() as u32 - 1, pack(smoothing), pack(derivative))
+}
+
+/// What the tensor is taken of, beside the operator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measure {
+    /// Factor on the colours: 1 for gamma-encoded RGB, 1/100 for CIELAB.
+    pub scale: f32,
+    /// The gradient of the Rec. 709 luma alone instead of all three channels.
+    pub luma: bool,
+    /// Divide each channel's tensor by its gradient's magnitude (2.133).
+    pub normalize: bool,
+    /// w is 1 where sqrt(lambda1) is above this, else 0; none: 1 everywhere.
+    pub threshold: Option<f32>,
+}
+
+/// lambda1 above which a tensor counts as valid; below any lambda1 when all do.
+pub(crate) fn least_lambda1(threshold: Option<f32>) -> f32 {
+    threshold.map_or(-1.0, |t| t * t)
+}
+
+/// Adds the pass: colour to tensor.
+pub fn tensor(plan: &mut PlanBuilder, color: ImageId, operator: Derivative, measure: Measure) -> ImageId {
+    let (radius, smoothing, derivative) = operator.tables();
+    let params = Params {
+        radius: radius as i32,
+        flags: u32::from(measure.luma) | u32::from(measure.normalize) << 1,
+        scale: measure.scale,
+        threshold: least_lambda1(measure.threshold),
+        smoothing,
+        derivative,
+    };
+    plan.pass(&KERNEL, &[color], &params, Class::Field, Support::Pixels(radius))
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    // A radius known to the compiler unrolls the sums of the common operators.
+    match params.radius {
+        1 => dispatch!(pass.level, simd => tensors(simd, pass, &params, 1, band)),
+        2 => dispatch!(pass.level, simd => tensors(simd, pass, &params, 2, band)),
+        r => dispatch!(pass.level, simd => tensors(simd, pass, &params, r, band)),
+    }
+}
+
+#[inline(always)]
+fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, band: &mut Band<'_>) {
+    let window = band.window;
+    let view = &pass.inputs[0];
+    let r = radius as usize;
+    let mut rows = Rows::default();
+    // Column sums of one row: smoothed and derived, four channels each.
+    let mut columns: Vec<f32> = Vec::new();
+    let premultiply = |[x, y, z, a]: [f32x8<S>; 4]| [x * a, y * a, z * a, a];
+    for (x0, x1) in strips(window.x0, window.x1) {
+        rows.start(x0, x1, radius, 4);
+        let len = rows.stride();
+        columns.resize(8 * len, 0.0);
+        for y in window.y0 - radius..window.y0 + radius {
+            rows.load4(simd, view, y, premultiply);
+        }
+        for y in window.y0..window.y1 {
+            rows.load4(simd, view, y + radius, premultiply);
+            for channel in 0..4 {
+                sum_columns(simd, &rows, params, r, y, channel, &mut columns);
+            }
+            let start = 4 * (x0 - window.x0) as usize;
+            let target = &mut band.row_mut(0, y)[start..start + 4 * (x1 - x0) as usize];
+            for (i, pixels) in target.chunks_mut(32).enumerate() {
+                let at = r + 8 * i;
+                let centre: [f32x8<S>; 4] =
+                    std::array::from_fn(|c| f32x8::from_slice(simd, &rows.row(y, c)[at..at + 8]));
+                let (gx, gy) = gradient(simd, params, r, &columns, len, at);
+                store_pixels4(outer(simd, params, centre, gx, gy), pixels);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn weights(params: &Params, i: usize) -> (f32, f32) {
+    (params.smoothing[i / 4][i % 4], params.derivative[i / 4][i % 4])
+}
+
+#[inline(always)]
+fn sum_columns<S: Simd>(
+    simd: S,
+    rows: &Rows,
+    params: &Params,
+    radius: usize,
+    y: i32,
+    channel: usize,
+    columns: &mut [f32],
+) {
+    let len = rows.stride();
+    let (smoothed, derived) = columns[2 * channel * len..][..2 * len].split_at_mut(len);
+    let tap = |offset: i32, at: usize| f32x8::from_slice(simd, &rows.row(y + offset, channel)[at..at + 8]);
+    for at in (0..len).step_by(8) {
+        let mut s = tap(0, at) * weights(params, 0).0;
+        let mut d = f32x8::splat(simd, 0.0);
+        for j in 1..=radius {
+            let (above, below) = (tap(-(j as i32), at), tap(j as i32, at));
+            let (smoothing, derivative) = weights(params, j);
+            s = (above + below).mul_add(f32x8::splat(simd, smoothing), s);
+            d = (below - above).mul_add(f32x8::splat(simd, derivative), d);
+        }
+        s.store_slice(&mut smoothed[at..at + 8]);
+        d.store_slice(&mut derived[at..at + 8]);
+    }
+}
+
+#[inline(always)]
+fn gradient<S: Simd>(
+    simd: S,
+    params: &Params,
+    radius: usize,
+    columns: &[f32],
+    len: usize,
+    at: usize,
+) -> ([f32x8<S>; 4], [f32x8<S>; 4]) {
+    let (mut gx, mut gy) = ([f32x8::splat(simd, 0.0); 4], [f32x8::splat(simd, 0.0); 4]);
+    for c in 0..4 {
+        let (smoothed, derived) = columns[2 * c * len..][..2 * len].split_at(len);
+        let load = |row: &[f32], at: usize| f32x8::from_slice(simd, &row[at..at + 8]);
+        let (mut x, mut y) = (f32x8::splat(simd, 0.0), load(derived, at) * weights(params, 0).0);
+        for i in 1..=radius {
+            let (smoothing, derivative) = weights(params, i);
+            let difference = load(smoothed, at + i) - load(smoothed, at - i);
+            let sum = load(derived, at - i) + load(derived, at + i);
+            x = difference.mul_add(f32x8::splat(simd, derivative), x);
+            y = sum.mul_add(f32x8::splat(simd, smoothing), y);
+        }
+        (gx[c], gy[c]) = (x, y);
+    }
+    (gx, gy)
+}
+
+/// The tensor (2.34) and its validity.
+#[inline(always)]
+fn outer<S: Simd>(
+    simd: S,
+    params: &Params,
+    centre: [f32x8<S>; 4],
+    gx: [f32x8<S>; 4],
+    gy: [f32x8<S>; 4],
+) -> [f32x8<S>; 4] {
+    let splat = |v: f32| f32x8::splat(simd, v);
+    let [.., alpha] = centre;
+    // The quotient rule without its division: coverage squared times the gradient of the colour.
+    let quotient = |g: [f32x8<S>; 4], c: usize| (alpha * g[c] - centre[c] * g[3]) * params.scale;
+    let mut x: [f32x8<S>; 3] = std::array::from_fn(|c| quotient(gx, c));
+    let mut y: [f32x8<S>; 3] = std::array::from_fn(|c| quotient(gy, c));
+    if params.flags & 1 != 0 {
+        let luma = |v: [f32x8<S>; 3]| v[0] * 0.2126 + v[1] * 0.7152 + v[2] * 0.0722;
+        x = [luma(x), splat(0.0), splat(0.0)];
+        y = [luma(y), splat(0.0), splat(0.0)];
+    }
+    let (mut e, mut f, mut g) = (splat(0.0), splat(0.0), splat(0.0));
+    for c in 0..3 {
+        let (mut xx, mut xy, mut yy) = (x[c] * x[c], x[c] * y[c], y[c] * y[c]);
+        if params.flags & 2 != 0 {
+            let inverse = splat(1.0) / (xx + yy).max(splat(1e-30)).sqrt();
+            (xx, xy, yy) = (xx * inverse, xy * inverse, yy * inverse);
+        }
+        (e, f, g) = (e + xx, f + xy, g + yy);
+    }
+    [e, f, g, validity(simd, params.threshold, e, f, g)]
+}
+
+/// 1 where lambda1 is above `threshold`, else 0 (2.164).
+#[inline(always)]
+pub(crate) fn validity<S: Simd>(
+    simd: S,
+    threshold: f32,
+    e: f32x8<S>,
+    f: f32x8<S>,
+    g: f32x8<S>,
+) -> f32x8<S> {
+    let one = f32x8::splat(simd, 1.0);
+    if threshold < 0.0 {
+        return one;
+    }
+    let lambda1 = (e + g) * 0.5 + tensor_algebra::axis((e - g) * 0.5, f).0;
+    lambda1.simd_gt(f32x8::splat(simd, threshold)).select(one, f32x8::splat(simd, 0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isophote_engine::cpu::{CallingThread, Control, CpuExecutor};
+    use isophote_engine::{Image, Rect};
+
+    const PLAIN: Measure = Measure { scale: 1.0, luma: false, normalize: false, threshold: None };
+    const OPERATORS: [Derivative; 6] = [
+        Derivative::Central,
+        Derivative::Sobel,
+        Derivative::Scharr3,
+        Derivative::Scharr5,
+        Derivative::Gaussian(0.867),
+        Derivative::Gaussian(3.0),
+    ];
+
+    fn picture(width: u32, height: u32, color: impl Fn(f32, f32) -> [f32; 4]) -> Image {
+        let values = (0..width * height).flat_map(|i| color((i % width) as f32, (i / width) as f32));
+        Image::from_vec(width, height, 4, values.collect()).unwrap()
+    }
+
+    fn tensors(image: &Image, operator: Derivative, measure: Measure) -> Image {
+        let mut plan = PlanBuilder::new(image.width(), image.height()).unwrap();
+        let color = plan.input("color", 4, Class::Colour);
+        let result = tensor(&mut plan, color, operator, measure);
+        plan.output("tensor", result);
+        let region = Rect::of_size(image.width(), image.height());
+        CpuExecutor::new()
+            .run(&plan.finish().unwrap(), &[("color", image)], region, &CallingThread, Control::default())
+            .unwrap()
+            .remove(0)
+    }
+
+    fn near(got: &[f32], want: [f32; 4], bound: f32) {
+        let close = got.iter().zip(want).all(|(g, w)| (g - w).abs() <= bound);
+        assert!(close, "{got:?} for {want:?}");
+    }
+
+    #[test]
+    fn the_gradient_of_a_ramp_is_exact_for_every_operator() {
+        let ramp = picture(43, 39, |x, y| [0.01 * x, 0.02 * y, 0.03 * x - 0.01 * y, 1.0]);
+        for operator in OPERATORS {
+            let got = tensors(&ramp, operator, PLAIN);
+            for (x, y) in [(21, 19), (12, 20), (30, 12)] {
+                near(got.pixel(x, y), [0.0010, -0.0003, 0.0005, 1.0], 2e-7);
+            }
+        }
+    }
+
+    #[test]
+    fn luma_scale_and_normalization_do_what_they_say() {
+        let ramp = picture(20, 20, |x, y| [0.03 * x, 0.04 * y, 0.0, 1.0]);
+        let luma = tensors(&ramp, Derivative::Scharr3, Measure { luma: true, ..PLAIN });
+        let (gx, gy) = (0.2126 * 0.03, 0.7152 * 0.04);
+        near(luma.pixel(9, 9), [gx * gx, gx * gy, gy * gy, 1.0], 1e-7);
+        let half = tensors(&ramp, Derivative::Scharr3, Measure { scale: 0.5, ..PLAIN });
+        near(half.pixel(9, 9), [0.000_225, 0.0, 0.0004, 1.0], 1e-7);
+        let normalized = tensors(&ramp, Derivative::Scharr3, Measure { normalize: true, ..PLAIN });
+        near(normalized.pixel(9, 9), [0.03, 0.0, 0.04, 1.0], 1e-6);
+    }
+
+    #[test]
+    fn validity_follows_the_gradient() {
+        let kink = picture(24, 8, |x, _| [0.05 * x.min(12.0), 0.0, 0.0, 1.0]);
+        let got = tensors(&kink, Derivative::Central, Measure { threshold: Some(0.03), ..PLAIN });
+        assert_eq!((got.pixel(5, 4)[3], got.pixel(20, 4)[3]), (1.0, 0.0));
+    }
+
+    #[test]
+    fn hidden_colours_leave_no_trace() {
+        let disc = |hidden: f32| {
+            picture(31, 29, move |x, y| {
+                let inside = (x - 15.0).hypot(y - 14.0) < 9.0;
+                if inside { [0.02 * x, 0.5, 0.1, 1.0] } else { [hidden, 3.0 * hidden, 0.0, 0.0] }
+            })
+        };
+        for operator in OPERATORS {
+            let (a, b) = (tensors(&disc(0.0), operator, PLAIN), tensors(&disc(7.0), operator, PLAIN));
+            assert_eq!(a, b);
+            // Only the ramp in red is seen, at the disc's border no more than inside.
+            for pixel in a.data().chunks_exact(4) {
+                assert!(pixel[0] <= 0.0004 * 1.001 && pixel[2] <= 0.0004 * 1.001, "{pixel:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! Adds the gradient of what a renderer knows beside the colour to a structure tensor, as further
+//! channels of the multi-image gradient (2.34).
+//!
+//! * Normals: the gradient of the components, weighted by validity as colour is by coverage.
+//! * Depth: relative differences 2 (z - z0) / (z + z0), which are those of ln z, so that the scene's
+//!   unit does not matter; jumps, also those to the background, are bounded to 1.
+//! * Object numbers: 1 where a neighbour is another object, else 0.
+//!
+//! NaN and infinities count as nothing there. Cost: about 60 operations a pixel.
+
+use crate::kernels::rows::{Rows, store_pixels4, strips};
+use crate::kernels::structure::gradient_tensor::{least_lambda1, validity};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::math::load4;
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for guide_tensor {
+        /// 0 normal, 1 depth, 2 object id.
+        pub kind: u32,
+        /// Factor on the guide's tensor.
+        pub weight: f32,
+        /// A tensor is valid (w = 1) above this lambda1 (2.164).
+        pub threshold: f32,
+    }
+}
+
+crate::kernel!(guide_tensor {
+    cpu: run,
+    cost: |_| 60.0,
+    tolerance: Tolerance {
+        absolute: 2e-6,
+        relative: 1e-4,
+        outliers: 0.002,
+        reason: "differences of neighbours magnify the last bits of the guide, F may cancel, and a \
+                 tensor at the threshold of validity goes either way",
+    },
+});
+
+/// What a guide image holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Guide {
+    /// View-space normal and validity.
+    Normal,
+    /// Distance from the camera, 0 or less where there is nothing.
+    Depth,
+    /// A whole number per object.
+    ObjectId,
+}
+
+/// Adds the pass: tensor plus `weight` times the tensor of the guide. `threshold` as in
+/// [`Measure`](super::gradient_tensor::Measure), for the sum.
+pub fn add(
+    plan: &mut PlanBuilder,
+    tensor: ImageId,
+    guide: ImageId,
+    kind: Guide,
+    weight: f32,
+    threshold: Option<f32>,
+) -> ImageId {
+    let params = Params { kind: kind as u32, weight, threshold: least_lambda1(threshold) };
+    plan.pass(&KERNEL, &[tensor, guide], &params, Class::Field, Support::Pixels(1))
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    match params.kind {
+        0 => dispatch!(pass.level, simd => normals(simd, pass, &params, band)),
+        1 => dispatch!(pass.level, simd => scalars(simd, pass, &params, band, clean_depth, relative)),
+        _ => dispatch!(pass.level, simd => scalars(simd, pass, &params, band, clean_number, other)),
+    }
+}
+
+#[inline(always)]
+fn clean_normal<S: Simd>(v: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
+    let c = |x: f32| f32x8::splat(v[0].simd, x);
+    let good = v.map(|v| v.is_finite());
+    let valid = (good[0] & good[1] & good[2] & good[3]).select(v[3].max(c(0.0)).min(c(1.0)), c(0.0));
+    let [x, y, z] = std::array::from_fn(|i| good[i].select(v[i].max(c(-1.0)).min(c(1.0)), c(0.0)) * valid);
+    [x, y, z, valid]
+}
+
+#[inline(always)]
+fn clean_depth<S: Simd>(v: f32x8<S>) -> f32x8<S> {
+    // Where there is nothing, or no number, the depth is far behind everything.
+    let far = f32x8::splat(v.simd, 1e30);
+    (v.is_finite() & v.simd_gt(f32x8::splat(v.simd, 0.0))).select(v.min(far), far)
+}
+
+#[inline(always)]
+fn relative<S: Simd>(v: f32x8<S>, centre: f32x8<S>) -> f32x8<S> {
+    let c = |x: f32| f32x8::splat(v.simd, x);
+    ((v - centre) / ((v + centre) * 0.5)).max(c(-1.0)).min(c(1.0))
+}
+
+#[inline(always)]
+fn clean_number<S: Simd>(v: f32x8<S>) -> f32x8<S> {
+    v.is_finite().select(v, f32x8::splat(v.simd, 0.0))
+}
+
+#[inline(always)]
+fn other<S: Simd>(v: f32x8<S>, centre: f32x8<S>) -> f32x8<S> {
+    let c = |x: f32| f32x8::splat(v.simd, x);
+    (v - centre).abs().simd_gt(c(0.5)).select(c(1.0), c(0.0))
+}
+
+/// The optimized 3x3 operator (2.26, 2.27) on the eight neighbours, given by column and row offset.
+#[inline(always)]
+fn gradient<S: Simd>(simd: S, tap: impl Fn(i32, i32) -> f32x8<S>) -> [f32x8<S>; 2] {
+    let c = |x: f32| f32x8::splat(simd, x);
+    let (nw, n, ne) = (tap(-1, -1), tap(0, -1), tap(1, -1));
+    let (w, e) = (tap(-1, 0), tap(1, 0));
+    let (sw, s, se) = (tap(-1, 1), tap(0, 1), tap(1, 1));
+    let corner = c(0.091_484_375);
+    let x = ((ne - nw) + (se - sw)) * corner + (e - w) * 0.317_031_25;
+    let y = ((sw - nw) + (se - ne)) * corner + (s - n) * 0.317_031_25;
+    [x, y]
+}
+
+/// Eight values of `row` at column offset `dx` from vector `i`.
+#[inline(always)]
+fn shifted<S: Simd>(simd: S, row: &[f32], i: usize, dx: i32) -> f32x8<S> {
+    let at = 8 * i + (1 + dx) as usize;
+    f32x8::from_slice(simd, &row[at..at + 8])
+}
+
+#[inline(always)]
+fn normals<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
+    let load = |rows: &mut Rows, y: i32| rows.load4(simd, &pass.inputs[1], y, clean_normal);
+    over_blocks(simd, pass, params, band, 4, load, |rows, y, i| {
+        let channel = |c: usize| gradient(simd, |dx, dy| shifted(simd, rows.row(y + dy, c), i, dx));
+        let valid = channel(3);
+        let centre = |c: usize| shifted(simd, rows.row(y, c), i, 0);
+        let (mut sums, validity) = ([f32x8::splat(simd, 0.0); 3], centre(3));
+        for c in 0..3 {
+            let g = channel(c);
+            let [x, y] = std::array::from_fn(|k| validity * g[k] - centre(c) * valid[k]);
+            sums = [sums[0] + x * x, sums[1] + x * y, sums[2] + y * y];
+        }
+        sums
+    });
+}
+
+#[inline(always)]
+fn scalars<S: Simd>(
+    simd: S,
+    pass: &CpuPass<'_>,
+    params: &Params,
+    band: &mut Band<'_>,
+    clean: impl Fn(f32x8<S>) -> f32x8<S>,
+    difference: impl Fn(f32x8<S>, f32x8<S>) -> f32x8<S>,
+) {
+    let load = |rows: &mut Rows, y: i32| rows.load1(simd, &pass.inputs[1], y, &clean);
+    over_blocks(simd, pass, params, band, 1, load, |rows, y, i| {
+        let centre = shifted(simd, rows.row(y, 0), i, 0);
+        let tap = |dx: i32, dy: i32| difference(shifted(simd, rows.row(y + dy, 0), i, dx), centre);
+        let [x, y] = gradient(simd, tap);
+        [x * x, x * y, y * y]
+    });
+}
+
+/// Adds the guide's tensor, which `guide` gives for eight pixels, to the first input.
+#[inline(always)]
+fn over_blocks<S: Simd>(
+    simd: S,
+    pass: &CpuPass<'_>,
+    params: &Params,
+    band: &mut Band<'_>,
+    channels: usize,
+    load: impl Fn(&mut Rows, i32),
+    guide: impl Fn(&Rows, i32, usize) -> [f32x8<S>; 3],
+) {
+    let window = band.window;
+    let tensor = &pass.inputs[0];
+    let mut rows = Rows::default();
+    for (x0, x1) in strips(window.x0, window.x1) {
+        rows.start(x0, x1, 1, channels);
+        load(&mut rows, window.y0 - 1);
+        load(&mut rows, window.y0);
+        for y in window.y0..window.y1 {
+            load(&mut rows, y + 1);
+            let len = 4 * (x1 - x0) as usize;
+            let at = tensor.offset(x0, y);
+            let source = &tensor.data()[at..at + len];
+            let start = 4 * (x0 - window.x0) as usize;
+            let target = &mut band.row_mut(0, y)[start..start + len];
+            for (i, (source, target)) in source.chunks(32).zip(target.chunks_mut(32)).enumerate() {
+                let mut block = [0.0; 32];
+                block[..source.len()].copy_from_slice(source);
+                let [e, f, g, _]: [f32x8<S>; 4] = load4(simd, &block);
+                let sums = guide(&rows, y, i);
+                let [e, f, g] = [e + sums[0] * params.weight, f + sums[1] * params.weight, g + sums[2] * params.weight];
+                store_pixels4([e, f, g, validity(simd, params.threshold, e, f, g)], target);
+            }
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! One level of the pyramid down: tensors that are not valid take those of the coarser level,
+//! interpolated bilinearly; valid ones stay (§ 2.7.3, Listing 2.5).
+//!
+//! Cost: 3 multiply-adds on four channels where a tensor is not valid.
+
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, prelude::*};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for tensor_interpolate {
+        /// A tensor is valid from this w on.
+        pub kept: f32,
+    }
+}
+
+crate::kernel!(tensor_interpolate {
+    cpu: run,
+    cost: |_| 16.0,
+    tolerance: Tolerance {
+        absolute: 1e-6,
+        relative: 4e-6,
+        outliers: 0.0,
+        reason: "three interpolations with exact weights in the same order",
+    },
+});
+
+/// Adds the pass; `coarse` lies one level above `fine`.
+pub fn interpolate(plan: &mut PlanBuilder, fine: ImageId, coarse: ImageId) -> ImageId {
+    plan.pass(&KERNEL, &[fine, coarse], &Params { kept: 1.0 }, Class::Field, Support::Pixels(1))
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    dispatch!(pass.level, simd => fill(simd, pass, &params, band));
+}
+
+#[inline(always)]
+fn fill<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
+    let window = band.window;
+    let (fine, coarse) = (&pass.inputs[0], &pass.inputs[1]);
+    // The coarse pixel before position (x + 1/2) / 2, and how far beyond its centre that lies.
+    let corner = |x: i32| (x - 1) >> 1;
+    let fraction = |x: i32| if x & 1 == 0 { 0.75f32 } else { 0.25 };
+    let (first, last) = (corner(window.x0), corner(window.x1 - 1) + 2);
+    let (mut above, mut below) = (Vec::new(), Vec::new());
+    for y in window.y0..window.y1 {
+        let above = coarse.padded_row(corner(y), first, last, &mut above);
+        let below = coarse.padded_row(corner(y) + 1, first, last, &mut below);
+        let at = fine.offset(window.x0, y);
+        let source = &fine.data()[at..at + 4 * window.width() as usize];
+        let fy = f32x4::splat(simd, fraction(y));
+        let pixels = source.chunks_exact(4).zip(band.row_mut(0, y).chunks_exact_mut(4));
+        for (x, (source, target)) in (window.x0..window.x1).zip(pixels) {
+            if source[3] >= params.kept {
+                target.copy_from_slice(source);
+                continue;
+            }
+            let i = 4 * (corner(x) - first) as usize;
+            let load = |row: &[f32], i: usize| f32x4::from_slice(simd, &row[i..i + 4]);
+            let (a, b) = (load(above, i), load(above, i + 4));
+            let (c, d) = (load(below, i), load(below, i + 4));
+            let fx = f32x4::splat(simd, fraction(x));
+            let top = (b - a).mul_add(fx, a);
+            let bottom = (d - c).mul_add(fx, c);
+            (bottom - top).mul_add(fy, top).store_slice(target);
+            target[3] = 0.0;
+        }
+    }
+}

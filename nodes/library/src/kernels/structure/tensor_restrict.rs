@@ -1,0 +1,66 @@
+//! One level of the pyramid of valid tensors up: the mean of the valid among four pixels, and whether
+//! there was any (§ 2.7.3, Listing 2.4). At odd sizes the missing children count for nothing.
+//!
+//! Cost: 4 additions and a division on four channels.
+
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, prelude::*};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for tensor_restrict {
+        /// A tensor is valid from this w on.
+        pub kept: f32,
+    }
+}
+
+crate::kernel!(tensor_restrict {
+    cpu: run,
+    cost: |_| 24.0,
+    tolerance: Tolerance {
+        absolute: 1e-7,
+        relative: 2e-6,
+        outliers: 0.0,
+        reason: "three additions in the same order and a division",
+    },
+});
+
+/// Adds the pass: from the image's level to the next coarser one, ceil(n / 2) pixels on a side.
+pub fn restrict(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
+    let level = plan.desc(tensor).level + 1;
+    plan.pass_at(&KERNEL, &[tensor], &Params { kept: 1.0 }, &[Class::Field], Support::Pixels(0), level)
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    dispatch!(pass.level, simd => means(simd, pass, &params, band));
+}
+
+#[inline(always)]
+fn means<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
+    let window = band.window;
+    let view = &pass.inputs[0];
+    let [width, height] = view.full();
+    for y in window.y0..window.y1 {
+        let row = |y: i32| {
+            let at = view.offset(2 * window.x0, y);
+            let len = (2 * window.x1).min(width) - 2 * window.x0;
+            &view.data()[at..at + 4 * len as usize]
+        };
+        let upper = row(2 * y).chunks(8);
+        // The row below the last of an odd picture is no row: its pixels are left out.
+        let lower = if 2 * y + 1 < height { row(2 * y + 1) } else { &[] };
+        let lower = lower.chunks(8).chain(std::iter::repeat(&[][..]));
+        for ((upper, lower), target) in upper.zip(lower).zip(band.row_mut(0, y).chunks_exact_mut(4)) {
+            let (mut sum, mut count) = (f32x4::splat(simd, 0.0), 0.0);
+            for t in upper.chunks_exact(4).chain(lower.chunks_exact(4)) {
+                if t[3] >= params.kept {
+                    sum += f32x4::from_slice(simd, t);
+                    count += 1.0f32;
+                }
+            }
+            (sum / count.max(1.0)).store_slice(target);
+            target[3] = count.min(1.0);
+        }
+    }
+}

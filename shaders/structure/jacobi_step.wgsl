@@ -1,0 +1,27 @@
+// One Jacobi step of Laplace's equation on tensors: those that are not valid become the mean of
+// their four neighbours (2.171, Listing 2.3). Cost: up to 5 loads.
+#import grid
+
+struct Params {
+    // A tensor is valid from this w on.
+    kept: f32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var source: texture_2d<f32>;
+@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let p = pixel(id);
+    var t = fetch(source, 0u, p);
+    if t.w < params.kept {
+        let across = fetch(source, 0u, p + vec2i(1, 0)) + fetch(source, 0u, p - vec2i(1, 0));
+        let along = fetch(source, 0u, p + vec2i(0, 1)) + fetch(source, 0u, p - vec2i(0, 1));
+        t = vec4f((across + along).xyz * 0.25, 0.0);
+    }
+    textureStore(target_image, vec2i(id.xy), t);
+}

@@ -1,0 +1,26 @@
+// One level of the pyramid down: tensors that are not valid take the coarser level's, bilinearly
+// (Listing 2.5). Cost: up to 5 loads.
+#import grid
+#import sampling
+
+struct Params {
+    // A tensor is valid from this w on.
+    kept: f32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var fine: texture_2d<f32>;
+@group(0) @binding(3) var coarse: texture_2d<f32>;
+@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    var t = fetch(fine, 0u, pixel(id));
+    if t.w < params.kept {
+        t = vec4f(sample_linear(coarse, 1u, 0.5 * centre(id)).xyz, 0.0);
+    }
+    textureStore(target_image, vec2i(id.xy), t);
+}
