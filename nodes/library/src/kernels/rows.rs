@@ -91,15 +91,3 @@ impl Rows {
 pub fn strips(x0: i32, x1: i32) -> impl Iterator<Item = (i32, i32)> {
     (x0..x1).step_by(STRIP as usize).map(move |x| (x, (x + STRIP).min(x1)))
 }
-
-/// Writes eight four-channel pixels, or the first few of them at the end of a row.
-#[inline(always)]
-pub fn store_pixels4<S: Simd>(values: [f32x8<S>; 4], target: &mut [f32]) {
-    if target.len() >= 32 {
-        isophote_engine::math::store4(values, &mut target[..32]);
-    } else {
-        let mut block = [0.0; 32];
-        isophote_engine::math::store4(values, &mut block);
-        target.copy_from_slice(&block[..target.len()]);
-    }
-}

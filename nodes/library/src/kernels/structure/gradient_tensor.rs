@@ -10,7 +10,8 @@
 //! Cost: 4 radius + 2 multiply-adds on four channels on the CPU, where columns are summed once;
 //! 4 radius (2 radius + 1) in the shader, where they are summed for every pixel.
 
-use crate::kernels::rows::{Rows, store_pixels4, strips};
+use crate::kernels::rows::{Rows, strips};
+use crate::kernels::support::put_pixels4;
 use crate::kernels::tensor_algebra;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -182,7 +183,7 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
                 let centre: [f32x8<S>; 4] =
                     std::array::from_fn(|c| f32x8::from_slice(simd, &rows.row(y, c)[at..at + 8]));
                 let (gx, gy) = gradient(simd, params, r, &columns, len, at);
-                store_pixels4(outer(simd, params, centre, gx, gy), pixels);
+                put_pixels4(outer(simd, params, centre, gx, gy), pixels);
             }
         }
     }

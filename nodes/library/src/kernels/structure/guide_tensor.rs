@@ -8,7 +8,8 @@
 //!
 //! NaN and infinities count as nothing there. Cost: about 60 operations a pixel.
 
-use crate::kernels::rows::{Rows, store_pixels4, strips};
+use crate::kernels::rows::{Rows, strips};
+use crate::kernels::support::put_pixels4;
 use crate::kernels::structure::gradient_tensor::{least_lambda1, validity};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::load4;
@@ -191,7 +192,7 @@ fn over_blocks<S: Simd>(
                 let [e, f, g, _]: [f32x8<S>; 4] = load4(simd, &block);
                 let sums = guide(&rows, y, i);
                 let [e, f, g] = [e + sums[0] * params.weight, f + sums[1] * params.weight, g + sums[2] * params.weight];
-                store_pixels4([e, f, g, validity(simd, params.threshold, e, f, g)], target);
+                put_pixels4([e, f, g, validity(simd, params.threshold, e, f, g)], target);
             }
         }
     }
