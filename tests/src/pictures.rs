@@ -170,3 +170,55 @@ pub fn scenery(width: u32, height: u32) -> Image {
         [c[0] + g, c[1] + g, c[2] + g, 1.0]
     })
 }
+
+/// The test card of the golden images, 192 x 128 for comfort: a zone plate, ramps, patches of colour,
+/// strokes like writing, noise and a part that fades to nothing; sRGB, premultiplied.
+pub fn test_card(width: u32, height: u32) -> Image {
+    let mut random = Random::new(3);
+    from_fn(width, height, |x, y| {
+        let (u, v) = ((x as f32 + 0.5) / width as f32, (y as f32 + 0.5) / height as f32);
+        let (column, row) = ((u * 3.0) as i32, (v * 2.0) as i32);
+        let (s, t) = (u * 3.0 - column as f32, v * 2.0 - row as f32);
+        let noise = random.unit() as f32 - 0.5;
+        let grey = |l: f32| [l, l, l, 1.0];
+        match (column, row) {
+            (0, 0) => {
+                let r2 = (s - 0.5).powi(2) + (t - 0.5).powi(2);
+                grey(0.5 + 0.45 * (64.0 * r2).cos())
+            }
+            (1, 0) if t < 0.34 => grey(s),
+            (1, 0) if t < 0.67 => [s, 0.5, 1.0 - s, 1.0],
+            (1, 0) => grey(0.3 + 0.4 * s + 0.25 * noise),
+            (2, 0) => {
+                let patch = (s * 4.0) as usize + 4 * (t * 3.0) as usize;
+                let c = |i: usize| ((patch * (5 + 2 * i) + 3 * i) % 11) as f32 / 10.0;
+                [c(0), c(1), c(2), 1.0]
+            }
+            (0, _) => {
+                // Strokes of a pen, thick and thin, over paper.
+                let wave = (s * 22.0).sin() * 0.05 + (s * 61.0).sin() * 0.03;
+                let line = ((t * 6.0).fract() - 0.5 + wave * 6.0).abs();
+                let pen = if (s * 9.0).fract() < 0.82 { (line * 7.0 - 0.5).clamp(0.0, 1.0) } else { 1.0 };
+                [0.1 + 0.85 * pen, 0.1 + 0.82 * pen, 0.15 + 0.7 * pen, 1.0]
+            }
+            (1, _) => {
+                // A shaded ball before a chequered wall.
+                let (dx, dy) = (s - 0.5, t - 0.5);
+                let r2 = (dx * dx + dy * dy) / 0.16;
+                let wall = if ((s * 8.0) as i32 + (t * 8.0) as i32) % 2 == 0 { 0.42 } else { 0.55 };
+                if r2 < 1.0 {
+                    let light = (0.3 * dx / 0.4 - 0.5 * dy / 0.4 + 0.8 * (1.0 - r2).sqrt()).max(0.05);
+                    [0.9 * light, 0.45 * light + 0.05, 0.2 * light + 0.1, 1.0]
+                } else {
+                    [wall, wall, wall * 1.1, 1.0]
+                }
+            }
+            _ => {
+                let alpha = (1.2 - 1.4 * t).clamp(0.0, 1.0) * if (s * 5.0) as i32 == 2 { 0.0 } else { 1.0 };
+                let leaf = ((s * 40.0).sin() * (t * 36.0).cos() + noise).clamp(-1.0, 1.0);
+                let c = [0.25 + 0.15 * leaf, 0.5 + 0.25 * leaf, 0.15 + 0.1 * leaf];
+                [c[0] * alpha, c[1] * alpha, c[2] * alpha, alpha]
+            }
+        }
+    })
+}

@@ -1,0 +1,217 @@
+//! Colour, alpha and bad pixels, for every node: what enters in a space leaves in it, nothing that is
+//! not finite spreads, flat pictures stay flat, transparent pixels lend no colour.
+
+use isophote::registry;
+use isophote::request::ColourSpace;
+use isophote::spec::{ImageKind, NodeSpec};
+use isophote::{Graph, Request};
+use isophote_engine::Image;
+use isophote_tests::cases;
+use isophote_tests::compare::distance;
+use isophote_tests::pictures::{self, Kind, from_fn};
+use isophote_tests::run;
+
+/// Nodes that filter a picture into a picture.
+fn filters() -> impl Iterator<Item = &'static NodeSpec> {
+    registry::nodes().iter().copied().filter(|n| n.has_mix())
+}
+
+/// The filters whose purpose is to keep colour as it is; styles and quantization change it.
+fn smoothers() -> impl Iterator<Item = &'static NodeSpec> {
+    filters().filter(|n| n.group == "smoothing")
+}
+
+fn default_graph(spec: &'static NodeSpec) -> Graph {
+    cases::setup(spec, false).graph
+}
+
+#[test]
+fn every_node_keeps_every_kind_of_picture_finite() {
+    let mut wrong = Vec::new();
+    for spec in registry::nodes() {
+        for setting in cases::settings(spec, 4) {
+            for kind in [Kind::Hdr, Kind::Broken, Kind::CutOut] {
+                let mut setup = cases::setup(spec, false);
+                setting.apply(&mut setup.graph, setup.node);
+                let picture = pictures::color(kind, 31, 23);
+                for space in ColourSpace::ALL {
+                    let request = Request { space, ..Request::new(31, 23) };
+                    let out = run::graph(&setup.graph, request, &picture);
+                    if out.data().iter().any(|v| !v.is_finite()) {
+                        wrong.push(format!("{} ({}) {kind:?} {space:?}", spec.id, setting.label));
+                    }
+                }
+            }
+        }
+    }
+    wrong.dedup();
+    assert!(wrong.is_empty(), "not finite:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn a_bad_pixel_stays_where_it_is() {
+    // One pixel of the picture is not a number: it counts as black, and nothing else changes.
+    for spec in registry::nodes() {
+        let graph = default_graph(spec);
+        let good = pictures::color(Kind::Noise, 40, 30);
+        let (mut bad, mut black) = (good.clone(), good.clone());
+        let at = (15 * 40 + 20) * 4;
+        bad.data_mut()[at..at + 3].fill(f32::NAN);
+        black.data_mut()[at..at + 3].fill(0.0);
+        let request = Request::new(40, 30);
+        let (bad, black) = (run::graph(&graph, request, &bad), run::graph(&graph, request, &black));
+        assert_eq!(bad, black, "{}", spec.id);
+    }
+}
+
+#[test]
+fn smoothing_keeps_flat_pictures_flat_in_every_space() {
+    let mut wrong = Vec::new();
+    for spec in smoothers() {
+        for space in ColourSpace::ALL {
+            for color in [[0.18, 0.4, 0.05], [0.0; 3], [1.0; 3], [812.0, 10_000.0, 3.5], [-0.4, 0.2, -0.01]] {
+                let flat = from_fn(33, 21, |_, _| [color[0], color[1], color[2], 1.0]);
+                let request = Request { space, ..Request::new(33, 21) };
+                let out = run::graph(&default_graph(spec), request, &flat);
+                let scale = color.iter().fold(1e-2f32, |m, c| m.max(c.abs()));
+                let (worst, _) = distance(&out, &flat);
+                if worst > 1e-4 * scale {
+                    wrong.push(format!("{} {space:?} {color:?}: moves by {worst:e}", spec.id));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_space_is_left_as_it_was_entered() {
+    // A Gaussian of no width is the way in and out alone.
+    let graph = run::single("gaussian", &[("sigma", "0")]);
+    for kind in [Kind::Noise, Kind::Hdr, Kind::CutOut] {
+        let picture = pictures::color(kind, 67, 43);
+        for space in ColourSpace::ALL {
+            for premultiplied in [false, true] {
+                let mut expected = picture.clone();
+                // What is transparent has no colour when it leaves premultiplied.
+                if !premultiplied && kind == Kind::CutOut {
+                    continue;
+                }
+                for pixel in expected.data_mut().chunks_exact_mut(4).filter(|p| p[3] == 0.0) {
+                    pixel[..3].fill(0.0);
+                }
+                let request = Request { space, premultiplied, ..Request::new(67, 43) };
+                let out = run::graph(&graph, request, &picture);
+                for (e, o) in expected.data().chunks_exact(4).zip(out.data().chunks_exact(4)) {
+                    let scale = e.iter().fold(1e-2f32, |m, v| m.max(v.abs()));
+                    for (e, o) in e.iter().zip(o) {
+                        assert!((e - o).abs() < 3e-5 * scale, "{kind:?} {space:?}: {e} became {o}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_encodings_agree_on_one_scene() {
+    // The same light in two spaces, filtered, is the same light.
+    let linear = pictures::color(Kind::Hdr, 48, 32);
+    let convert = |from: ColourSpace, to: ColourSpace, image: &Image| {
+        use isophote::kernels::colour::{colour_export, colour_import};
+        use isophote_engine::{Class, PlanBuilder};
+        let mut plan = PlanBuilder::new(image.width(), image.height()).unwrap();
+        let input = plan.input("color", 4, Class::Colour);
+        let working = colour_import::import(&mut plan, input, from, true);
+        let out = colour_export::export(&mut plan, working, to, true);
+        plan.output("output", out);
+        run::whole(&plan.finish().unwrap(), &[("color", image.clone())])
+    };
+    let aces = convert(ColourSpace::Linear, ColourSpace::AcesCg, &linear);
+    for spec in smoothers() {
+        let graph = default_graph(spec);
+        let by = |space, image: &Image| run::graph(&graph, Request { space, ..Request::new(48, 32) }, image);
+        let direct = by(ColourSpace::Linear, &linear);
+        let around = convert(ColourSpace::AcesCg, ColourSpace::Linear, &by(ColourSpace::AcesCg, &aces));
+        let mut far = 0;
+        for (a, b) in direct.data().chunks_exact(4).zip(around.data().chunks_exact(4)) {
+            let scale = a.iter().fold(0.1f32, |m, v| m.max(v.abs()));
+            far += usize::from(a.iter().zip(b).any(|(a, b)| (a - b).abs() > 2e-2 * scale));
+        }
+        assert!(far < 48 * 32 / 50, "{}: {far} pixels differ", spec.id);
+    }
+}
+
+#[test]
+fn a_cut_out_has_no_fringe() {
+    // A white disc on nothing: whatever the transparent part holds must never show.
+    let disc = |hidden: f32| {
+        from_fn(48, 40, |x, y| {
+            let inside = (x - 24) * (x - 24) + (y - 20) * (y - 20) < 140;
+            if inside { [0.9, 0.9, 0.9, 1.0] } else { [hidden, 0.0, hidden, 0.0] }
+        })
+    };
+    let mut wrong = Vec::new();
+    for spec in filters() {
+        let graph = default_graph(spec);
+        let request = Request { premultiplied: false, ..Request::new(48, 40) };
+        let (clean, dirty) =
+            (run::graph(&graph, request, &disc(0.0)), run::graph(&graph, request, &disc(0.8)));
+        let visible = |image: &Image| -> Vec<f32> {
+            image.data().chunks_exact(4).flat_map(|p| [p[0] * p[3], p[1] * p[3], p[2] * p[3], p[3]]).collect()
+        };
+        let worst =
+            visible(&clean).iter().zip(visible(&dirty)).map(|(a, b)| (a - b).abs()).fold(0.0f32, f32::max);
+        if worst > 2e-3 {
+            wrong.push(format!("{}: hidden colour shows by {worst}", spec.id));
+        }
+        if spec.group == "smoothing" {
+            // Filtered coverage carries the disc's own grey to its very border.
+            let off = clean
+                .data()
+                .chunks_exact(4)
+                .filter(|p| p[3] > 0.02)
+                .map(|p| p[..3].iter().map(|c| (c - 0.9).abs()).fold(0.0, f32::max))
+                .fold(0.0f32, f32::max);
+            if off > 1e-3 {
+                wrong.push(format!("{}: the border's colour is off by {off}", spec.id));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn mix_leads_from_the_input_to_the_filter() {
+    let picture = pictures::color(Kind::Steps, 40, 30);
+    for spec in filters() {
+        let at = |mix: f32| {
+            let mut setup = cases::setup(spec, false);
+            setup.graph.set(setup.node, "mix", isophote::Value::Float(mix)).unwrap();
+            run::graph(&setup.graph, Request::new(40, 30), &picture)
+        };
+        let (none, half, all) = (at(0.0), at(0.5), at(1.0));
+        assert!(distance(&none, &picture).0 < 1e-5, "{}", spec.id);
+        if all.data().chunks_exact(4).all(|p| p[3] == 1.0) {
+            for ((n, h), a) in none.data().iter().zip(half.data()).zip(all.data()) {
+                assert!((0.5 * (n + a) - h).abs() < 1e-5, "{}", spec.id);
+            }
+        }
+    }
+}
+
+#[test]
+fn fields_and_scalars_have_their_shape() {
+    let picture = pictures::color(Kind::Noise, 33, 17);
+    for spec in registry::nodes() {
+        let out = run::graph(&default_graph(spec), Request::new(33, 17), &picture);
+        assert_eq!((out.width(), out.height(), out.channels()), (33, 17, spec.output.kind.channels()));
+        if spec.output.kind == ImageKind::Tensor {
+            for t in out.data().chunks_exact(4) {
+                let [e, f, g] = [t[0], t[1], t[2]];
+                let positive = e >= 0.0 && g >= 0.0 && e * g - f * f >= -1e-4 * (e + g) * (e + g);
+                assert!(positive && (0.0..=1.0001).contains(&t[3]), "{}: {t:?}", spec.id);
+            }
+        }
+    }
+}

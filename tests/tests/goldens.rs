@@ -1,0 +1,157 @@
+//! Golden images: each node on a generated test card, and the two styles on a frame of the demo
+//! scene, as they were last looked at and found right.
+//!
+//! `ISOPHOTE_BLESS=1 cargo test -p isophote-tests --test goldens` makes them anew. Nothing else does:
+//! a missing one is a failure. What differs is written to `target/isophote-tests`.
+
+use isophote::registry;
+use isophote::spec::{ImageKind, NodeSpec};
+use isophote::{Planned, Request};
+use isophote_engine::cpu::Control;
+use isophote_engine::{Image, Rect};
+use isophote_tests::pictures::{self, from_fn};
+use isophote_tests::{cases, device, png, run};
+use std::path::{Path, PathBuf};
+
+/// Steps of 8 bits that a value may be off before it counts.
+const STEP_LIMIT: f32 = 3.5 / 255.0;
+
+/// Share of values that may be off by more: a line may move by a pixel where a comparison turns on
+/// the last bit.
+const SHARE_LIMIT: f64 = 0.004;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("goldens")
+}
+
+fn is_blessing() -> bool {
+    std::env::var("ISOPHOTE_BLESS").is_ok_and(|v| v == "1")
+}
+
+fn card() -> Image {
+    pictures::test_card(192, 128)
+}
+
+/// The committed frame of the demo scene.
+fn scene() -> Image {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scene.png");
+    png::read(&path).unwrap_or_else(|e| panic!("the frame of the demo scene is missing: {e}"))
+}
+
+/// A result as a picture without transparency, as it is stored.
+fn shown(spec: &NodeSpec, image: &Image) -> Image {
+    from_fn(image.width(), image.height(), |x, y| {
+        let v = image.pixel(x, y);
+        let [r, g, b] = match spec.output.kind {
+            // Premultiplied over mid-grey, so that coverage shows too.
+            ImageKind::Color => [0, 1, 2].map(|c| v[c] + 0.5 * (1.0 - v[3])),
+            // The square roots spread the dark parts, where most edges lie.
+            ImageKind::Tensor => [v[0].max(0.0).sqrt(), 0.5 + v[1], v[2].max(0.0).sqrt()],
+            _ => [v[0]; 3],
+        };
+        let store = |v: f32| (v.clamp(0.0, 1.0) * 255.0).round() / 255.0;
+        [store(r), store(g), store(b), 1.0]
+    })
+}
+
+fn plan(spec: &'static NodeSpec, input: &Image) -> Planned {
+    let setup = cases::setup(spec, false);
+    run::planned(&setup.graph, Request::new(input.width(), input.height()))
+}
+
+/// Compares with the golden image `name`, or makes it. Returns what is wrong.
+fn check(name: &str, executor: &str, picture: &Image) -> Option<String> {
+    let path = folder().join(format!("{name}.png"));
+    if is_blessing() {
+        if executor == "cpu" {
+            std::fs::create_dir_all(folder()).unwrap();
+            png::write(&path, picture);
+        }
+        return None;
+    }
+    let golden = match png::read(&path) {
+        Ok(golden) => golden,
+        Err(e) => return Some(format!("{name}: no golden image ({e}); look at the result and bless it")),
+    };
+    if (golden.width(), golden.height()) != (picture.width(), picture.height()) {
+        return Some(format!("{name}: the golden image is of {}x{}", golden.width(), golden.height()));
+    }
+    let pairs = golden.data().iter().zip(picture.data());
+    let far = pairs.clone().filter(|(a, b)| (*a - *b).abs() > STEP_LIMIT).count();
+    let mean = pairs.map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / golden.data().len() as f64;
+    let share = far as f64 / golden.data().len() as f64;
+    println!(
+        "{name} on the {executor}: mean difference {:.3} of 255, {share:.5} beyond the limit",
+        255.0 * mean
+    );
+    if share <= SHARE_LIMIT && mean <= 0.35 / 255.0 {
+        return None;
+    }
+    let (w, h) = (picture.width(), picture.height());
+    let difference = from_fn(w, h, |x, y| {
+        let (a, b) = (golden.pixel(x, y), picture.pixel(x, y));
+        [4.0 * (a[0] - b[0]).abs(), 4.0 * (a[1] - b[1]).abs(), 4.0 * (a[2] - b[2]).abs(), 1.0]
+    });
+    let stem = png::results().join(format!("{name}-{executor}"));
+    png::write(&stem.with_extension("png"), picture);
+    png::write(&png::results().join(format!("{name}-{executor}-difference.png")), &difference);
+    Some(format!(
+        "{name} on the {executor}: mean difference {:.2} of 255, {:.2} % differ; see {}",
+        255.0 * mean,
+        100.0 * share,
+        stem.display()
+    ))
+}
+
+/// Every golden image: its name, the node and the input.
+fn all() -> Vec<(String, &'static NodeSpec, Image)> {
+    let mut all: Vec<_> = registry::nodes().iter().map(|spec| (spec.id.to_owned(), *spec, card())).collect();
+    for style in ["cartoon", "blueprint"] {
+        all.push((format!("{style}-on-scene"), registry::find(style).unwrap(), scene()));
+    }
+    all
+}
+
+#[test]
+fn the_cpu_gives_the_golden_images() {
+    let wrong: Vec<String> = all()
+        .into_iter()
+        .filter_map(|(name, spec, input)| {
+            let result = run::whole(plan(spec, &input).plan(), &[("color", input)]);
+            check(&name, "cpu", &shown(spec, &result))
+        })
+        .collect();
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_gpu_gives_the_golden_images() {
+    if is_blessing() {
+        return;
+    }
+    let Some(mut gpu) = device::executor("the_gpu_gives_the_golden_images") else { return };
+    let mut wrong = Vec::new();
+    for (name, spec, input) in all() {
+        let planned = plan(spec, &input);
+        let region = Rect::of_size(input.width(), input.height());
+        let images =
+            gpu.run_images(planned.plan(), &[("color", &input)], region, Control::default()).unwrap();
+        wrong.extend(check(&name, "gpu", &shown(spec, &images[0])));
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_golden_image_belongs_to_a_node_and_all_are_small() {
+    if is_blessing() {
+        return;
+    }
+    let names: Vec<String> = all().into_iter().map(|(name, ..)| format!("{name}.png")).collect();
+    let mut bytes = 0;
+    for file in std::fs::read_dir(folder()).unwrap().flatten() {
+        let name = file.file_name().into_string().unwrap();
+        assert!(names.contains(&name), "{name} belongs to no node");
+        bytes += file.metadata().unwrap().len();
+    }
+    assert!(bytes < 2 << 20, "the golden images have grown to {bytes} bytes");
+}

@@ -1,0 +1,227 @@
+//! The laws of the house: names, orphans, declarations, documents.
+
+use isophote::kernels::KERNELS;
+use isophote::registry;
+use isophote::spec::{NodeSpec, ParamKind};
+use isophote::{Graph, Planned, Request};
+use isophote_tests::cases;
+use isophote_tests::shaders;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+const GROUPS: [&str; 7] = ["structure", "smoothing", "lines", "painting", "coherence", "colour", "styles"];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Stems of the files `dir/<group>/<stem>.<ext>`, as `group/stem`.
+fn stems(dir: &Path, ext: &str) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    for group in std::fs::read_dir(dir).unwrap().flatten().filter(|e| e.path().is_dir()) {
+        let group_name = group.file_name().into_string().unwrap();
+        for file in std::fs::read_dir(group.path()).unwrap().flatten() {
+            if file.path().extension().is_some_and(|e| e == ext) {
+                found.insert(format!("{group_name}/{}", file.path().file_stem().unwrap().display()));
+            }
+        }
+    }
+    found
+}
+
+/// Files of the repository's own with one of these endings, without build results.
+fn sources(endings: &[&str]) -> Vec<PathBuf> {
+    fn walk(dir: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
+        for entry in std::fs::read_dir(dir).unwrap().flatten() {
+            let (path, name) = (entry.path(), entry.file_name().into_string().unwrap_or_default());
+            if path.is_dir() {
+                if !name.starts_with('.') && name != "target" && name != "out" {
+                    walk(&path, endings, found);
+                }
+            } else if endings.iter().any(|e| name.ends_with(e)) {
+                found.push(path);
+            }
+        }
+    }
+    let mut found = Vec::new();
+    for room in ["nodes", "host-example", "tests", "xtask", "shaders"] {
+        walk(&root().join(room), endings, &mut found);
+    }
+    found
+}
+
+#[test]
+fn every_kernel_is_one_shader_and_one_twin_of_its_name() {
+    let shader_files: BTreeSet<String> =
+        stems(&shaders::folder(), "wgsl").into_iter().filter(|s| !s.starts_with("shared/")).collect();
+    let twins = stems(&root().join("nodes/library/src/kernels"), "rs");
+    assert_eq!(shader_files, twins);
+    let names: BTreeSet<String> = KERNELS.iter().map(|k| k.name.to_owned()).collect();
+    let files: BTreeSet<String> =
+        twins.iter().map(|t| t.rsplit('/').next().unwrap_or_default().to_owned()).collect();
+    assert_eq!(names, files);
+    assert_eq!(names.len(), KERNELS.len(), "two kernels share a name");
+}
+
+#[test]
+fn every_node_is_a_file_of_its_name_and_in_the_registry() {
+    let files = stems(&root().join("nodes/library/src/nodes"), "rs");
+    let nodes: BTreeSet<String> = registry::nodes().iter().map(|n| format!("{}/{}", n.group, n.id)).collect();
+    assert_eq!(files, nodes);
+    assert_eq!(nodes.len(), registry::nodes().len(), "two nodes share an id");
+}
+
+#[test]
+fn every_group_is_one_of_the_house() {
+    let dirs =
+        [shaders::folder(), root().join("nodes/library/src/kernels"), root().join("nodes/library/src/nodes")];
+    for dir in dirs {
+        for entry in std::fs::read_dir(&dir).unwrap().flatten().filter(|e| e.path().is_dir()) {
+            let name = entry.file_name().into_string().unwrap();
+            assert!(GROUPS.contains(&&*name) || name == "shared", "{}", entry.path().display());
+        }
+    }
+}
+
+fn is_identifier(id: &str) -> bool {
+    id.starts_with(|c: char| c.is_ascii_lowercase())
+        && id.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+}
+
+fn is_sentence(text: &str) -> bool {
+    text.len() > 3 && text.trim() == text && text.ends_with('.')
+}
+
+fn faults_of(spec: &NodeSpec) -> Vec<String> {
+    let mut faults = Vec::new();
+    let mut check = |good: bool, what: String| {
+        if !good {
+            faults.push(format!("{}: {what}", spec.id));
+        }
+    };
+    check(is_identifier(spec.id), "its id is not in lower case with underscores".into());
+    check(!spec.label.is_empty() && is_sentence(spec.doc), "label or document are missing".into());
+    check(!spec.section.is_empty(), "no section of the thesis".into());
+    for port in spec.inputs.iter().chain([&spec.output]) {
+        check(is_identifier(port.id) && is_sentence(port.doc), format!("port {} lacks a document", port.id));
+    }
+    let mut ids = BTreeSet::new();
+    for param in spec.params() {
+        let id = param.id;
+        check(is_identifier(id) && ids.insert(id), format!("{id} is no good id, or twice"));
+        check(!param.label.is_empty() && is_sentence(param.doc), format!("{id} lacks a document"));
+        match param.kind {
+            ParamKind::Float { default, range: [low, high], slider: [from, to] } => {
+                let ordered = low <= from && from < to && to <= high;
+                check(ordered, format!("{id}: slider {from}..{to} is not inside {low}..{high}"));
+                check((from..=to).contains(&default), format!("{id}: default {default} is off its slider"));
+            }
+            ParamKind::Int { default, range: [low, high], slider: [from, to] } => {
+                let ordered = low <= from && from < to && to <= high;
+                check(ordered, format!("{id}: slider {from}..{to} is not inside {low}..{high}"));
+                check((from..=to).contains(&default), format!("{id}: default {default} is off its slider"));
+            }
+            ParamKind::Bool { .. } => {}
+            ParamKind::Choice { default, options } => {
+                let distinct: BTreeSet<&str> = options.iter().map(|o| o.id).collect();
+                check(options.len() > 1 && distinct.len() == options.len(), format!("{id}: its options"));
+                check(default < options.len(), format!("{id}: its default"));
+                check(
+                    options.iter().all(|o| is_identifier(o.id) && !o.label.is_empty()),
+                    format!("{id}: an option's id or label"),
+                );
+            }
+            ParamKind::Color { default } => {
+                check(default.iter().all(|c| (0.0..=1.0).contains(c)), format!("{id}: its default"));
+            }
+        }
+    }
+    faults
+}
+
+#[test]
+fn every_declaration_is_complete_and_its_defaults_lie_in_range() {
+    let faults: Vec<String> = registry::nodes().iter().flat_map(|n| faults_of(n)).collect();
+    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+}
+
+#[test]
+fn every_tolerance_has_a_reason_and_is_small() {
+    for kernel in KERNELS {
+        let t = kernel.tolerance;
+        assert!(t.reason.len() > 10, "{}: why this tolerance?", kernel.name);
+        assert!(t.absolute > 0.0 && t.absolute <= 0.1, "{}: absolute {}", kernel.name, t.absolute);
+        assert!((0.0..=0.01).contains(&t.relative), "{}: relative {}", kernel.name, t.relative);
+        assert!((0.0..=0.03).contains(&t.outliers), "{}: outliers {}", kernel.name, t.outliers);
+    }
+}
+
+#[test]
+fn every_node_plans_and_goes_through_json_with_every_parameter_set() {
+    for spec in registry::nodes() {
+        for setting in cases::settings(spec, 4) {
+            let mut setup = cases::setup(spec, true);
+            setting.apply(&mut setup.graph, setup.node);
+            let text = setup.graph.to_json().unwrap();
+            let read = Graph::from_json(&text).unwrap();
+            assert_eq!(read.to_json().unwrap(), text, "{} ({})", spec.id, setting.label);
+            let request = Request { scale: 0.37, ..Request::new(19, 23) };
+            Planned::new(&read, request).unwrap();
+        }
+    }
+}
+
+#[test]
+fn every_file_says_what_it_is_for_and_stays_short() {
+    let mut wrong = Vec::new();
+    for path in sources(&[".rs", ".wgsl"]) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let opening = if path.extension().is_some_and(|e| e == "rs") { "//!" } else { "//" };
+        let first = text.lines().find(|l| !l.is_empty() && !l.starts_with("#import "));
+        if !first.is_some_and(|l| l.starts_with(opening)) {
+            wrong.push(format!("{} does not open with what it is for", path.display()));
+        }
+        if text.lines().count() > 550 {
+            wrong.push(format!("{} has {} lines", path.display(), text.lines().count()));
+        }
+    }
+    for stem in stems(&shaders::folder(), "wgsl") {
+        let text = std::fs::read_to_string(shaders::folder().join(format!("{stem}.wgsl"))).unwrap();
+        if !stem.starts_with("shared/") && !text.contains("Cost:") {
+            wrong.push(format!("shaders/{stem}.wgsl does not state its cost per pixel"));
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn unsafe_code_stays_in_its_rooms_and_each_block_has_a_reason() {
+    // Spelt in two parts, so that this file does not find itself.
+    let keyword = ["un", "safe"].concat();
+    let mut wrong = Vec::new();
+    for path in sources(&[".rs"]) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let shown = path.display().to_string();
+        let allowed =
+            shown.contains("nodes/plugin") || shown.contains("host-example") || shown.contains("tests/tests");
+        let uses = |line: &str| {
+            let code = line.split("//").next().unwrap_or("");
+            let block = code.contains(&format!("{keyword} {{")) || code.contains(&format!("{keyword} impl"));
+            let function =
+                code.contains(&format!("{keyword} fn")) || code.contains(&format!("{keyword} extern"));
+            (block, block || function)
+        };
+        for (number, line) in text.lines().enumerate() {
+            let (block, any) = uses(line);
+            if any && !allowed {
+                wrong.push(format!("{shown}:{} is {keyword}", number + 1));
+            }
+            let above: Vec<&str> = text.lines().take(number + 1).collect();
+            let reasoned = above.iter().rev().take(8).any(|l| l.contains("SAFETY"));
+            if block && !reasoned {
+                wrong.push(format!("{shown}:{} has no SAFETY reason", number + 1));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
