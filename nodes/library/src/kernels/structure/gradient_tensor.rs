@@ -93,10 +93,13 @@ impl Derivative {
                 // Sampling and cutting would lose some of the slope: normalise to a ramp's.
                 let sum = weight(0) + 2.0 * (1..=radius).map(weight).sum::<f64>();
                 let slope = 2.0 * (1..=radius).map(|i| f64::from(i * i) * weight(i)).sum::<f64>();
-                let smoothing: Vec<f32> = (0..=radius).map(|i| (weight(i) / sum) as f32).collect();
-                let derivative: Vec<f32> =
-                    (0..=radius).map(|i| (f64::from(i) * weight(i) / slope) as f32).collect();
-                tables(&smoothing, &derivative)
+                let (mut smoothing, mut derivative) = ([0.0; TAPS], [0.0; TAPS]);
+                for i in 0..=radius {
+                    smoothing[i as usize] = (weight(i) / sum) as f32;
+                    derivative[i as usize] = (f64::from(i) * weight(i) / slope) as f32;
+                }
+                let kept = ..=radius as usize;
+                tables(&smoothing[kept], &derivative[kept])
             }
         }
     }
