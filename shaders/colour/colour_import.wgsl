@@ -25,6 +25,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let nan = special & ((bits & vec4u(0x007fffffu)) != vec4u(0u));
     let largest = select(vec4f(65504.0), vec4f(-65504.0), (bits >> vec4u(31u)) == vec4u(1u));
     v = select(select(v, largest, special), vec4f(0.0), nan);
+    v = clamp(v, vec4f(vec3f(-65504.0), 0.0), vec4f(vec3f(65504.0), 1.0));
     if params.premultiplied != 0u {
         v = vec4f(select(vec3f(0.0), v.rgb / v.a, v.a > 1e-6), v.a);
     }

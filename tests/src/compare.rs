@@ -27,6 +27,9 @@ impl Difference {
         let channels = cpu.channels() as usize;
         for (i, (c, g)) in cpu.data().iter().zip(gpu.data()).enumerate() {
             out.values += 1;
+            let pixel = i / channels * channels..(i / channels + 1) * channels;
+            let both = cpu.data()[pixel.clone()].iter().chain(&gpu.data()[pixel]);
+            let size = both.fold(0.0f32, |m, v| m.max(v.abs()));
             let place = || {
                 let (pixel, width) = (i / channels, cpu.width() as usize);
                 format!("({}, {})[{}] cpu {c:?} gpu {g:?}", pixel % width, pixel / width, i % channels)
@@ -40,7 +43,7 @@ impl Difference {
             }
             let difference = (g - c).abs();
             out.worst = out.worst.max(difference);
-            let bound = tolerance.absolute + tolerance.relative * g.abs().max(c.abs());
+            let bound = tolerance.absolute + tolerance.relative * size;
             if difference > bound {
                 out.outliers += 1;
             }

@@ -82,11 +82,12 @@ pub fn color(kind: Kind, width: u32, height: u32) -> Image {
     }
 }
 
-/// Replaces some values by NaN and infinities of both signs; a single pixel loses its first value.
+/// Replaces some values by NaN, infinities and the farthest numbers; a single pixel loses its first value.
 pub fn broken(mut image: Image) -> Image {
-    const BAD: [f32; 4] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -f32::NAN];
+    const BAD: [f32; 6] =
+        [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -f32::NAN, f32::MAX, -f32::MIN_POSITIVE / 8.0];
     for (i, v) in image.data_mut().iter_mut().enumerate().step_by(59) {
-        *v = BAD[(i / 59) % 4];
+        *v = BAD[(i / 59) % BAD.len()];
     }
     image
 }

@@ -39,12 +39,14 @@ impl PartialEq for &'static Kernel {
 }
 
 /// The bound on the difference between a shader and its CPU twin:
-/// |gpu - cpu| <= absolute + relative * max(|gpu|, |cpu|), for all but a share of `outliers`.
+/// |gpu - cpu| <= absolute + relative * m, for all but a share of `outliers`, where m is the largest
+/// |gpu| or |cpu| of all channels of the pixel: one channel of a tensor or a CIELAB colour is a
+/// difference of what makes up the others, and has their rounding.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance {
     /// In the unit of the output.
     pub absolute: f32,
-    /// As a share of the larger value.
+    /// As a share of the pixel's largest value.
     pub relative: f32,
     /// Share of the values that may break the bound (a floor, a comparison or a stream line that
     /// goes the other way on the last bit).

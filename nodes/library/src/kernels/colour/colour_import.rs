@@ -1,5 +1,6 @@
 //! The host's colour to the working colour: finite, not premultiplied, gamma-encoded Rec. 709
-//! (both extended beyond 0..=1).
+//! (both extended beyond 0..=1). What lies beyond the largest half float is cut to it, so that squares
+//! and sums of colours stay finite; alpha is cut to 0..=1.
 //!
 //! Cost: three powers and a division per pixel.
 
@@ -42,9 +43,10 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     dispatch!(pass.level, simd => map_pixels4(simd, pass, band, |v| {
         let c = |x: f32| f32x8::splat(simd, x);
         let [r, g, b, a] = v.map(|v| {
-            let infinite = v.is_infinite().select(c(LARGEST_HALF).copysign(v), v);
-            v.is_nan().select(c(0.0), infinite)
+            let bounded = v.min(c(LARGEST_HALF)).max(c(-LARGEST_HALF));
+            v.is_nan().select(c(0.0), bounded)
         });
+        let a = a.min(c(1.0)).max(c(0.0));
         let mut rgb = [r, g, b];
         if params.premultiplied != 0 {
             let covered = a.simd_gt(1e-6);
