@@ -1,6 +1,7 @@
 //! The project's chores, `cargo xtask <chore>`: one module for each.
 
 mod error;
+mod header;
 mod scene;
 
 use clap::{Parser, Subcommand};
@@ -16,6 +17,8 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Chore {
+    /// Writes include/isophote.h from the Rust declarations
+    Header(header::Options),
     /// Writes the demo scene (glTF) and the house (OBJ)
     Scene(scene::Options),
 }
@@ -23,6 +26,7 @@ enum Chore {
 fn main() -> ExitCode {
     // Clap itself ends wrong usage with code 2.
     let outcome = match Cli::parse().chore {
+        Chore::Header(options) => header::run(&options),
         Chore::Scene(options) => scene::run(&options),
     };
     match outcome {

@@ -1,1 +1,8 @@
-//! The dynamic library: the C face of Isophote.
+//! The dynamic library: what hosts in other languages link or load.
+//!
+//! [`abi`] is the C face, described by `include/isophote.h`. Nothing else is exported, and no Rust
+//! crate can depend on this one.
+
+#![allow(unsafe_code, reason = "foreign pointers come in here; nowhere else in the library")]
+
+pub mod abi;

@@ -1,0 +1,774 @@
+/* Isophote: structure-adaptive stylization filters.
+ *
+ * The library exports one symbol, isophote_api; look it up with dlsym or GetProcAddress, ask it for
+ * ISOPHOTE_ABI_VERSION, and call everything else through the table that it returns.
+ *
+ * SPDX-License-Identifier: MIT OR Apache-2.0
+ */
+
+#ifndef ISOPHOTE_H
+#define ISOPHOTE_H
+
+/* Generated from include/rust by `cargo xtask header`. Do not edit. */
+
+#include <stddef.h>
+#include <stdint.h>
+
+// The version of this header. Ask `isophote_api` for it. A version is never changed once released:
+// what is new comes with a new number, and a library may offer several.
+#define ISOPHOTE_ABI_VERSION 1
+
+// Success.
+#define ISOPHOTE_OK 0
+
+// A null pointer, text that is not UTF-8, or a number that is none of the listed ones.
+#define ISOPHOTE_INVALID_ARGUMENT 1
+
+// A handle that was never given out, is of another kind, or whose object was destroyed.
+#define ISOPHOTE_INVALID_HANDLE 2
+
+// A node, parameter, port, option, input or index that does not exist.
+#define ISOPHOTE_UNKNOWN 3
+
+// The parameter is of another kind than the function called.
+#define ISOPHOTE_WRONG_TYPE 4
+
+// A value that the parameter cannot have: out of range, not finite, or text that does not read as one.
+#define ISOPHOTE_OUT_OF_RANGE 5
+
+// Ports that do not fit, a cycle, a required input left open, or no output.
+#define ISOPHOTE_CONNECTION 6
+
+// A graph file that cannot be read as one.
+#define ISOPHOTE_MALFORMED 7
+
+// A size, stride or region that no image can have, or an image that does not cover what is needed.
+#define ISOPHOTE_GEOMETRY 8
+
+// An input image is missing, or has a form that its port does not take.
+#define ISOPHOTE_INPUT 9
+
+// Something that this library does not do.
+#define ISOPHOTE_UNSUPPORTED 10
+
+// The host asked to stop; the target image is as it was.
+#define ISOPHOTE_CANCELLED 11
+
+// There is no graphics adapter that can do the work.
+#define ISOPHOTE_NO_DEVICE 12
+
+// The graphics device reported an error or was lost; destroy it and create another.
+#define ISOPHOTE_DEVICE 13
+
+// The system does not give the memory or the threads needed.
+#define ISOPHOTE_OUT_OF_MEMORY 14
+
+// The text did not fit into the buffer; it was cut, and `length` says how long it is.
+#define ISOPHOTE_TRUNCATED 15
+
+// A mistake inside the library, which caught it; the object may be used further.
+#define ISOPHOTE_INTERNAL 16
+
+// RGBA.
+#define ISOPHOTE_KIND_COLOR 0
+
+// One channel.
+#define ISOPHOTE_KIND_SCALAR 1
+
+// A symmetric 2x2 tensor (E, F, G) and its validity.
+#define ISOPHOTE_KIND_TENSOR 2
+
+// View-space normal x, y, z in -1..1 and its validity.
+#define ISOPHOTE_KIND_NORMAL 3
+
+// Distance from the camera, one channel, scene units; 0 or less where there is nothing.
+#define ISOPHOTE_KIND_DEPTH 4
+
+// A number per object, one channel; 0 where there is nothing.
+#define ISOPHOTE_KIND_OBJECT_ID 5
+
+// A number.
+#define ISOPHOTE_PARAM_FLOAT 0
+
+// A whole number.
+#define ISOPHOTE_PARAM_INT 1
+
+// On or off.
+#define ISOPHOTE_PARAM_BOOL 2
+
+// One of several.
+#define ISOPHOTE_PARAM_CHOICE 3
+
+// RGBA, gamma-encoded sRGB, each 0..=1.
+#define ISOPHOTE_PARAM_COLOR 4
+
+// None.
+#define ISOPHOTE_UNIT_NONE 0
+
+// Pixels of the full-size picture; scaled with the request's `scale`.
+#define ISOPHOTE_UNIT_PIXELS 1
+
+// Share of something, 0..100.
+#define ISOPHOTE_UNIT_PERCENT 2
+
+// Degrees of angle.
+#define ISOPHOTE_UNIT_DEGREES 3
+
+// 8-bit unsigned, 255 = 1.
+#define ISOPHOTE_SAMPLE_U8 0
+
+// 16-bit unsigned, 65535 = 1.
+#define ISOPHOTE_SAMPLE_U16 1
+
+// IEEE half.
+#define ISOPHOTE_SAMPLE_F16 2
+
+// IEEE single.
+#define ISOPHOTE_SAMPLE_F32 3
+
+// Gamma-encoded sRGB.
+#define ISOPHOTE_SPACE_SRGB 0
+
+// Linear light, Rec. 709 primaries.
+#define ISOPHOTE_SPACE_LINEAR 1
+
+// ACEScg: linear light, AP1 primaries.
+#define ISOPHOTE_SPACE_ACESCG 2
+
+// Colour is multiplied by alpha.
+#define ISOPHOTE_ALPHA_PREMULTIPLIED 0
+
+// It is not.
+#define ISOPHOTE_ALPHA_STRAIGHT 1
+
+// Bit of `IsophoteRequest::guides`: the host has view-space normals.
+#define ISOPHOTE_GUIDE_NORMAL 1
+
+// Bit of `IsophoteRequest::guides`: the host has distances from the camera.
+#define ISOPHOTE_GUIDE_DEPTH 2
+
+// Bit of `IsophoteRequest::guides`: the host has object numbers.
+#define ISOPHOTE_GUIDE_OBJECT_ID 4
+
+// The host binds its own texture, which shows the window of the picture that the plan names.
+#define ISOPHOTE_ROLE_INPUT 0
+
+// A result.
+#define ISOPHOTE_ROLE_OUTPUT 1
+
+// Scratch memory; its contents need not survive from one run to the next.
+#define ISOPHOTE_ROLE_TRANSIENT 2
+
+// One 32-bit float: `r32float`, `DXGI_FORMAT_R32_FLOAT`, `VK_FORMAT_R32_SFLOAT`.
+#define ISOPHOTE_FORMAT_R32F 0
+
+// Two 32-bit floats: `rg32float`.
+#define ISOPHOTE_FORMAT_RG32F 1
+
+// Four 32-bit floats: `rgba32float`.
+#define ISOPHOTE_FORMAT_RGBA32F 2
+
+// Uniform bytes were rewritten in place; every pointer handed out before stays valid.
+#define ISOPHOTE_CHANGE_UNIFORMS 0
+
+// Textures and passes are others now; every pointer handed out before is void.
+#define ISOPHOTE_CHANGE_STRUCTURE 1
+
+// WGSL, as the kernel was written.
+#define ISOPHOTE_LANGUAGE_WGSL 0
+
+// SPIR-V 1.0 for Vulkan 1.0, in words of 32 bits.
+#define ISOPHOTE_LANGUAGE_SPIRV 1
+
+// HLSL, shader model 5.0 (Direct3D 11 and 12).
+#define ISOPHOTE_LANGUAGE_HLSL 2
+
+// Metal Shading Language 2.0.
+#define ISOPHOTE_LANGUAGE_MSL 3
+
+// GLSL 4.30 core.
+#define ISOPHOTE_LANGUAGE_GLSL 4
+
+// A uniform buffer.
+#define ISOPHOTE_BINDING_UNIFORM 0
+
+// A texture that is read by integer loads, never filtered, without a sampler.
+#define ISOPHOTE_BINDING_SAMPLED 1
+
+// A texture that is written.
+#define ISOPHOTE_BINDING_STORAGE 2
+
+// What a call came to: `ISOPHOTE_OK`, which is 0, or what went wrong. The message of the last failure is asked of the object that
+// the call was made on (`graph_error`, `plan_error`, `device_error`); calls that make an object
+// hand it out in their `error` argument.
+typedef uint32_t IsophoteStatus;
+
+// What flows through a port. One of `ISOPHOTE_KIND_...`.
+typedef uint32_t IsophoteKind;
+
+// An input or output of a node.
+typedef struct IsophotePort {
+  // Stable name.
+  const char *id;
+  // One sentence.
+  const char *doc;
+  // What it takes or gives.
+  IsophoteKind kind;
+  // 1 when the node works without it.
+  uint32_t optional;
+} IsophotePort;
+
+// Type of a parameter. One of `ISOPHOTE_PARAM_...`.
+typedef uint32_t IsophoteParamKind;
+
+// Unit of a parameter. One of `ISOPHOTE_UNIT_...`.
+typedef uint32_t IsophoteUnit;
+
+// One option of a choice.
+typedef struct IsophoteChoice {
+  // Stable name.
+  const char *id;
+  // For people.
+  const char *label;
+} IsophoteChoice;
+
+// One parameter of a node.
+typedef struct IsophoteParam {
+  // Stable name.
+  const char *id;
+  // For people.
+  const char *label;
+  // One sentence.
+  const char *doc;
+  // Heading under which panels show it; empty for the node's own.
+  const char *group;
+  // Type.
+  IsophoteParamKind kind;
+  // Unit of a number.
+  IsophoteUnit unit;
+  // 1 when changing it may change the passes of a plan and not only uniform bytes.
+  uint32_t structural;
+  // Number of options of a choice; otherwise 0.
+  uint32_t choice_count;
+  // Options of a choice; otherwise null.
+  const struct IsophoteChoice *choices;
+  // The default: a number, 0 or 1, the index of an option, or R, G, B, A.
+  double default_value[4];
+  // Hard range of a number; values outside are refused.
+  double minimum;
+  // Hard range of a number.
+  double maximum;
+  // Range of a slider, within the hard range.
+  double slider_minimum;
+  // Range of a slider.
+  double slider_maximum;
+} IsophoteParam;
+
+// Everything a node says about itself.
+typedef struct IsophoteNode {
+  // Stable name.
+  const char *id;
+  // For people.
+  const char *label;
+  // `structure`, `smoothing`, `lines`, `painting`, `coherence`, `colour` or `styles`.
+  const char *group;
+  // One paragraph.
+  const char *doc;
+  // Sections of the thesis, such as "3.4".
+  const char *section;
+  // What it reads.
+  const struct IsophotePort *inputs;
+  // Its parameters, in the order of panels.
+  const struct IsophoteParam *params;
+  // Number of inputs.
+  uint32_t input_count;
+  // Number of parameters.
+  uint32_t param_count;
+  // What it gives.
+  struct IsophotePort output;
+} IsophoteNode;
+
+// All nodes of the library.
+typedef struct IsophoteCatalogue {
+  // The nodes, in the order of the catalogue.
+  const struct IsophoteNode *nodes;
+  // Number of nodes.
+  uint32_t node_count;
+} IsophoteCatalogue;
+
+// The caller's buffer for a text that the library writes.
+//
+// The library writes at most `capacity` bytes with the closing zero, whole UTF-8 characters only, and
+// puts into `length` how long the text is without the zero. With `data` null and `capacity` 0 it
+// only tells the length, which is a success.
+typedef struct IsophoteText {
+  // Where to write; may be null when `capacity` is 0.
+  char *data;
+  // Size of the buffer in bytes.
+  size_t capacity;
+  // Set by the library: length of the whole text in bytes.
+  size_t length;
+} IsophoteText;
+
+// A graph of nodes. Never 0; of one library in one process.
+typedef uint64_t IsophoteGraph;
+
+// Value of a parameter.
+typedef struct IsophoteValue {
+  // Type of the parameter.
+  IsophoteParamKind kind;
+  // Index of the chosen option; otherwise 0.
+  uint32_t choice_index;
+  // Id of the chosen option, valid for the life of the process; otherwise null.
+  const char *choice;
+  // A number in the first place, 0 or 1, the index of the option, or R, G, B, A.
+  double number[4];
+} IsophoteValue;
+
+// What the numbers of a colour picture mean; the result has the same space. One of `ISOPHOTE_SPACE_...`.
+typedef uint32_t IsophoteSpace;
+
+// How colour relates to alpha, in the input and in the result. One of `ISOPHOTE_ALPHA_...`.
+typedef uint32_t IsophoteAlpha;
+
+// What the host wants of a graph.
+typedef struct IsophoteRequest {
+  // Width of the whole rendered picture in pixels, 1..=65536.
+  uint32_t width;
+  // Height of the whole rendered picture in pixels, 1..=65536.
+  uint32_t height;
+  // Rendered size over full size, above 0 and at most 64: 0.5 for a half-size proxy. Scales every
+  // parameter in pixels.
+  float scale;
+  // Space of the colour that enters and leaves.
+  IsophoteSpace space;
+  // How colour relates to alpha, entering and leaving.
+  IsophoteAlpha alpha;
+  // Which guides the host has, a sum of `ISOPHOTE_GUIDE_...`; connections to others count as open.
+  // `process` goes by the images that it is given instead.
+  uint32_t guides;
+} IsophoteRequest;
+
+// A half-open rectangle of pixels, x0 <= x < x1 and y0 <= y < y1, y down.
+typedef struct IsophoteRect {
+  // Left column, inclusive.
+  int32_t x0;
+  // Top row, inclusive.
+  int32_t y0;
+  // Right column, exclusive.
+  int32_t x1;
+  // Bottom row, exclusive.
+  int32_t y1;
+} IsophoteRect;
+
+// What a region of the result reads of an input.
+typedef struct IsophoteSupport {
+  // The pixels needed, cut at the picture's border; empty when the input is not read.
+  struct IsophoteRect window;
+  // How far outside a region pixels are read at most, whichever region; 0 when `global`.
+  uint32_t halo;
+  // 1 when every pixel may depend on the whole picture, so that it cannot be cut into tiles.
+  uint32_t global;
+} IsophoteSupport;
+
+// A graphics device of the library's own. Never 0.
+typedef uint64_t IsophoteDevice;
+
+// How one sample of an image is stored, in the machine's byte order. One of `ISOPHOTE_SAMPLE_...`.
+typedef uint32_t IsophoteSample;
+
+// Pixels of the host's, to be read. The library never keeps the pointer.
+//
+// Pixel (i, j) of the image, 0 <= i < width and 0 <= j < height, is pixel (x + i, y + j) of the
+// picture and begins at `data + j * row_stride + i * channels * sample size`. No alignment is
+// needed. Missing colour channels repeat the grey, missing alpha is 1. Of depth and object numbers
+// the first channel is read; integer object numbers are taken as they are, and normals must be
+// floats of three or four channels.
+typedef struct IsophoteImage {
+  // The first pixel of the top row, also where rows go upwards in memory.
+  const void *data;
+  // Bytes from one row to the one below it: at least a row's bytes, or at most the negative of
+  // them where rows go upwards in memory.
+  ptrdiff_t row_stride;
+  // How a sample is stored.
+  IsophoteSample sample;
+  // Samples a pixel: 1 (grey), 3 (RGB) or 4 (RGBA).
+  uint32_t channels;
+  // Columns held.
+  uint32_t width;
+  // Rows held.
+  uint32_t height;
+  // Column of the picture that the first column shows.
+  int32_t x;
+  // Row of the picture that the first row shows.
+  int32_t y;
+} IsophoteImage;
+
+// An image that enters a graph.
+typedef struct IsophoteInput {
+  // `color`, `normal`, `depth` or `object_id`.
+  const char *name;
+  // The pixels.
+  struct IsophoteImage image;
+} IsophoteInput;
+
+// Pixels of the host's, to be written; otherwise as `IsophoteImage`. A scalar result repeats itself
+// in the colour channels, and surplus alpha is 1. The memory may overlap that of the inputs.
+typedef struct IsophoteTarget {
+  // The first pixel of the top row, also where rows go upwards in memory.
+  void *data;
+  // Bytes from one row to the one below it.
+  ptrdiff_t row_stride;
+  // How a sample is stored.
+  IsophoteSample sample;
+  // Samples a pixel: 1, 3 or 4.
+  uint32_t channels;
+  // Columns held.
+  uint32_t width;
+  // Rows held.
+  uint32_t height;
+  // Column of the picture that the first column shows.
+  int32_t x;
+  // Row of the picture that the first row shows.
+  int32_t y;
+} IsophoteTarget;
+
+// One job of a batch, to be called by the host's threads: job `index` of `batch`, each once, at the
+// same time or not.
+typedef void (*IsophoteJob)(uint64_t batch, uint32_t index);
+
+// The host's threads: calls `job(batch, 0)` ... `job(batch, jobs - 1)` and returns when all have
+// returned. Called on the thread that called the library. Jobs left out are then done there; a job
+// called later or with a wrong number does nothing.
+typedef void (*IsophoteRun)(void *user, uint32_t jobs, IsophoteJob job, uint64_t batch);
+
+// Told the share of the work done, 0..=1, on the thread that called the library.
+typedef void (*IsophoteProgress)(void *user, float done);
+
+// Asked often, on any thread; another value than 0 stops the work.
+typedef uint32_t (*IsophoteCancelled)(void *user);
+
+// How work is done and watched. Callbacks may be null, must return normally (no exception, no
+// longjmp), and may themselves call the library.
+typedef struct IsophoteControl {
+  // Handed to every callback.
+  void *user;
+  // The host's threads, instead of the library's.
+  IsophoteRun run;
+  // Told how far the work is.
+  IsophoteProgress progress;
+  // Asked whether to stop.
+  IsophoteCancelled cancelled;
+  // Threads of the library to use, or how many the host's `run` has; 0 for one per core, 1 for the
+  // calling thread alone. At most 1024.
+  uint32_t threads;
+} IsophoteControl;
+
+// What became of the work.
+typedef struct IsophoteReport {
+  // Samples of the inputs that were NaN or infinite and were replaced (by 0 and the largest half).
+  uint64_t mended;
+  // Wall-clock time of the call in seconds.
+  double seconds;
+} IsophoteReport;
+
+// A plan of passes as data. Never 0.
+typedef uint64_t IsophotePlan;
+
+// What an update of a plan came to. One of `ISOPHOTE_CHANGE_...`.
+typedef uint32_t IsophoteChange;
+
+// What a texture of a plan is for. One of `ISOPHOTE_ROLE_...`.
+typedef uint32_t IsophoteRole;
+
+// Texel format of a texture of a plan. One of `ISOPHOTE_FORMAT_...`.
+typedef uint32_t IsophoteFormat;
+
+// One texture of a plan. Two-dimensional, one mip level, one sample.
+typedef struct IsophoteTexture {
+  // Name of an input (`color`, `normal`, `depth`, `object_id`) or output (`output`); otherwise null.
+  const char *name;
+  // What it is for.
+  IsophoteRole role;
+  // Format of its texels. An input may have any format of as many channels that is read as floats.
+  IsophoteFormat format;
+  // Columns; at least so many.
+  uint32_t width;
+  // Rows; at least so many.
+  uint32_t height;
+  // 1 for tensors and the like, which need 32 bits; 0 for colours.
+  uint32_t field;
+  // Part of the picture, at its own pyramid level, that the texture holds; texel (0, 0) is
+  // (x0, y0).
+  struct IsophoteRect window;
+} IsophoteTexture;
+
+// One dispatch of a plan. Between two there must be a barrier where one reads or writes what the
+// other wrote.
+typedef struct IsophotePass {
+  // The kernel; passes of the same kernel have the same shader in every language.
+  const char *kernel;
+  // Bytes of the uniform at binding 0.
+  const void *grid;
+  // Bytes of the uniform at binding 1.
+  const void *params;
+  // Indices of the textures read, at bindings 2, 3, ...
+  const uint32_t *inputs;
+  // Indices of the textures written, at the bindings after those.
+  const uint32_t *outputs;
+  // Size of `grid` in bytes, a multiple of 16.
+  uint32_t grid_size;
+  // Size of `params` in bytes, a multiple of 4; round it up to 16 for the buffer.
+  uint32_t params_size;
+  // Number of textures read.
+  uint32_t input_count;
+  // Number of textures written.
+  uint32_t output_count;
+  // Workgroups to dispatch in x, y and z.
+  uint32_t workgroups[3];
+  // Size of a workgroup in x, y and z, as the shader declares it.
+  uint32_t workgroup_size[3];
+} IsophotePass;
+
+// Language of a shader. One of `ISOPHOTE_LANGUAGE_...`.
+typedef uint32_t IsophoteLanguage;
+
+// What is bound at a binding of a shader. One of `ISOPHOTE_BINDING_...`.
+typedef uint32_t IsophoteBindingKind;
+
+// Where a binding of a kernel is found in a shader of some language.
+typedef struct IsophoteBinding {
+  // Name of the variable in the kernel.
+  const char *name;
+  // Number in the kernel, group 0: 0 the grid, 1 the parameters, from 2 the inputs, then the outputs.
+  uint32_t binding;
+  // What is bound.
+  IsophoteBindingKind kind;
+  // WGSL and SPIR-V: the binding of group or set 0, the same as `binding`. HLSL: the register, `b#`
+  // for uniforms, `t#` for sampled, `u#` for storage. MSL: the index among buffers for uniforms,
+  // among textures for the others. GLSL: the binding among uniform blocks, samplers or images.
+  uint32_t slot;
+} IsophoteBinding;
+
+// A shader of a kernel. Everything in it is the library's and valid for the life of the process.
+typedef struct IsophoteShader {
+  // Text with a closing zero, or words of SPIR-V.
+  const void *code;
+  // Size of `code` in bytes, without the closing zero.
+  size_t size;
+  // Name of the entry point in this language.
+  const char *entry_point;
+  // Where everything is bound.
+  const struct IsophoteBinding *bindings;
+  // Number of bindings.
+  uint32_t binding_count;
+  // The language.
+  IsophoteLanguage language;
+} IsophoteShader;
+
+// The functions of ABI version 1.
+//
+// Thread rules stand in brackets. [any thread]: no restriction. [one thread per object]: calls with
+// the same handle must not overlap in time; with different handles they may. Breaking the rule
+// crashes nothing, but it is open which call comes first and whose message is the last. An object
+// may be destroyed while a call uses it: the call ends as if it were still there.
+//
+// Ownership: pointers handed in are read or written during the call only. Pointers handed out are
+// the library's, valid for the life of the process unless another end is named.
+//
+// Names and text are UTF-8 with a closing zero. Arguments named `error` may be null; they receive
+// the message of a failure. Handles are never reused; what is handed out through a pointer is
+// written on success only, but a handle is set to 0 first.
+typedef struct IsophoteApi {
+  // The ABI version that this table is of.
+  uint32_t abi_version;
+  // Size of this table in bytes.
+  uint32_t struct_size;
+  // Version of the library, such as "0.1.0".
+  const char *version;
+  // [any thread] Name of a status in lower case, such as "out of range"; never null.
+  const char *(*status_name)(IsophoteStatus status);
+  // [any thread] Ends the library's worker threads that are idle and gives back memory kept for
+  // later calls. Both return by themselves when they are needed.
+  IsophoteStatus (*trim)(void);
+  // [any thread] All nodes.
+  IsophoteStatus (*catalogue)(struct IsophoteCatalogue *catalogue);
+  // [any thread] The node of an id; the message of a failure names the nearest.
+  IsophoteStatus (*find_node)(const char *id,
+                              struct IsophoteText *error,
+                              const struct IsophoteNode **node);
+  // [any thread] Makes a graph without nodes. The caller owns it and destroys it.
+  IsophoteStatus (*graph_create)(struct IsophoteText *error, IsophoteGraph *graph);
+  // [any thread] Makes a graph of one node, index 0, named like its id: inputs that bear the name
+  // of a picture that enters (`color`, `normal`, `depth`, `object_id`) are connected to it, and
+  // the node's output is the graph's. The caller owns it and destroys it.
+  IsophoteStatus (*graph_create_single)(const char *node_id,
+                                        struct IsophoteText *error,
+                                        IsophoteGraph *graph);
+  // [any thread] Makes a graph from JSON (format `isophote-graph`, version 1). The caller owns it
+  // and destroys it.
+  IsophoteStatus (*graph_create_from_json)(const char *json,
+                                           struct IsophoteText *error,
+                                           IsophoteGraph *graph);
+  // [any thread] Destroys a graph. Plans made from it live on.
+  IsophoteStatus (*graph_destroy)(IsophoteGraph graph);
+  // [one thread per object] Message of the last failed call on the graph; empty before the first.
+  IsophoteStatus (*graph_error)(IsophoteGraph graph, struct IsophoteText *text);
+  // [one thread per object] Writes the graph as JSON, with the parameters that differ from their
+  // defaults, into the caller's buffer.
+  IsophoteStatus (*graph_to_json)(IsophoteGraph graph, struct IsophoteText *json);
+  // [one thread per object] Adds the node `node_id` under a name of its own, and tells its index.
+  IsophoteStatus (*graph_add)(IsophoteGraph graph,
+                              const char *name,
+                              const char *node_id,
+                              uint32_t *node);
+  // [one thread per object] Number of nodes; their indices count from 0 in the order of addition.
+  IsophoteStatus (*graph_count)(IsophoteGraph graph, uint32_t *count);
+  // [one thread per object] Index of the node of a name.
+  IsophoteStatus (*graph_find)(IsophoteGraph graph, const char *name, uint32_t *node);
+  // [one thread per object] Name of a node within the graph, into the caller's buffer.
+  IsophoteStatus (*graph_name)(IsophoteGraph graph, uint32_t node, struct IsophoteText *name);
+  // [one thread per object] What a node says about itself.
+  IsophoteStatus (*graph_spec)(IsophoteGraph graph, uint32_t node, const struct IsophoteNode **spec);
+  // [one thread per object] Sets a parameter that is a number.
+  IsophoteStatus (*graph_set_float)(IsophoteGraph graph,
+                                    uint32_t node,
+                                    const char *param,
+                                    double value);
+  // [one thread per object] Sets a parameter that is a whole number, or a number.
+  IsophoteStatus (*graph_set_int)(IsophoteGraph graph,
+                                  uint32_t node,
+                                  const char *param,
+                                  int32_t value);
+  // [one thread per object] Sets a switch: 0 is off, any other value on.
+  IsophoteStatus (*graph_set_bool)(IsophoteGraph graph,
+                                   uint32_t node,
+                                   const char *param,
+                                   uint32_t value);
+  // [one thread per object] Sets a choice by the id of the option.
+  IsophoteStatus (*graph_set_choice)(IsophoteGraph graph,
+                                     uint32_t node,
+                                     const char *param,
+                                     const char *option);
+  // [one thread per object] Sets a colour: four numbers R, G, B, A, gamma-encoded sRGB, 0..=1.
+  IsophoteStatus (*graph_set_color)(IsophoteGraph graph,
+                                    uint32_t node,
+                                    const char *param,
+                                    const float *rgba);
+  // [one thread per object] Sets a parameter of any type from text as a person writes it: `2.5`,
+  // `true`, `scharr3`, `#12407b`, `0.1,0.2,0.5`.
+  IsophoteStatus (*graph_set_text)(IsophoteGraph graph,
+                                   uint32_t node,
+                                   const char *param,
+                                   const char *text);
+  // [one thread per object] Value of a parameter.
+  IsophoteStatus (*graph_get)(IsophoteGraph graph,
+                              uint32_t node,
+                              const char *param,
+                              struct IsophoteValue *value);
+  // [one thread per object] Connects the output of node `from` to an input of node `to`, instead of
+  // what was there. On failure the graph is as before.
+  IsophoteStatus (*graph_connect)(IsophoteGraph graph, uint32_t from, uint32_t to, const char *port);
+  // [one thread per object] Connects a picture that enters the graph (`color`, `normal`, `depth`,
+  // `object_id`) to an input of node `to`.
+  IsophoteStatus (*graph_connect_input)(IsophoteGraph graph,
+                                        const char *input,
+                                        uint32_t to,
+                                        const char *port);
+  // [one thread per object] Opens an input of node `to`.
+  IsophoteStatus (*graph_disconnect)(IsophoteGraph graph, uint32_t to, const char *port);
+  // [one thread per object] Makes the output of a node the graph's.
+  IsophoteStatus (*graph_set_output)(IsophoteGraph graph, uint32_t node);
+  // [one thread per object] What leaves the graph.
+  IsophoteStatus (*graph_output_kind)(IsophoteGraph graph, IsophoteKind *kind);
+  // [any thread] Fills a request for a whole picture: full scale, sRGB, premultiplied, no guides.
+  IsophoteStatus (*request_init)(uint32_t width, uint32_t height, struct IsophoteRequest *request);
+  // [one thread per object] What `region` of the result (null: the whole picture) reads of the input
+  // `input`, or of all inputs together when that is null.
+  IsophoteStatus (*graph_support)(IsophoteGraph graph,
+                                  const struct IsophoteRequest *request,
+                                  const struct IsophoteRect *region,
+                                  const char *input,
+                                  struct IsophoteSupport *support);
+  // [one thread per object] Computes `region` of the result (null: the whole picture) and writes it
+  // to `target`, which must hold it; other pixels stay as they are, and on any failure all do.
+  //
+  // `inputs` are `input_count` images that must each hold what `graph_support` names. Guides that
+  // are not given count as open; inputs that the graph does not read are ignored. `device` is 0 for
+  // the CPU, where a region is the same bit for bit whether it is computed alone or not. `control`
+  // and `report` may be null. Memory is kept with the graph for the next call of the same request.
+  IsophoteStatus (*process)(IsophoteGraph graph,
+                            IsophoteDevice device,
+                            const struct IsophoteRequest *request,
+                            const struct IsophoteInput *inputs,
+                            uint32_t input_count,
+                            const struct IsophoteRect *region,
+                            const struct IsophoteTarget *target,
+                            const struct IsophoteControl *control,
+                            struct IsophoteReport *report);
+  // [any thread] Makes a plan that computes `region` (null: the whole picture) of what `graph` gives
+  // now, as data for the host's own graphics device. The caller owns it and destroys it.
+  IsophoteStatus (*plan_create)(IsophoteGraph graph,
+                                const struct IsophoteRequest *request,
+                                const struct IsophoteRect *region,
+                                struct IsophoteText *error,
+                                IsophotePlan *plan);
+  // [any thread] Destroys a plan and with it every texture and pass that it handed out.
+  IsophoteStatus (*plan_destroy)(IsophotePlan plan);
+  // [one thread per object] Message of the last failed call on the plan; empty before the first.
+  IsophoteStatus (*plan_error)(IsophotePlan plan, struct IsophoteText *text);
+  // [one thread per object] Takes over the parameters and connections that `graph` has now, and tells
+  // what changed. When only uniforms changed, the bytes that `IsophotePass` points to were
+  // rewritten in place; when the structure changed, textures and passes must be asked for again
+  // and earlier pointers are void. After a failure the plan is as before.
+  IsophoteStatus (*plan_update)(IsophotePlan plan, IsophoteGraph graph, IsophoteChange *change);
+  // [one thread per object] All textures: inputs, outputs, then transients. The array is the plan's,
+  // until it is destroyed or its structure changes.
+  IsophoteStatus (*plan_textures)(IsophotePlan plan,
+                                  const struct IsophoteTexture **textures,
+                                  uint32_t *count);
+  // [one thread per object] All passes in the order of execution. The array and what it points to are
+  // the plan's, until it is destroyed or its structure changes.
+  IsophoteStatus (*plan_passes)(IsophotePlan plan,
+                                const struct IsophotePass **passes,
+                                uint32_t *count);
+  // [one thread per object] The shader of pass `pass` in a language, translated when it is first asked
+  // for. It is valid for the life of the process.
+  IsophoteStatus (*plan_shader)(IsophotePlan plan,
+                                uint32_t pass,
+                                IsophoteLanguage language,
+                                const struct IsophoteShader **shader);
+  // [any thread] Opens a graphics device of the library's own. `adapter` is `gpu` for hardware only,
+  // `software` for a driver on the CPU, or a part of the adapter's name; null takes the best there
+  // is. Graphics drivers are loaded now and not before. The caller owns it and destroys it.
+  IsophoteStatus (*device_create)(const char *adapter,
+                                  struct IsophoteText *error,
+                                  IsophoteDevice *device);
+  // [any thread] Destroys a device, once the calls that use it have ended.
+  IsophoteStatus (*device_destroy)(IsophoteDevice device);
+  // [one thread per object] Message of the last failed call on the device; empty before the first.
+  IsophoteStatus (*device_error)(IsophoteDevice device, struct IsophoteText *text);
+  // [one thread per object] Name of the device's adapter, into the caller's buffer, and whether it
+  // computes on the CPU (1). Each may be null.
+  IsophoteStatus (*device_name)(IsophoteDevice device, struct IsophoteText *name, uint32_t *software);
+} IsophoteApi;
+
+// The library's one symbol, `isophote_api`, as a host looks it up.
+//
+// [any thread] Returns the table of ABI version `abi_version`, or null when this library has none
+// of that number. The table is the library's and valid until the library is unloaded.
+typedef const struct IsophoteApi *(*IsophoteEntry)(uint32_t abi_version);
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// [any thread] Returns the table of ABI version `abi_version`, or null when this library has none of
+// that number. The table is the library's and valid for the life of the process.
+const struct IsophoteApi *isophote_api(uint32_t abi_version);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* ISOPHOTE_H */

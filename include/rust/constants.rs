@@ -1,0 +1,165 @@
+//! Numbers that cross the boundary: the ABI's version, statuses, kinds, formats.
+
+/// The version of this header. Ask `isophote_api` for it. A version is never changed once released:
+/// what is new comes with a new number, and a library may offer several.
+pub const ISOPHOTE_ABI_VERSION: u32 = 1;
+
+/// What a call came to: `ISOPHOTE_OK`, which is 0, or what went wrong. The message of the last failure is asked of the object that
+/// the call was made on (`graph_error`, `plan_error`, `device_error`); calls that make an object
+/// hand it out in their `error` argument.
+pub type IsophoteStatus = u32;
+
+/// Success.
+pub const ISOPHOTE_OK: u32 = 0;
+/// A null pointer, text that is not UTF-8, or a number that is none of the listed ones.
+pub const ISOPHOTE_INVALID_ARGUMENT: u32 = 1;
+/// A handle that was never given out, is of another kind, or whose object was destroyed.
+pub const ISOPHOTE_INVALID_HANDLE: u32 = 2;
+/// A node, parameter, port, option, input or index that does not exist.
+pub const ISOPHOTE_UNKNOWN: u32 = 3;
+/// The parameter is of another kind than the function called.
+pub const ISOPHOTE_WRONG_TYPE: u32 = 4;
+/// A value that the parameter cannot have: out of range, not finite, or text that does not read as one.
+pub const ISOPHOTE_OUT_OF_RANGE: u32 = 5;
+/// Ports that do not fit, a cycle, a required input left open, or no output.
+pub const ISOPHOTE_CONNECTION: u32 = 6;
+/// A graph file that cannot be read as one.
+pub const ISOPHOTE_MALFORMED: u32 = 7;
+/// A size, stride or region that no image can have, or an image that does not cover what is needed.
+pub const ISOPHOTE_GEOMETRY: u32 = 8;
+/// An input image is missing, or has a form that its port does not take.
+pub const ISOPHOTE_INPUT: u32 = 9;
+/// Something that this library does not do.
+pub const ISOPHOTE_UNSUPPORTED: u32 = 10;
+/// The host asked to stop; the target image is as it was.
+pub const ISOPHOTE_CANCELLED: u32 = 11;
+/// There is no graphics adapter that can do the work.
+pub const ISOPHOTE_NO_DEVICE: u32 = 12;
+/// The graphics device reported an error or was lost; destroy it and create another.
+pub const ISOPHOTE_DEVICE: u32 = 13;
+/// The system does not give the memory or the threads needed.
+pub const ISOPHOTE_OUT_OF_MEMORY: u32 = 14;
+/// The text did not fit into the buffer; it was cut, and `length` says how long it is.
+pub const ISOPHOTE_TRUNCATED: u32 = 15;
+/// A mistake inside the library, which caught it; the object may be used further.
+pub const ISOPHOTE_INTERNAL: u32 = 16;
+
+/// What flows through a port. One of `ISOPHOTE_KIND_...`.
+pub type IsophoteKind = u32;
+/// RGBA.
+pub const ISOPHOTE_KIND_COLOR: u32 = 0;
+/// One channel.
+pub const ISOPHOTE_KIND_SCALAR: u32 = 1;
+/// A symmetric 2x2 tensor (E, F, G) and its validity.
+pub const ISOPHOTE_KIND_TENSOR: u32 = 2;
+/// View-space normal x, y, z in -1..1 and its validity.
+pub const ISOPHOTE_KIND_NORMAL: u32 = 3;
+/// Distance from the camera, one channel, scene units; 0 or less where there is nothing.
+pub const ISOPHOTE_KIND_DEPTH: u32 = 4;
+/// A number per object, one channel; 0 where there is nothing.
+pub const ISOPHOTE_KIND_OBJECT_ID: u32 = 5;
+
+/// Type of a parameter. One of `ISOPHOTE_PARAM_...`.
+pub type IsophoteParamKind = u32;
+/// A number.
+pub const ISOPHOTE_PARAM_FLOAT: u32 = 0;
+/// A whole number.
+pub const ISOPHOTE_PARAM_INT: u32 = 1;
+/// On or off.
+pub const ISOPHOTE_PARAM_BOOL: u32 = 2;
+/// One of several.
+pub const ISOPHOTE_PARAM_CHOICE: u32 = 3;
+/// RGBA, gamma-encoded sRGB, each 0..=1.
+pub const ISOPHOTE_PARAM_COLOR: u32 = 4;
+
+/// Unit of a parameter. One of `ISOPHOTE_UNIT_...`.
+pub type IsophoteUnit = u32;
+/// None.
+pub const ISOPHOTE_UNIT_NONE: u32 = 0;
+/// Pixels of the full-size picture; scaled with the request's `scale`.
+pub const ISOPHOTE_UNIT_PIXELS: u32 = 1;
+/// Share of something, 0..100.
+pub const ISOPHOTE_UNIT_PERCENT: u32 = 2;
+/// Degrees of angle.
+pub const ISOPHOTE_UNIT_DEGREES: u32 = 3;
+
+/// How one sample of an image is stored, in the machine's byte order. One of `ISOPHOTE_SAMPLE_...`.
+pub type IsophoteSample = u32;
+/// 8-bit unsigned, 255 = 1.
+pub const ISOPHOTE_SAMPLE_U8: u32 = 0;
+/// 16-bit unsigned, 65535 = 1.
+pub const ISOPHOTE_SAMPLE_U16: u32 = 1;
+/// IEEE half.
+pub const ISOPHOTE_SAMPLE_F16: u32 = 2;
+/// IEEE single.
+pub const ISOPHOTE_SAMPLE_F32: u32 = 3;
+
+/// What the numbers of a colour picture mean; the result has the same space. One of `ISOPHOTE_SPACE_...`.
+pub type IsophoteSpace = u32;
+/// Gamma-encoded sRGB.
+pub const ISOPHOTE_SPACE_SRGB: u32 = 0;
+/// Linear light, Rec. 709 primaries.
+pub const ISOPHOTE_SPACE_LINEAR: u32 = 1;
+/// ACEScg: linear light, AP1 primaries.
+pub const ISOPHOTE_SPACE_ACESCG: u32 = 2;
+
+/// How colour relates to alpha, in the input and in the result. One of `ISOPHOTE_ALPHA_...`.
+pub type IsophoteAlpha = u32;
+/// Colour is multiplied by alpha.
+pub const ISOPHOTE_ALPHA_PREMULTIPLIED: u32 = 0;
+/// It is not.
+pub const ISOPHOTE_ALPHA_STRAIGHT: u32 = 1;
+
+/// Bit of `IsophoteRequest::guides`: the host has view-space normals.
+pub const ISOPHOTE_GUIDE_NORMAL: u32 = 1;
+/// Bit of `IsophoteRequest::guides`: the host has distances from the camera.
+pub const ISOPHOTE_GUIDE_DEPTH: u32 = 2;
+/// Bit of `IsophoteRequest::guides`: the host has object numbers.
+pub const ISOPHOTE_GUIDE_OBJECT_ID: u32 = 4;
+
+/// What a texture of a plan is for. One of `ISOPHOTE_ROLE_...`.
+pub type IsophoteRole = u32;
+/// The host binds its own texture, which shows the window of the picture that the plan names.
+pub const ISOPHOTE_ROLE_INPUT: u32 = 0;
+/// A result.
+pub const ISOPHOTE_ROLE_OUTPUT: u32 = 1;
+/// Scratch memory; its contents need not survive from one run to the next.
+pub const ISOPHOTE_ROLE_TRANSIENT: u32 = 2;
+
+/// Texel format of a texture of a plan. One of `ISOPHOTE_FORMAT_...`.
+pub type IsophoteFormat = u32;
+/// One 32-bit float: `r32float`, `DXGI_FORMAT_R32_FLOAT`, `VK_FORMAT_R32_SFLOAT`.
+pub const ISOPHOTE_FORMAT_R32F: u32 = 0;
+/// Two 32-bit floats: `rg32float`.
+pub const ISOPHOTE_FORMAT_RG32F: u32 = 1;
+/// Four 32-bit floats: `rgba32float`.
+pub const ISOPHOTE_FORMAT_RGBA32F: u32 = 2;
+
+/// What an update of a plan came to. One of `ISOPHOTE_CHANGE_...`.
+pub type IsophoteChange = u32;
+/// Uniform bytes were rewritten in place; every pointer handed out before stays valid.
+pub const ISOPHOTE_CHANGE_UNIFORMS: u32 = 0;
+/// Textures and passes are others now; every pointer handed out before is void.
+pub const ISOPHOTE_CHANGE_STRUCTURE: u32 = 1;
+
+/// Language of a shader. One of `ISOPHOTE_LANGUAGE_...`.
+pub type IsophoteLanguage = u32;
+/// WGSL, as the kernel was written.
+pub const ISOPHOTE_LANGUAGE_WGSL: u32 = 0;
+/// SPIR-V 1.0 for Vulkan 1.0, in words of 32 bits.
+pub const ISOPHOTE_LANGUAGE_SPIRV: u32 = 1;
+/// HLSL, shader model 5.0 (Direct3D 11 and 12).
+pub const ISOPHOTE_LANGUAGE_HLSL: u32 = 2;
+/// Metal Shading Language 2.0.
+pub const ISOPHOTE_LANGUAGE_MSL: u32 = 3;
+/// GLSL 4.30 core.
+pub const ISOPHOTE_LANGUAGE_GLSL: u32 = 4;
+
+/// What is bound at a binding of a shader. One of `ISOPHOTE_BINDING_...`.
+pub type IsophoteBindingKind = u32;
+/// A uniform buffer.
+pub const ISOPHOTE_BINDING_UNIFORM: u32 = 0;
+/// A texture that is read by integer loads, never filtered, without a sampler.
+pub const ISOPHOTE_BINDING_SAMPLED: u32 = 1;
+/// A texture that is written.
+pub const ISOPHOTE_BINDING_STORAGE: u32 = 2;

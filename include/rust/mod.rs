@@ -1,0 +1,16 @@
+//! The contract of Isophote's dynamic library, declared once.
+//!
+//! `include/isophote.h` is generated from these files (`cargo xtask header`); a host in Rust takes
+//! them as they are, `#[path = ".../include/rust/mod.rs"] mod isophote;`. They hold declarations only
+//! and depend on nothing but `core`.
+//!
+//! Everything is plain data of fixed layout. What comes from outside is never a Rust enum, reference
+//! or `bool`, so that a wrong value is an error and not undefined behaviour.
+
+pub mod constants;
+pub mod table;
+pub mod types;
+
+pub use constants::*;
+pub use table::*;
+pub use types::*;

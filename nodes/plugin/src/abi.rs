@@ -1,0 +1,113 @@
+//! The C face: one exported symbol, and the table of functions that it gives out.
+//!
+//! Every function goes through [`guard`], which catches panics, maps errors to statuses and keeps
+//! messages. Hosts hold numbers, not pointers ([`handles`]), so that a wrong one is an error. Raw
+//! pointers are touched in [`args`], [`images`], [`threads`] and nowhere else if it can be helped.
+
+pub mod args;
+pub mod catalogue;
+#[path = "../../../include/rust/mod.rs"]
+pub mod contract;
+pub mod device;
+pub mod entry;
+pub mod graph;
+pub mod guard;
+pub mod handles;
+pub mod images;
+pub mod plan;
+pub mod process;
+pub mod shader;
+pub mod threads;
+
+use contract::{ISOPHOTE_ABI_VERSION, IsophoteApi, IsophoteStatus};
+use std::ffi::{CStr, c_char};
+
+/// The table of version 1, which may be read from any thread.
+#[derive(Debug)]
+#[repr(transparent)]
+pub struct Table(IsophoteApi);
+
+// SAFETY: the table is never written, and what it points to is constant.
+unsafe impl Sync for Table {}
+
+/// The functions of ABI version 1.
+pub static API: Table = Table(IsophoteApi {
+    abi_version: ISOPHOTE_ABI_VERSION,
+    struct_size: size_of::<IsophoteApi>() as u32,
+    version: concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast(),
+    status_name,
+    trim,
+    catalogue: catalogue::catalogue,
+    find_node: catalogue::find_node,
+    graph_create: graph::create,
+    graph_create_single: graph::create_single,
+    graph_create_from_json: graph::create_from_json,
+    graph_destroy: graph::destroy,
+    graph_error: graph::error,
+    graph_to_json: graph::to_json,
+    graph_add: graph::add,
+    graph_count: graph::count,
+    graph_find: graph::find,
+    graph_name: graph::name,
+    graph_spec: graph::spec,
+    graph_set_float: graph::params::set_float,
+    graph_set_int: graph::params::set_int,
+    graph_set_bool: graph::params::set_bool,
+    graph_set_choice: graph::params::set_choice,
+    graph_set_color: graph::params::set_color,
+    graph_set_text: graph::params::set_text,
+    graph_get: graph::params::get,
+    graph_connect: graph::connect,
+    graph_connect_input: graph::connect_input,
+    graph_disconnect: graph::disconnect,
+    graph_set_output: graph::set_output,
+    graph_output_kind: graph::output_kind,
+    request_init: process::request_init,
+    graph_support: process::support,
+    process: process::process,
+    plan_create: plan::create,
+    plan_destroy: plan::destroy,
+    plan_error: plan::error,
+    plan_update: plan::update,
+    plan_textures: plan::textures,
+    plan_passes: plan::passes,
+    plan_shader: plan::shader,
+    device_create: device::create,
+    device_destroy: device::destroy,
+    device_error: device::error,
+    device_name: device::name,
+});
+
+unsafe extern "C" fn status_name(status: IsophoteStatus) -> *const c_char {
+    const NAMES: [&CStr; 17] = [
+        c"ok",
+        c"invalid argument",
+        c"invalid handle",
+        c"unknown name",
+        c"wrong type",
+        c"out of range",
+        c"connection",
+        c"malformed",
+        c"geometry",
+        c"input",
+        c"unsupported",
+        c"cancelled",
+        c"no device",
+        c"device",
+        c"out of memory",
+        c"truncated",
+        c"internal error",
+    ];
+    NAMES.get(status as usize).map_or(c"unknown status", |n| n).as_ptr()
+}
+
+unsafe extern "C" fn trim() -> IsophoteStatus {
+    guard::call(
+        || {
+            threads::forget_pools();
+            graph::forget_memory();
+            Ok(())
+        },
+        |_| {},
+    )
+}

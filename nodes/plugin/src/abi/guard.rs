@@ -1,0 +1,202 @@
+//! The one gate of every foreign call: errors and panics become statuses with a message.
+
+use super::args;
+use super::contract::*;
+use super::handles::Object;
+use isophote::engine;
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Why a call failed: the status and the line that a person reads.
+#[derive(Debug)]
+pub struct Failure {
+    /// What the call returns.
+    pub status: IsophoteStatus,
+    /// What, where, and how to mend it.
+    pub message: String,
+}
+
+/// What the inside of a call comes to.
+pub type Outcome<T> = Result<T, Failure>;
+
+impl Failure {
+    /// A failure of this status.
+    pub fn new(status: IsophoteStatus, message: impl Into<String>) -> Self {
+        Self { status, message: message.into() }
+    }
+
+    /// An argument that is null, not text, or none of the listed numbers.
+    pub fn argument(message: impl Into<String>) -> Self {
+        Self::new(ISOPHOTE_INVALID_ARGUMENT, message)
+    }
+
+    /// A size, stride or region that does not fit.
+    pub fn geometry(message: impl Into<String>) -> Self {
+        Self::new(ISOPHOTE_GEOMETRY, message)
+    }
+
+    fn panicked(payload: &(dyn Any + Send)) -> Self {
+        let what = payload
+            .downcast_ref::<&str>()
+            .map(|s| (*s).to_owned())
+            .or_else(|| payload.downcast_ref::<String>().cloned())
+            .unwrap_or_else(|| "no message".into());
+        Self::new(ISOPHOTE_INTERNAL, format!("a mistake inside Isophote: {what}"))
+    }
+}
+
+impl From<engine::Error> for Failure {
+    fn from(error: engine::Error) -> Self {
+        use engine::Error as E;
+        let status = match &error {
+            E::Geometry(_) => ISOPHOTE_GEOMETRY,
+            E::Input(_) => ISOPHOTE_INPUT,
+            E::Cancelled => ISOPHOTE_CANCELLED,
+            E::NoDevice(_) => ISOPHOTE_NO_DEVICE,
+            E::Device(_) => ISOPHOTE_DEVICE,
+            E::Memory(_) => ISOPHOTE_OUT_OF_MEMORY,
+            _ => ISOPHOTE_INTERNAL,
+        };
+        Self::new(status, error.to_string())
+    }
+}
+
+impl From<isophote::Error> for Failure {
+    fn from(error: isophote::Error) -> Self {
+        use isophote::Error as E;
+        let status = match error {
+            E::Engine(inner) => return inner.into(),
+            E::Unknown(_) => ISOPHOTE_UNKNOWN,
+            E::Value(_) => ISOPHOTE_OUT_OF_RANGE,
+            E::Connection(_) => ISOPHOTE_CONNECTION,
+            E::Format(_) => ISOPHOTE_MALFORMED,
+            _ => ISOPHOTE_INTERNAL,
+        };
+        Self::new(status, error.to_string())
+    }
+}
+
+/// Runs the inside of a call; `report` is given the message of a failure.
+pub fn call(body: impl FnOnce() -> Outcome<()>, report: impl FnOnce(&str)) -> IsophoteStatus {
+    let outcome =
+        catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|payload| Err(Failure::panicked(&*payload)));
+    match outcome {
+        Ok(()) => ISOPHOTE_OK,
+        Err(failure) => {
+            // Formatting and copying a message does not panic; if it ever did, the status still counts.
+            let _ = catch_unwind(AssertUnwindSafe(|| report(&failure.message)));
+            failure.status
+        }
+    }
+}
+
+/// A call on an object, which keeps the message of a failure.
+pub fn on<T: Object>(handle: u64, body: impl FnOnce(&Arc<T>) -> Outcome<()>) -> IsophoteStatus {
+    let mut object = None;
+    let inside = || {
+        let found = T::slots().get(handle)?;
+        body(object.insert(found))
+    };
+    // The object is looked up inside the guard and wanted again after it.
+    let outcome = catch_unwind(AssertUnwindSafe(inside));
+    let report = |message: &str| {
+        if let Some(object) = &object {
+            message.clone_into(&mut lock(object.message()));
+        }
+    };
+    call(|| outcome.unwrap_or_else(|payload| Err(Failure::panicked(&*payload))), report)
+}
+
+/// A call that makes an object; its handle goes to `out`, the message of a failure to `error`.
+///
+/// # Safety
+/// `error` is null or points to an `IsophoteText` that may be written, `out` is null or points to a
+/// handle that may be written.
+pub unsafe fn create<T: Object>(
+    out: *mut u64,
+    error: *mut IsophoteText,
+    body: impl FnOnce() -> Outcome<T>,
+) -> IsophoteStatus {
+    let inside = || {
+        // SAFETY: as this function's caller promised.
+        unsafe { args::put(out, 0, "the place for the handle")? };
+        let handle = T::slots().insert(body()?)?;
+        // SAFETY: as before.
+        unsafe { args::put(out, handle, "the place for the handle") }
+    };
+    // SAFETY: as this function's caller promised.
+    call(inside, |message| unsafe { args::tell(error, message) })
+}
+
+/// The handle's object is dropped, once nobody uses it.
+pub fn destroy<T: Object>(handle: u64) -> IsophoteStatus {
+    call(
+        || {
+            // Dropped here, where a panic of a destructor is caught and no lock is held.
+            drop(T::slots().remove(handle)?);
+            Ok(())
+        },
+        |_| {},
+    )
+}
+
+/// The message of the object's last failure.
+///
+/// # Safety
+/// `text` is null or points to an `IsophoteText` that may be written.
+pub unsafe fn last_message<T: Object>(handle: u64, text: *mut IsophoteText) -> IsophoteStatus {
+    call(
+        || {
+            let object = T::slots().get(handle)?;
+            let message = lock(object.message()).clone();
+            // SAFETY: as this function's caller promised.
+            unsafe { args::fill(text, &message) }
+        },
+        |_| {},
+    )
+}
+
+/// Locks, also after a panic in another call: what the locks here protect is replaced as a whole.
+pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::abi::graph::GraphObject;
+    use crate::abi::{graph, threads};
+    use std::ptr::null_mut;
+
+    #[test]
+    fn a_panic_becomes_a_status_and_a_message() {
+        let mut handle = 0;
+        // SAFETY: both pointers may be written, or are null.
+        assert_eq!(unsafe { graph::create(null_mut(), &raw mut handle) }, ISOPHOTE_OK);
+        let status = on::<GraphObject>(handle, |_| panic!("the {} broke", "filter"));
+        assert_eq!(status, ISOPHOTE_INTERNAL);
+        let object = GraphObject::slots().get(handle).unwrap();
+        assert_eq!(*lock(object.message()), "a mistake inside Isophote: the filter broke");
+        // The object goes on working.
+        let mut count = 9;
+        // SAFETY: the pointer may be written.
+        assert_eq!(unsafe { graph::count(handle, &raw mut count) }, ISOPHOTE_OK);
+        assert_eq!(count, 0);
+        assert_eq!(destroy::<GraphObject>(handle), ISOPHOTE_OK);
+        assert_eq!(destroy::<GraphObject>(handle), ISOPHOTE_INVALID_HANDLE);
+    }
+
+    #[test]
+    fn a_panic_on_a_worker_thread_becomes_a_status_too() {
+        let pool = threads::pool(2).unwrap();
+        let status = call(
+            || {
+                engine::cpu::Threads::run(&*pool, 4, &|i| assert!(i != 3, "job {i} broke"));
+                Ok(())
+            },
+            |message| assert!(message.ends_with("job 3 broke"), "{message}"),
+        );
+        assert_eq!(status, ISOPHOTE_INTERNAL);
+    }
+}

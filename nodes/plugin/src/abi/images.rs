@@ -1,0 +1,176 @@
+//! The host's images: checked, read row by row, and written row by row.
+//!
+//! No slice ever covers more than a copy of one row, since rows may run upwards, overlap those of
+//! another image, or lie at any address.
+
+use super::contract::*;
+use super::guard::{Failure, Outcome};
+use isophote::engine::pixels::{Sample, read_row, write_row};
+use isophote::engine::{Image, Rect};
+use isophote::graph::GraphInput;
+
+/// An image of the host's whose shape was checked.
+#[derive(Clone, Copy, Debug)]
+pub struct Checked {
+    data: *mut u8,
+    row_stride: isize,
+    sample: Sample,
+    channels: usize,
+    /// The part of the picture that it holds.
+    pub window: Rect,
+}
+
+impl Checked {
+    /// Checks an image that is read.
+    ///
+    /// # Errors
+    /// Invalid argument for a null pointer or an unlisted number, geometry for sizes and strides that
+    /// no image can have.
+    pub fn source(image: &IsophoteImage, what: &str) -> Outcome<Self> {
+        Self::new(
+            &IsophoteTarget {
+                data: image.data.cast_mut(),
+                row_stride: image.row_stride,
+                sample: image.sample,
+                channels: image.channels,
+                width: image.width,
+                height: image.height,
+                x: image.x,
+                y: image.y,
+            },
+            what,
+        )
+    }
+
+    /// Checks an image that is written.
+    ///
+    /// # Errors
+    /// As [`Checked::source`].
+    pub fn new(image: &IsophoteTarget, what: &str) -> Outcome<Self> {
+        if image.data.is_null() {
+            return Err(Failure::argument(format!("{what} has no data")));
+        }
+        let sample = match image.sample {
+            ISOPHOTE_SAMPLE_U8 => Sample::U8,
+            ISOPHOTE_SAMPLE_U16 => Sample::U16,
+            ISOPHOTE_SAMPLE_F16 => Sample::F16,
+            ISOPHOTE_SAMPLE_F32 => Sample::F32,
+            other => {
+                return Err(Failure::argument(format!("{what} has samples of the unknown format {other}")));
+            }
+        };
+        if !matches!(image.channels, 1 | 3 | 4) {
+            return Err(Failure::argument(format!("{what} has {} channels, not 1, 3 or 4", image.channels)));
+        }
+        isophote::engine::image::check_size(image.width, image.height)
+            .map_err(|e| Failure::geometry(format!("{what}: {e}")))?;
+        let far = |from: i32, size: u32| from.checked_add_unsigned(size);
+        let (Some(x1), Some(y1)) = (far(image.x, image.width), far(image.y, image.height)) else {
+            let message = format!("{what} begins at ({}, {}), too far out", image.x, image.y);
+            return Err(Failure::geometry(message));
+        };
+        let row_bytes = i128::from(image.width) * i128::from(image.channels) * sample.size() as i128;
+        let stride = image.row_stride as i128;
+        if image.height > 1 && stride.abs() < row_bytes {
+            return Err(Failure::geometry(format!(
+                "{what} has rows of {row_bytes} bytes and a row stride of only {stride}"
+            )));
+        }
+        // From the first byte of the lowest row in memory to the last one of the highest.
+        let last = stride * i128::from(image.height - 1);
+        let base = image.data as usize as i128;
+        let (begin, end) = (base + last.min(0), base + last.max(0) + row_bytes);
+        if begin <= 0 || end > usize::MAX as i128 || end - begin > isize::MAX as i128 {
+            return Err(Failure::geometry(format!(
+                "{what} of {}x{} with a row stride of {stride} does not fit into memory",
+                image.width, image.height
+            )));
+        }
+        let window = Rect { x0: image.x, y0: image.y, x1, y1 };
+        Ok(Self {
+            data: image.data.cast(),
+            row_stride: image.row_stride,
+            sample,
+            channels: image.channels as usize,
+            window,
+        })
+    }
+
+    /// Fails unless the image holds `needed`.
+    ///
+    /// # Errors
+    /// Geometry, with what is held and what is needed.
+    pub fn must_hold(&self, needed: &Rect, what: &str) -> Outcome<()> {
+        if self.window.contains(needed) {
+            return Ok(());
+        }
+        Err(Failure::geometry(format!("{what} holds {}; {} is needed", shown(&self.window), shown(needed))))
+    }
+
+    /// Where the pixels `window.x0..` of row `y` begin.
+    fn at(&self, window: &Rect, y: i32) -> *mut u8 {
+        let column = (window.x0 - self.window.x0) as usize * self.channels * self.sample.size();
+        let row = (y - self.window.y0) as isize;
+        // The products were checked for overflow when the image was.
+        self.data.wrapping_offset(row * self.row_stride).wrapping_add(column)
+    }
+
+    /// Reads the pixels of `window`, which the image must hold, and counts the samples mended.
+    ///
+    /// # Errors
+    /// Out of memory; input when normals are not floats of three or four channels.
+    ///
+    /// # Safety
+    /// The memory of the image must be readable.
+    pub unsafe fn read(&self, window: Rect, input: GraphInput) -> Outcome<(Image, u64)> {
+        if input == GraphInput::Normal
+            && (self.channels < 3 || matches!(self.sample, Sample::U8 | Sample::U16))
+        {
+            return Err(Failure::new(
+                ISOPHOTE_INPUT,
+                "input image 'normal' must have 3 or 4 channels of f16 or f32",
+            ));
+        }
+        let channels = input.kind().channels();
+        let mut image = Image::with_window(window, channels)?;
+        let mut bytes = vec![0; window.width() as usize * self.channels * self.sample.size()];
+        let mut mended = 0;
+        for y in window.y0..window.y1 {
+            // SAFETY: the row lies in the image, whose memory is readable as the caller promised; the copy
+            // is of bytes and needs no alignment.
+            unsafe { bytes.as_mut_ptr().copy_from_nonoverlapping(self.at(&window, y), bytes.len()) };
+            let row = image.row_mut(y);
+            mended += read_row(&bytes, self.sample, self.channels, row, channels as usize);
+            if input == GraphInput::ObjectId {
+                // Numbers, not shares of the largest one.
+                let most = match self.sample {
+                    Sample::U8 => 255.0,
+                    Sample::U16 => 65535.0,
+                    _ => continue,
+                };
+                row.iter_mut().for_each(|v| *v = (*v * most).round());
+            }
+        }
+        Ok((image, mended))
+    }
+
+    /// Writes all pixels of `result`, which must lie within the image.
+    ///
+    /// # Safety
+    /// The memory of the image must be writable.
+    pub unsafe fn write(&self, result: &Image) {
+        let window = result.window();
+        let mut bytes = vec![0; window.width() as usize * self.channels * self.sample.size()];
+        for y in window.y0..window.y1 {
+            write_row(result.row(y), result.channels() as usize, &mut bytes, self.sample, self.channels);
+            // SAFETY: the row lies in the image, whose memory is writable as the caller promised; the copy is
+            // of bytes and needs no alignment.
+            unsafe { self.at(&window, y).copy_from_nonoverlapping(bytes.as_ptr(), bytes.len()) };
+        }
+    }
+}
+
+/// A rectangle for people: its size and corner.
+pub fn shown(rect: &Rect) -> String {
+    format!("{}x{} pixels at ({}, {})", rect.width(), rect.height(), rect.x0, rect.y0)
+}

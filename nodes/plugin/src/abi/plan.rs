@@ -1,0 +1,245 @@
+//! The plan as data: what a host needs to run a graph on its own graphics device.
+
+use super::args;
+use super::contract::*;
+use super::graph;
+use super::guard::{self, Failure, Outcome, lock};
+use super::handles::{Object, Slots};
+use super::process;
+use super::shader;
+use isophote::engine::kernel::WORKGROUP;
+use isophote::engine::program::{Dispatch, Program, Role, Texture};
+use isophote::engine::{Class, Rect};
+use isophote::request::Change;
+use isophote::{Graph, Planned};
+use std::collections::BTreeMap;
+use std::ffi::{CString, c_char};
+use std::ptr::null;
+use std::sync::Mutex;
+
+/// A plan of a host's.
+#[derive(Debug)]
+pub struct PlanObject {
+    state: Mutex<State>,
+    message: Mutex<String>,
+}
+
+impl Object for PlanObject {
+    fn slots() -> &'static Slots<Self> {
+        static SLOTS: Slots<PlanObject> = Slots::new(2, "plan");
+        &SLOTS
+    }
+
+    fn message(&self) -> &Mutex<String> {
+        &self.message
+    }
+}
+
+#[derive(Debug)]
+struct State {
+    /// The graph that the plan was last made from, to go back to when an update fails.
+    graph: Graph,
+    planned: Planned,
+    region: Rect,
+    program: Program,
+    shown: Shown,
+}
+
+impl State {
+    fn new(graph: Graph, planned: Planned, region: Rect) -> Outcome<Self> {
+        let program = Program::lower(planned.plan(), region)?;
+        let shown = Shown::new(&program);
+        Ok(Self { graph, planned, region, program, shown })
+    }
+
+    fn update(&mut self, graph: Graph) -> Outcome<IsophoteChange> {
+        let change = match self.planned.update(&graph) {
+            Ok(change) => change,
+            Err(e) => {
+                self.planned = Planned::new(&self.graph, *self.planned.request())?;
+                return Err(e.into());
+            }
+        };
+        if change == Change::Uniforms && self.program.repack(self.planned.plan()) {
+            self.graph = graph;
+            return Ok(ISOPHOTE_CHANGE_UNIFORMS);
+        }
+        match Program::lower(self.planned.plan(), self.region) {
+            Ok(program) => {
+                self.shown = Shown::new(&program);
+                self.program = program;
+                self.graph = graph;
+                Ok(ISOPHOTE_CHANGE_STRUCTURE)
+            }
+            Err(e) => {
+                self.planned = Planned::new(&self.graph, *self.planned.request())?;
+                Err(e.into())
+            }
+        }
+    }
+}
+
+/// A program as the host sees it. Points into the program and into the names kept here, whose places
+/// on the heap change with the program only.
+#[derive(Debug)]
+struct Shown {
+    textures: Vec<IsophoteTexture>,
+    passes: Vec<IsophotePass>,
+    /// What the texts point to.
+    _names: BTreeMap<String, CString>,
+}
+
+// SAFETY: the pointers lead to memory that the same state owns, and are followed by the host only.
+unsafe impl Send for Shown {}
+
+impl Shown {
+    fn new(program: &Program) -> Self {
+        let mut names = BTreeMap::new();
+        let mut name = |text: &str| -> *const c_char {
+            let entry = names.entry(text.to_owned());
+            let name: &CString = entry.or_insert_with(|| CString::new(text).unwrap_or_default());
+            name.as_ptr()
+        };
+        let textures = program.textures.iter().map(|t| texture(t, &mut name)).collect();
+        let passes = program.dispatches.iter().map(|d| pass(d, &mut name)).collect();
+        Self { textures, passes, _names: names }
+    }
+}
+
+fn texture(texture: &Texture, name: &mut impl FnMut(&str) -> *const c_char) -> IsophoteTexture {
+    let (role, name) = match &texture.role {
+        Role::Input(text) => (ISOPHOTE_ROLE_INPUT, name(text)),
+        Role::Output(text) => (ISOPHOTE_ROLE_OUTPUT, name(text)),
+        Role::Transient => (ISOPHOTE_ROLE_TRANSIENT, null()),
+    };
+    let w = texture.window;
+    IsophoteTexture {
+        name,
+        role,
+        format: match texture.channels {
+            1 => ISOPHOTE_FORMAT_R32F,
+            2 => ISOPHOTE_FORMAT_RG32F,
+            _ => ISOPHOTE_FORMAT_RGBA32F,
+        },
+        width: w.width(),
+        height: w.height(),
+        field: u32::from(texture.class == Class::Field),
+        window: IsophoteRect { x0: w.x0, y0: w.y0, x1: w.x1, y1: w.y1 },
+    }
+}
+
+fn pass(dispatch: &Dispatch, name: &mut impl FnMut(&str) -> *const c_char) -> IsophotePass {
+    IsophotePass {
+        kernel: name(dispatch.kernel.name),
+        grid: (&raw const dispatch.grid).cast(),
+        params: dispatch.params.as_ptr().cast(),
+        inputs: dispatch.inputs.as_ptr(),
+        outputs: dispatch.outputs.as_ptr(),
+        grid_size: size_of_val(&dispatch.grid) as u32,
+        params_size: dispatch.params.len() as u32,
+        input_count: dispatch.inputs.len() as u32,
+        output_count: dispatch.outputs.len() as u32,
+        workgroups: dispatch.workgroups,
+        workgroup_size: [WORKGROUP, WORKGROUP, 1],
+    }
+}
+
+pub(super) unsafe extern "C" fn create(
+    from: IsophoteGraph,
+    host_request: *const IsophoteRequest,
+    region: *const IsophoteRect,
+    error: *mut IsophoteText,
+    plan: *mut IsophotePlan,
+) -> IsophoteStatus {
+    let make = || {
+        let graph = graph::find_object(from)?.snapshot();
+        // SAFETY: the host promised a request behind the pointer, and a rectangle or null.
+        let (request, region) = unsafe {
+            let request = process::request(&args::get(host_request, "the request")?)?;
+            (request, process::region(region, &request)?)
+        };
+        let planned = Planned::new(&graph, request)?;
+        let state = State::new(graph, planned, region)?;
+        Ok(PlanObject { state: Mutex::new(state), message: Mutex::default() })
+    };
+    // SAFETY: the host promised that both places may be written.
+    unsafe { guard::create(plan, error, make) }
+}
+
+pub(super) unsafe extern "C" fn destroy(plan: IsophotePlan) -> IsophoteStatus {
+    guard::destroy::<PlanObject>(plan)
+}
+
+pub(super) unsafe extern "C" fn error(plan: IsophotePlan, text: *mut IsophoteText) -> IsophoteStatus {
+    // SAFETY: the host promised that the text may be written.
+    unsafe { guard::last_message::<PlanObject>(plan, text) }
+}
+
+pub(super) unsafe extern "C" fn update(
+    plan: IsophotePlan,
+    graph: IsophoteGraph,
+    change: *mut IsophoteChange,
+) -> IsophoteStatus {
+    guard::on::<PlanObject>(plan, |object| {
+        if change.is_null() {
+            return Err(Failure::argument("the place for the change is null"));
+        }
+        let graph = graph::find_object(graph)?.snapshot();
+        let found = lock(&object.state).update(graph)?;
+        // SAFETY: the host promised that the place may be written.
+        unsafe { args::put(change, found, "the place for the change") }
+    })
+}
+
+pub(super) unsafe extern "C" fn textures(
+    plan: IsophotePlan,
+    textures: *mut *const IsophoteTexture,
+    count: *mut u32,
+) -> IsophoteStatus {
+    guard::on::<PlanObject>(plan, |object| {
+        let state = lock(&object.state);
+        let list = &state.shown.textures;
+        // SAFETY: the host promised that both places may be written.
+        unsafe {
+            args::put(textures, list.as_ptr(), "the place for the textures")?;
+            args::put(count, list.len() as u32, "the place for the number of textures")
+        }
+    })
+}
+
+pub(super) unsafe extern "C" fn passes(
+    plan: IsophotePlan,
+    passes: *mut *const IsophotePass,
+    count: *mut u32,
+) -> IsophoteStatus {
+    guard::on::<PlanObject>(plan, |object| {
+        let state = lock(&object.state);
+        let list = &state.shown.passes;
+        // SAFETY: the host promised that both places may be written.
+        unsafe {
+            args::put(passes, list.as_ptr(), "the place for the passes")?;
+            args::put(count, list.len() as u32, "the place for the number of passes")
+        }
+    })
+}
+
+pub(super) unsafe extern "C" fn shader(
+    plan: IsophotePlan,
+    pass: u32,
+    language: IsophoteLanguage,
+    shader: *mut *const IsophoteShader,
+) -> IsophoteStatus {
+    guard::on::<PlanObject>(plan, |object| {
+        let state = lock(&object.state);
+        let Some(dispatch) = state.program.dispatches.get(pass as usize) else {
+            let count = state.program.dispatches.len();
+            let message = format!("the plan has {count} passes, counted from 0, and no pass {pass}");
+            return Err(Failure::new(ISOPHOTE_UNKNOWN, message));
+        };
+        let kernel = dispatch.kernel;
+        drop(state);
+        let found = shader::translated(kernel, language)?;
+        // SAFETY: the host promised that the place may be written.
+        unsafe { args::put(shader, found, "the place for the shader") }
+    })
+}

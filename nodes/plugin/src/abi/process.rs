@@ -1,0 +1,379 @@
+//! Computing images in memory, on the CPU or on a device of the library's own.
+
+use super::args;
+use super::contract::*;
+use super::device::DeviceObject;
+use super::graph::{self, GraphObject};
+use super::guard::{self, Failure, Outcome, lock};
+use super::handles::Object;
+use super::images::{Checked, shown};
+use super::threads::{Chosen, User};
+use isophote::engine::cpu::{Control, CpuExecutor};
+use isophote::engine::{Image, Plan, Rect, Support, gpu};
+use isophote::graph::GraphInput;
+use isophote::request::Guides;
+use isophote::{ColourSpace, Graph, Planned, Request};
+use std::ffi::c_char;
+use std::ptr::null_mut;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// What one call on a graph leaves for the next: the plan, and executors with their memory.
+#[derive(Debug, Default)]
+pub struct Warm {
+    planned: Option<Planned>,
+    cpu: Option<CpuExecutor>,
+    gpu: Option<gpu::Executor>,
+}
+
+impl Warm {
+    /// What an earlier call left, with its plan brought up to date or made anew. Give it back with
+    /// [`Warm::keep`].
+    fn take(object: &GraphObject, graph: &Graph, request: &Request) -> Outcome<Self> {
+        let mut warm = lock(&object.warm).take().unwrap_or_default();
+        if let Some(mut planned) = warm.planned.take().filter(|p| p.request() == request) {
+            // A plan whose update failed is not used again.
+            planned.update(graph)?;
+            warm.planned = Some(planned);
+        } else {
+            warm.planned = Some(Planned::new(graph, *request)?);
+        }
+        Ok(warm)
+    }
+
+    fn keep(self, object: &GraphObject) {
+        *lock(&object.warm) = Some(self);
+    }
+
+    fn plan(&self) -> Outcome<&Plan> {
+        self.planned
+            .as_ref()
+            .map(Planned::plan)
+            .ok_or_else(|| Failure::new(ISOPHOTE_INTERNAL, "the graph has no plan"))
+    }
+
+    /// The executor on a device, when there is one.
+    pub fn take_executor(&mut self, device: &DeviceObject) -> Option<gpu::Executor> {
+        self.gpu.take_if(|executor| Arc::ptr_eq(executor.device(), &device.device))
+    }
+}
+
+/// The library's request from the host's.
+///
+/// # Errors
+/// Invalid argument for numbers that are not listed.
+pub fn request(host: &IsophoteRequest) -> Outcome<Request> {
+    let space = match host.space {
+        ISOPHOTE_SPACE_SRGB => ColourSpace::Srgb,
+        ISOPHOTE_SPACE_LINEAR => ColourSpace::Linear,
+        ISOPHOTE_SPACE_ACESCG => ColourSpace::AcesCg,
+        other => return Err(Failure::argument(format!("{other} is no colour space"))),
+    };
+    let premultiplied = match host.alpha {
+        ISOPHOTE_ALPHA_PREMULTIPLIED => true,
+        ISOPHOTE_ALPHA_STRAIGHT => false,
+        other => return Err(Failure::argument(format!("{other} is no relation of colour to alpha"))),
+    };
+    let bit = |bit: u32| host.guides & bit != 0;
+    let guides = Guides {
+        normal: bit(ISOPHOTE_GUIDE_NORMAL),
+        depth: bit(ISOPHOTE_GUIDE_DEPTH),
+        object_id: bit(ISOPHOTE_GUIDE_OBJECT_ID),
+    };
+    if host.guides & !(ISOPHOTE_GUIDE_NORMAL | ISOPHOTE_GUIDE_DEPTH | ISOPHOTE_GUIDE_OBJECT_ID) != 0 {
+        return Err(Failure::argument(format!("{:#x} are no guides", host.guides)));
+    }
+    Ok(Request { width: host.width, height: host.height, scale: host.scale, space, premultiplied, guides })
+}
+
+/// The host's region, or the whole picture.
+///
+/// # Errors
+/// Geometry when it is empty or not inside the picture.
+///
+/// # Safety
+/// `region` is null or points to a rectangle.
+pub unsafe fn region(region: *const IsophoteRect, request: &Request) -> Outcome<Rect> {
+    isophote::engine::image::check_size(request.width, request.height)?;
+    let whole = Rect::of_size(request.width, request.height);
+    if region.is_null() {
+        return Ok(whole);
+    }
+    // SAFETY: as the caller promised.
+    let host = unsafe { args::get(region, "the region")? };
+    // Compared before anything is subtracted, so that no width overflows.
+    let is_inside = 0 <= host.x0 && host.x0 < host.x1 && host.x1 <= whole.x1;
+    if !(is_inside && 0 <= host.y0 && host.y0 < host.y1 && host.y1 <= whole.y1) {
+        return Err(Failure::geometry(format!(
+            "the region x {}..{}, y {}..{} is not inside the picture of {}x{}",
+            host.x0, host.x1, host.y0, host.y1, whole.x1, whole.y1
+        )));
+    }
+    Ok(Rect { x0: host.x0, y0: host.y0, x1: host.x1, y1: host.y1 })
+}
+
+pub(super) unsafe extern "C" fn request_init(
+    width: u32,
+    height: u32,
+    request: *mut IsophoteRequest,
+) -> IsophoteStatus {
+    let value = IsophoteRequest {
+        width,
+        height,
+        scale: 1.0,
+        space: ISOPHOTE_SPACE_SRGB,
+        alpha: ISOPHOTE_ALPHA_PREMULTIPLIED,
+        guides: 0,
+    };
+    // SAFETY: the host promised that the place may be written.
+    guard::call(|| unsafe { args::put(request, value, "the place for the request") }, |_| {})
+}
+
+pub(super) unsafe extern "C" fn support(
+    graph: IsophoteGraph,
+    host_request: *const IsophoteRequest,
+    host_region: *const IsophoteRect,
+    input: *const c_char,
+    support: *mut IsophoteSupport,
+) -> IsophoteStatus {
+    guard::on::<GraphObject>(graph, |object| {
+        // SAFETY: the host promised structs behind the pointers, and text with a closing zero.
+        let (request, region, input) = unsafe {
+            let request = request(&args::get(host_request, "the request")?)?;
+            let input = if input.is_null() { None } else { Some(graph::input(input)?) };
+            (request, region(host_region, &request)?, input)
+        };
+        let warm = Warm::take(object, &object.snapshot(), &request)?;
+        let plan = warm.plan()?;
+        let windows = plan.windows(region);
+        let window = plan
+            .inputs()
+            .iter()
+            .filter(|port| input.is_none_or(|i| i.id() == port.name))
+            .fold(Rect::default(), |all, port| all.union(&windows[port.image.index()]));
+        let (halo, global) = match plan.support() {
+            Support::Pixels(n) => (n, 0),
+            Support::Global => (0, 1),
+        };
+        let window = IsophoteRect { x0: window.x0, y0: window.y0, x1: window.x1, y1: window.y1 };
+        warm.keep(object);
+        // SAFETY: the host promised that the place may be written.
+        unsafe { args::put(support, IsophoteSupport { window, halo, global }, "the place for the support") }
+    })
+}
+
+pub(super) unsafe extern "C" fn process(
+    graph: IsophoteGraph,
+    device: IsophoteDevice,
+    host_request: *const IsophoteRequest,
+    inputs: *const IsophoteInput,
+    input_count: u32,
+    host_region: *const IsophoteRect,
+    target: *const IsophoteTarget,
+    control: *const IsophoteControl,
+    report: *mut IsophoteReport,
+) -> IsophoteStatus {
+    guard::on::<GraphObject>(graph, |object| {
+        let started = Instant::now();
+        // SAFETY: the host promised structs behind the pointers, and `input_count` of the inputs.
+        let (mut request, inputs, target, control) = unsafe {
+            let request = request(&args::get(host_request, "the request")?)?;
+            let target = Checked::new(&args::get(target, "the target image")?, "the target image")?;
+            let control = if control.is_null() { NO_CONTROL } else { args::get(control, "the control")? };
+            (request, sources(inputs, input_count)?, target, control)
+        };
+        let given = |input| inputs.iter().any(|(i, _)| *i == input);
+        request.guides = Guides {
+            normal: given(GraphInput::Normal),
+            depth: given(GraphInput::Depth),
+            object_id: given(GraphInput::ObjectId),
+        };
+        // SAFETY: the host promised a rectangle behind the pointer, or null.
+        let region = unsafe { region(host_region, &request)? };
+        target.must_hold(&region, "the target image")?;
+        let device = match device {
+            0 => None,
+            handle => Some(DeviceObject::slots().get(handle)?),
+        };
+        let threads = Chosen::new(&control)?;
+        let mut warm = Warm::take(object, &object.snapshot(), &request)?;
+        let job = Job { region, inputs: &inputs, threads: &threads, control: &control };
+        // SAFETY: the host promised that the images' memory may be read.
+        let computed = unsafe { job.run(&mut warm, device.as_deref()) };
+        warm.keep(object);
+        let (result, mended) = computed?;
+        // SAFETY: the host promised that the target's memory may be written; all inputs were copied, so
+        // that it does not matter whether it is theirs.
+        unsafe { target.write(&result) };
+        let done = IsophoteReport { mended, seconds: started.elapsed().as_secs_f64() };
+        // SAFETY: the host promised that the report may be written, or is null.
+        unsafe { args::put_if_wanted(report, done) };
+        Ok(())
+    })
+}
+
+const NO_CONTROL: IsophoteControl =
+    IsophoteControl { user: null_mut(), run: None, progress: None, cancelled: None, threads: 0 };
+
+/// The host's inputs, checked and named.
+///
+/// # Safety
+/// `inputs` is null or points to `count` inputs, whose names are text with a closing zero.
+unsafe fn sources(inputs: *const IsophoteInput, count: u32) -> Outcome<Vec<(GraphInput, Checked)>> {
+    let mut sources: Vec<(GraphInput, Checked)> = Vec::new();
+    for index in 0..count as usize {
+        // More than there are names are refused below, long before the pointer could run off.
+        // SAFETY: as the caller promised.
+        let host = unsafe { args::get(inputs.wrapping_add(index), "the list of inputs")? };
+        // SAFETY: as the caller promised.
+        let input = unsafe { graph::input(host.name)? };
+        if sources.iter().any(|(i, _)| *i == input) {
+            return Err(Failure::argument(format!("input image '{}' is given twice", input.id())));
+        }
+        sources.push((input, Checked::source(&host.image, &format!("input image '{}'", input.id()))?));
+    }
+    Ok(sources)
+}
+
+/// One computation.
+struct Job<'a> {
+    region: Rect,
+    inputs: &'a [(GraphInput, Checked)],
+    threads: &'a Chosen,
+    control: &'a IsophoteControl,
+}
+
+impl Job<'_> {
+    /// Reads the inputs and computes the result.
+    ///
+    /// # Safety
+    /// The memory of the inputs must be readable.
+    unsafe fn run(&self, warm: &mut Warm, device: Option<&DeviceObject>) -> Outcome<(Image, u64)> {
+        let plan = warm.plan()?;
+        let windows = plan.windows(self.region);
+        let mut needed = Vec::new();
+        for port in plan.inputs() {
+            let window = windows[port.image.index()];
+            if window.is_empty() {
+                continue;
+            }
+            let Some((input, image)) = self.inputs.iter().find(|(i, _)| i.id() == port.name) else {
+                return Err(Failure::new(
+                    ISOPHOTE_INPUT,
+                    format!("input image '{}' is missing; {} of it is needed", port.name, shown(&window)),
+                ));
+            };
+            image.must_hold(&window, &format!("input image '{}'", port.name))?;
+            needed.push((*input, *image, window));
+        }
+        must_fit(plan, &windows, device.is_some())?;
+        let mut images = Vec::new();
+        let mut mended = 0;
+        for (input, image, window) in needed {
+            // SAFETY: as the caller promised.
+            let (image, bad) = unsafe { image.read(window, input)? };
+            mended += bad;
+            images.push((input.id(), image));
+        }
+        let images: Vec<(&str, &Image)> = images.iter().map(|(name, image)| (*name, image)).collect();
+        let result = self.execute(warm, device, &images)?;
+        if result.window() != self.region {
+            return Err(Failure::new(
+                ISOPHOTE_UNSUPPORTED,
+                "the graph's output is of another size than the picture",
+            ));
+        }
+        Ok((result, mended))
+    }
+
+    fn execute(
+        &self,
+        warm: &mut Warm,
+        device: Option<&DeviceObject>,
+        images: &[(&str, &Image)],
+    ) -> Outcome<Image> {
+        let user = User(self.control.user);
+        let cancelled = self.control.cancelled.map(|ask| {
+            move || {
+                let user = user;
+                // SAFETY: the host promised a function of this type that any thread may call.
+                unsafe { ask(user.0) != 0 }
+            }
+        });
+        let progress = self.control.progress.map(|tell| {
+            move |done: f32| {
+                let user = user;
+                // SAFETY: the host promised a function of this type.
+                unsafe { tell(user.0, done) }
+            }
+        });
+        let control = Control {
+            cancelled: cancelled.as_ref().map(|c| c as &(dyn Fn() -> bool + Sync)),
+            progress: progress.as_ref().map(|p| p as &dyn Fn(f32)),
+        };
+        let Warm { planned, cpu, gpu } = warm;
+        let plan = planned
+            .as_ref()
+            .map(Planned::plan)
+            .ok_or_else(|| Failure::new(ISOPHOTE_INTERNAL, "the graph has no plan"))?;
+        let results = match device {
+            None => {
+                cpu.get_or_insert_default().run(plan, images, self.region, self.threads.threads(), control)?
+            }
+            Some(object) => {
+                let executor = match gpu.take() {
+                    Some(executor) if Arc::ptr_eq(executor.device(), &object.device) => executor,
+                    _ => gpu::Executor::new(Arc::clone(&object.device)),
+                };
+                let results = gpu.insert(executor).run_images(plan, images, self.region, control);
+                if let Err(e) = &results {
+                    // A lost device takes all that was made on it with it.
+                    *gpu = None;
+                    e.to_string().clone_into(&mut lock(object.message()));
+                }
+                results?
+            }
+        };
+        results.into_iter().next().ok_or_else(|| Failure::new(ISOPHOTE_INTERNAL, "the plan gave no image"))
+    }
+}
+
+/// Fails when the images of a run would not fit into memory, which the allocator answers by ending the
+/// process.
+fn must_fit(plan: &Plan, windows: &[Rect], on_device: bool) -> Outcome<()> {
+    let bytes = |image: usize| {
+        let window = &windows[image];
+        let channels = plan.images()[image].channels;
+        u64::from(window.width()) * u64::from(window.height()) * u64::from(channels) * 4
+    };
+    let mut live: u64 = plan.inputs().iter().map(|port| bytes(port.image.index())).sum();
+    let mut most = live;
+    if on_device {
+        most += plan.outputs().iter().map(|port| bytes(port.image.index())).sum::<u64>();
+    } else {
+        let last_uses = plan.last_uses();
+        let mut freed: Vec<Vec<usize>> = vec![Vec::new(); plan.passes().len()];
+        let inputs: Vec<usize> = plan.inputs().iter().map(|port| port.image.index()).collect();
+        for (image, last) in last_uses.iter().enumerate() {
+            if let Some(list) = freed.get_mut(*last)
+                && !inputs.contains(&image)
+            {
+                list.push(image);
+            }
+        }
+        for (pass, freed) in plan.passes().iter().zip(&freed) {
+            live += pass.outputs.iter().map(|o| bytes(o.index())).sum::<u64>();
+            most = most.max(live);
+            live -= freed.iter().map(|image| bytes(*image)).sum::<u64>();
+        }
+    }
+    let fits =
+        usize::try_from(most).is_ok_and(|bytes| Vec::<u8>::new().try_reserve_exact(bytes.max(1)).is_ok());
+    if fits {
+        return Ok(());
+    }
+    Err(Failure::new(
+        ISOPHOTE_OUT_OF_MEMORY,
+        format!("{} MiB are needed at once, more than there is; compute smaller regions", most >> 20),
+    ))
+}

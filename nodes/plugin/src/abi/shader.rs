@@ -1,0 +1,306 @@
+//! Shaders of kernels in the languages that hosts ask for, translated once and kept.
+//!
+//! There are as many as there are kernels and languages, so that they are never freed: a host may
+//! keep what it was given for as long as it likes.
+
+use super::catalogue::lasting;
+use super::contract::*;
+use super::guard::{Failure, Outcome, lock};
+use isophote::engine::Kernel;
+use naga::back::{glsl, hlsl, msl, spv};
+use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use naga::{AddressSpace, ImageClass, Module, ResourceBinding, ShaderStage, TypeInner};
+use std::collections::HashMap;
+use std::sync::{LazyLock, Mutex};
+
+/// A shader that is never freed nor changed.
+#[derive(Clone, Copy)]
+struct Lasting(&'static IsophoteShader);
+
+// SAFETY: all that the shader points to is leaked and constant.
+unsafe impl Send for Lasting {}
+
+static SHADERS: LazyLock<Mutex<HashMap<(&'static str, IsophoteLanguage), Lasting>>> =
+    LazyLock::new(Mutex::default);
+
+/// The shader of a kernel in a language.
+///
+/// # Errors
+/// Invalid argument for a language that is none, unsupported when it cannot express the kernel.
+pub fn translated(kernel: &'static Kernel, language: IsophoteLanguage) -> Outcome<&'static IsophoteShader> {
+    if language > ISOPHOTE_LANGUAGE_GLSL {
+        return Err(Failure::argument(format!("{language} is no shader language")));
+    }
+    let key = (kernel.name, language);
+    if let Some(found) = lock(&SHADERS).get(&key) {
+        return Ok(found.0);
+    }
+    // Not under the lock: a translation takes milliseconds, and two of the same are alike.
+    let made = translate(kernel, language)?;
+    let code = made.code.leak();
+    let bindings: Vec<IsophoteBinding> = made
+        .bindings
+        .iter()
+        .map(|b| IsophoteBinding { name: lasting(&b.name), binding: b.binding, kind: b.kind, slot: b.slot })
+        .collect();
+    let bindings = bindings.leak();
+    let shader = Box::leak(Box::new(IsophoteShader {
+        code: code.as_ptr().cast(),
+        size: made.size,
+        entry_point: lasting(&made.entry_point),
+        bindings: bindings.as_ptr(),
+        binding_count: bindings.len() as u32,
+        language,
+    }));
+    Ok(lock(&SHADERS).entry(key).or_insert(Lasting(shader)).0)
+}
+
+struct Made {
+    /// The code in words, so that SPIR-V is aligned; text has its closing zero in it.
+    code: Vec<u32>,
+    size: usize,
+    entry_point: String,
+    bindings: Vec<Bound>,
+}
+
+struct Bound {
+    name: String,
+    binding: u32,
+    kind: IsophoteBindingKind,
+    slot: u32,
+}
+
+impl Bound {
+    fn resource(&self) -> ResourceBinding {
+        ResourceBinding { group: 0, binding: self.binding }
+    }
+}
+
+fn translate(kernel: &Kernel, language: IsophoteLanguage) -> Outcome<Made> {
+    let fail = |what: &str| {
+        Failure::new(ISOPHOTE_UNSUPPORTED, format!("the shader of kernel '{}': {what}", kernel.name))
+    };
+    let module = naga::front::wgsl::parse_str(kernel.shader).map_err(|e| fail(&e.to_string()))?;
+    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .map_err(|e| fail(&e.to_string()))?;
+    let entry = module.entry_points.first().ok_or_else(|| fail("it has no entry point"))?;
+    let mut made =
+        Made { code: Vec::new(), size: 0, entry_point: entry.name.clone(), bindings: bindings(&module) };
+    renumber(&mut made.bindings, language);
+    let text = match language {
+        ISOPHOTE_LANGUAGE_SPIRV => {
+            made.code = spirv(&module, &info).map_err(|e| fail(&e))?;
+            made.size = made.code.len() * 4;
+            return Ok(made);
+        }
+        ISOPHOTE_LANGUAGE_HLSL => hlsl(&module, &info, &mut made).map_err(|e| fail(&e))?,
+        ISOPHOTE_LANGUAGE_MSL => msl(&module, &info, &mut made).map_err(|e| fail(&e))?,
+        ISOPHOTE_LANGUAGE_GLSL => glsl(&module, &info, &made).map_err(|e| fail(&e))?,
+        _ => kernel.shader.to_owned(),
+    };
+    if language == ISOPHOTE_LANGUAGE_GLSL {
+        // GLSL knows no other name.
+        made.entry_point = "main".into();
+    }
+    made.size = text.len();
+    let mut bytes = text.into_bytes();
+    // The closing zero, and whole words.
+    bytes.resize(bytes.len() / 4 * 4 + 4, 0);
+    made.code = bytes.chunks_exact(4).map(|b| u32::from_ne_bytes([b[0], b[1], b[2], b[3]])).collect();
+    Ok(made)
+}
+
+/// The kernel's bindings in the order of their numbers.
+fn bindings(module: &Module) -> Vec<Bound> {
+    let mut found: Vec<Bound> = module
+        .global_variables
+        .iter()
+        .filter_map(|(_, variable)| {
+            let place = variable.binding.as_ref()?;
+            let kind = match (&variable.space, &module.types[variable.ty].inner) {
+                (AddressSpace::Uniform, _) => ISOPHOTE_BINDING_UNIFORM,
+                (_, TypeInner::Image { class: ImageClass::Storage { .. }, .. }) => ISOPHOTE_BINDING_STORAGE,
+                _ => ISOPHOTE_BINDING_SAMPLED,
+            };
+            let name = variable.name.clone().unwrap_or_default();
+            Some(Bound { name, binding: place.binding, kind, slot: place.binding })
+        })
+        .collect();
+    found.sort_by_key(|b| b.binding);
+    found
+}
+
+/// Numbers the slots as each language has them.
+fn renumber(bindings: &mut [Bound], language: IsophoteLanguage) {
+    let (mut buffers, mut sampled, mut storage, mut textures) = (0, 0, 0, 0);
+    let next = |counter: &mut u32| {
+        *counter += 1;
+        *counter - 1
+    };
+    for bound in bindings {
+        bound.slot = match (language, bound.kind) {
+            (ISOPHOTE_LANGUAGE_WGSL | ISOPHOTE_LANGUAGE_SPIRV, _) => bound.binding,
+            (_, ISOPHOTE_BINDING_UNIFORM) => next(&mut buffers),
+            // Metal counts all textures together.
+            (ISOPHOTE_LANGUAGE_MSL, _) => next(&mut textures),
+            (_, ISOPHOTE_BINDING_SAMPLED) => next(&mut sampled),
+            _ => next(&mut storage),
+        };
+    }
+}
+
+/// What reads outside an array or buffer: the nearest element. Kernels clamp texels themselves.
+const BOUNDS: BoundsCheckPolicies = BoundsCheckPolicies {
+    index: BoundsCheckPolicy::Restrict,
+    buffer: BoundsCheckPolicy::Restrict,
+    image_load: BoundsCheckPolicy::Unchecked,
+    binding_array: BoundsCheckPolicy::Unchecked,
+};
+
+fn spirv(module: &Module, info: &ModuleInfo) -> Result<Vec<u32>, String> {
+    let options = spv::Options {
+        lang_version: (1, 0),
+        // Compute shaders have no positions to adjust; names help in debuggers.
+        flags: spv::WriterFlags::DEBUG,
+        bounds_check_policies: BOUNDS,
+        ..spv::Options::default()
+    };
+    spv::write_vec(module, info, &options, None).map_err(|e| e.to_string())
+}
+
+fn hlsl(module: &Module, info: &ModuleInfo, made: &mut Made) -> Result<String, String> {
+    let target = |b: &Bound| hlsl::BindTarget { register: b.slot, ..hlsl::BindTarget::default() };
+    let options = hlsl::Options {
+        shader_model: hlsl::ShaderModel::V5_0,
+        binding_map: made.bindings.iter().map(|b| (b.resource(), target(b))).collect(),
+        fake_missing_bindings: false,
+        ..hlsl::Options::default()
+    };
+    let mut text = String::new();
+    let pipeline = hlsl::PipelineOptions::default();
+    let reflection = hlsl::Writer::new(&mut text, &options, &pipeline)
+        .write(module, info, None)
+        .map_err(|e| e.to_string())?;
+    if let Some(Ok(name)) = reflection.entry_point_names.into_iter().next() {
+        made.entry_point = name;
+    }
+    Ok(text)
+}
+
+fn msl(module: &Module, info: &ModuleInfo, made: &mut Made) -> Result<String, String> {
+    let target = |b: &Bound| {
+        // No kernel binds more than a dozen things.
+        let slot = Some(b.slot as u8);
+        let is_buffer = b.kind == ISOPHOTE_BINDING_UNIFORM;
+        msl::BindTarget {
+            buffer: slot.filter(|_| is_buffer),
+            texture: slot.filter(|_| !is_buffer),
+            mutable: b.kind == ISOPHOTE_BINDING_STORAGE,
+            ..msl::BindTarget::default()
+        }
+    };
+    let resources = msl::EntryPointResources {
+        resources: made.bindings.iter().map(|b| (b.resource(), target(b))).collect(),
+        ..msl::EntryPointResources::default()
+    };
+    let options = msl::Options {
+        lang_version: (2, 0),
+        per_entry_point_map: [(made.entry_point.clone(), resources)].into(),
+        fake_missing_bindings: false,
+        bounds_check_policies: BOUNDS,
+        ..msl::Options::default()
+    };
+    let (text, translation) = msl::write_string(module, info, &options, &msl::PipelineOptions::default())
+        .map_err(|e| e.to_string())?;
+    if let Some(Ok(name)) = translation.entry_point_names.into_iter().next() {
+        made.entry_point = name;
+    }
+    Ok(text)
+}
+
+fn glsl(module: &Module, info: &ModuleInfo, made: &Made) -> Result<String, String> {
+    let options = glsl::Options {
+        version: glsl::Version::Desktop(430),
+        writer_flags: glsl::WriterFlags::empty(),
+        binding_map: made.bindings.iter().map(|b| (b.resource(), b.slot as u8)).collect(),
+        ..glsl::Options::default()
+    };
+    let pipeline = glsl::PipelineOptions {
+        shader_stage: ShaderStage::Compute,
+        entry_point: made.entry_point.clone(),
+        multiview: None,
+    };
+    let mut text = String::new();
+    glsl::Writer::new(&mut text, module, info, &options, &pipeline, BOUNDS)
+        .and_then(|mut writer| writer.write())
+        .map_err(|e| e.to_string())?;
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isophote::{Graph, Planned, Request, registry};
+    use std::ffi::CStr;
+
+    /// Kernels that the nodes use with their defaults.
+    fn kernels() -> Vec<&'static Kernel> {
+        let mut found: Vec<&'static Kernel> = Vec::new();
+        for node in registry::nodes() {
+            let Ok(graph) = Graph::single(node.id) else { continue };
+            let Ok(planned) = Planned::new(&graph, Request::new(64, 48)) else { continue };
+            for pass in planned.plan().passes() {
+                if !found.iter().any(|k| k.name == pass.kernel.name) {
+                    found.push(pass.kernel);
+                }
+            }
+        }
+        assert!(!found.is_empty());
+        found
+    }
+
+    #[test]
+    fn every_kernel_speaks_every_language() {
+        for kernel in kernels() {
+            for language in ISOPHOTE_LANGUAGE_WGSL..=ISOPHOTE_LANGUAGE_GLSL {
+                let shader = translated(kernel, language).unwrap_or_else(|e| panic!("{e:?}"));
+                assert_eq!(shader.binding_count as usize, 2 + kernel.inputs + kernel.outputs.len());
+                // SAFETY: the arrays have the lengths beside them, texts their closing zeros.
+                let (code, bindings, entry) = unsafe {
+                    (
+                        std::slice::from_raw_parts(shader.code.cast::<u8>(), shader.size),
+                        std::slice::from_raw_parts(shader.bindings, shader.binding_count as usize),
+                        CStr::from_ptr(shader.entry_point).to_str().unwrap(),
+                    )
+                };
+                if language == ISOPHOTE_LANGUAGE_SPIRV {
+                    assert_eq!(code[..4], 0x0723_0203_u32.to_ne_bytes());
+                    continue;
+                }
+                let text = std::str::from_utf8(code).unwrap();
+                assert!(text.contains(&format!(" {entry}(")), "{}: {entry}\n{text}", kernel.name);
+                for b in bindings {
+                    let place = match (language, b.kind) {
+                        (ISOPHOTE_LANGUAGE_WGSL, _) => format!("@binding({})", b.slot),
+                        (ISOPHOTE_LANGUAGE_HLSL, ISOPHOTE_BINDING_UNIFORM) => {
+                            format!("register(b{})", b.slot)
+                        }
+                        (ISOPHOTE_LANGUAGE_HLSL, ISOPHOTE_BINDING_SAMPLED) => {
+                            format!("register(t{})", b.slot)
+                        }
+                        (ISOPHOTE_LANGUAGE_HLSL, _) => format!("register(u{})", b.slot),
+                        (ISOPHOTE_LANGUAGE_MSL, ISOPHOTE_BINDING_UNIFORM) => {
+                            format!("[[buffer({})]]", b.slot)
+                        }
+                        (ISOPHOTE_LANGUAGE_MSL, _) => format!("[[texture({})]]", b.slot),
+                        _ => format!("binding = {}", b.slot),
+                    };
+                    assert!(text.contains(&place), "{}: {place} is missing in\n{text}", kernel.name);
+                }
+                assert!(std::ptr::eq(shader, translated(kernel, language).unwrap()));
+            }
+        }
+    }
+}
