@@ -15,7 +15,7 @@ use isophote::{Graph, Planned};
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
 use std::ptr::null;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 /// A plan of a host's.
 #[derive(Debug)]
@@ -130,7 +130,7 @@ fn texture(texture: &Texture, name: &mut impl FnMut(&str) -> *const c_char) -> I
 
 fn pass(dispatch: &Dispatch, name: &mut impl FnMut(&str) -> *const c_char) -> IsophotePass {
     IsophotePass {
-        kernel: name(dispatch.kernel.name),
+        kernel: name(&dispatch.shader.name),
         grid: (&raw const dispatch.grid).cast(),
         params: dispatch.params.as_ptr().cast(),
         inputs: dispatch.inputs.as_ptr(),
@@ -236,9 +236,9 @@ pub(super) unsafe extern "C" fn shader(
             let message = format!("the plan has {count} passes, counted from 0, and no pass {pass}");
             return Err(Failure::new(ISOPHOTE_UNKNOWN, message));
         };
-        let kernel = dispatch.kernel;
+        let kernel = Arc::clone(&dispatch.shader);
         drop(state);
-        let found = shader::translated(kernel, language)?;
+        let found = shader::translated(&kernel, language)?;
         // SAFETY: the host promised that the place may be written.
         unsafe { args::put(shader, found, "the place for the shader") }
     })

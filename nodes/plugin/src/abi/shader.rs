@@ -6,7 +6,7 @@
 use super::catalogue::lasting;
 use super::contract::*;
 use super::guard::{Failure, Outcome, lock};
-use isophote::engine::Kernel;
+use isophote::engine::program::Shader;
 use naga::back::{glsl, hlsl, msl, spv};
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
@@ -21,18 +21,17 @@ struct Lasting(&'static IsophoteShader);
 // SAFETY: all that the shader points to is leaked and constant.
 unsafe impl Send for Lasting {}
 
-static SHADERS: LazyLock<Mutex<HashMap<(&'static str, IsophoteLanguage), Lasting>>> =
-    LazyLock::new(Mutex::default);
+static SHADERS: LazyLock<Mutex<HashMap<(String, IsophoteLanguage), Lasting>>> = LazyLock::new(Mutex::default);
 
 /// The shader of a kernel in a language.
 ///
 /// # Errors
 /// Invalid argument for a language that is none, unsupported when it cannot express the kernel.
-pub fn translated(kernel: &'static Kernel, language: IsophoteLanguage) -> Outcome<&'static IsophoteShader> {
+pub fn translated(kernel: &Shader, language: IsophoteLanguage) -> Outcome<&'static IsophoteShader> {
     if language > ISOPHOTE_LANGUAGE_GLSL {
         return Err(Failure::argument(format!("{language} is no shader language")));
     }
-    let key = (kernel.name, language);
+    let key = (kernel.name.to_string(), language);
     if let Some(found) = lock(&SHADERS).get(&key) {
         return Ok(found.0);
     }
@@ -77,11 +76,11 @@ impl Bound {
     }
 }
 
-fn translate(kernel: &Kernel, language: IsophoteLanguage) -> Outcome<Made> {
+fn translate(kernel: &Shader, language: IsophoteLanguage) -> Outcome<Made> {
     let fail = |what: &str| {
         Failure::new(ISOPHOTE_UNSUPPORTED, format!("the shader of kernel '{}': {what}", kernel.name))
     };
-    let module = naga::front::wgsl::parse_str(kernel.shader).map_err(|e| fail(&e.to_string()))?;
+    let module = naga::front::wgsl::parse_str(&kernel.source).map_err(|e| fail(&e.to_string()))?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
         .validate(&module)
         .map_err(|e| fail(&e.to_string()))?;
@@ -98,7 +97,7 @@ fn translate(kernel: &Kernel, language: IsophoteLanguage) -> Outcome<Made> {
         ISOPHOTE_LANGUAGE_HLSL => hlsl(&module, &info, &mut made).map_err(|e| fail(&e))?,
         ISOPHOTE_LANGUAGE_MSL => msl(&module, &info, &mut made).map_err(|e| fail(&e))?,
         ISOPHOTE_LANGUAGE_GLSL => glsl(&module, &info, &made).map_err(|e| fail(&e))?,
-        _ => kernel.shader.to_owned(),
+        _ => kernel.source.to_string(),
     };
     if language == ISOPHOTE_LANGUAGE_GLSL {
         // GLSL knows no other name.
@@ -246,14 +245,14 @@ mod tests {
     use std::ffi::CStr;
 
     /// Kernels that the nodes use with their defaults.
-    fn kernels() -> Vec<&'static Kernel> {
-        let mut found: Vec<&'static Kernel> = Vec::new();
+    fn kernels() -> Vec<Shader> {
+        let mut found: Vec<Shader> = Vec::new();
         for node in registry::nodes() {
             let Ok(graph) = Graph::single(node.id) else { continue };
             let Ok(planned) = Planned::new(&graph, Request::new(64, 48)) else { continue };
             for pass in planned.plan().passes() {
                 if !found.iter().any(|k| k.name == pass.kernel.name) {
-                    found.push(pass.kernel);
+                    found.push(Shader::from(pass.kernel));
                 }
             }
         }
@@ -265,7 +264,7 @@ mod tests {
     fn every_kernel_speaks_every_language() {
         for kernel in kernels() {
             for language in ISOPHOTE_LANGUAGE_WGSL..=ISOPHOTE_LANGUAGE_GLSL {
-                let shader = translated(kernel, language).unwrap_or_else(|e| panic!("{e:?}"));
+                let shader = translated(&kernel, language).unwrap_or_else(|e| panic!("{e:?}"));
                 assert_eq!(shader.binding_count as usize, 2 + kernel.inputs + kernel.outputs.len());
                 // SAFETY: the arrays have the lengths beside them, texts their closing zeros.
                 let (code, bindings, entry) = unsafe {
@@ -299,7 +298,7 @@ mod tests {
                     };
                     assert!(text.contains(&place), "{}: {place} is missing in\n{text}", kernel.name);
                 }
-                assert!(std::ptr::eq(shader, translated(kernel, language).unwrap()));
+                assert!(std::ptr::eq(shader, translated(&kernel, language).unwrap()));
             }
         }
     }
