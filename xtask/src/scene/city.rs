@@ -13,6 +13,9 @@ use glam::{Mat4, Quat, Vec2, Vec3};
 /// The middle of the temple.
 const TEMPLE: Vec3 = Vec3::new(-2.6, 0.0, -11.0);
 
+/// Trees that stand in the square.
+const PLANTERS: [Vec3; 2] = [Vec3::new(-5.2, LEVEL, 19.3), Vec3::new(12.9, LEVEL, 24.6)];
+
 /// A model of one mesh.
 fn single(material: Material, mesh: Mesh) -> Model {
     let mut model = Model::default();
@@ -93,7 +96,17 @@ fn temple_precinct(writer: &mut Writer) {
 /// The furniture of the square.
 fn square_and_market(writer: &mut Writer) {
     let fountain = writer.model("fountain", &square::fountain());
-    writer.place("fountain", fountain, Vec3::new(9.0, LEVEL, 15.5), 0.0);
+    writer.root(Node {
+        name: "fountain".into(),
+        translation: Vec3::new(9.0, LEVEL, 15.5),
+        scale: 0.86,
+        mesh: Some(fountain),
+        ..Node::default()
+    });
+    let planter = writer.model("planter", &square::planter());
+    for place in PLANTERS {
+        writer.place("planter", planter, place, 0.0);
+    }
     let statue = writer.model("statue", &square::statue());
     writer.place("statue", statue, Vec3::new(-8.6, LEVEL, 12.4), 24.0);
     let stall = writer.model("market stall", &market::stall());
@@ -214,6 +227,10 @@ fn houses(writer: &mut Writer) {
         (18.0, -49.0, -12.0),
         (31.0, -40.0, -35.0),
         (31.0, 18.0, -85.0),
+        (-29.0, 31.0, 140.0),
+        (-17.0, 40.0, 165.0),
+        (20.0, 40.5, 195.0),
+        (31.5, 31.0, -120.0),
     ];
     for (index, (x, z, degrees)) in places.into_iter().enumerate() {
         let place = Vec3::new(x, ground_height(x, z) - 0.3, z);
@@ -229,7 +246,11 @@ fn trees(writer: &mut Writer) {
     ];
     let places = [
         (0, -12.6, -7.5, 40.0, 1.15),
-        (1, -11.8, 27.6, 200.0, 0.95),
+        (1, PLANTERS[0].x, PLANTERS[0].z, 200.0, 1.2),
+        (0, PLANTERS[1].x, PLANTERS[1].z, 80.0, 1.1),
+        (0, -11.0, 33.5, 130.0, 1.3),
+        (1, 4.0, 38.0, 10.0, 1.15),
+        (0, 27.0, 33.0, 220.0, 1.3),
         (0, 12.4, -4.6, 120.0, 1.0),
         (1, 9.6, -10.4, 300.0, 0.8),
         (0, -13.4, -20.0, 10.0, 1.25),
@@ -249,6 +270,20 @@ fn trees(writer: &mut Writer) {
             mesh: Some(broad[kind]),
             ..Node::default()
         });
+    }
+    // An olive grove on the slope.
+    for row in 0..5 {
+        for column in 0..5 {
+            let (x, z) = (-42.0 - column as f32 * 5.2, -12.0 + row as f32 * 6.5 + column as f32 * 1.5);
+            writer.root(Node {
+                name: "olive tree".into(),
+                translation: Vec3::new(x, ground_height(x, z), z),
+                rotation: Quat::from_rotation_y((row * 5 + column) as f32 * 2.3),
+                scale: 0.72 + 0.05 * ((row * 2 + column * 3) % 4) as f32,
+                mesh: Some(broad[1]),
+                ..Node::default()
+            });
+        }
     }
     let cypress = writer.model("cypress", &nature::cypress(47));
     let places = [

@@ -120,7 +120,7 @@ impl Slope {
         let radius = tile.x * 0.27;
         let lip = tile.x * 0.16;
         // Across one tile: a flat pan, then a cover that arches over the joint.
-        const ARCH: usize = 4;
+        const ARCH: usize = 3;
         let mut section = vec![(0.0, 0.0, Vec3::Y), (tile.x - 2.0 * radius, 0.0, Vec3::Y)];
         for step in 0..=ARCH {
             let angle = PI * (1.0 - step as f32 / ARCH as f32);

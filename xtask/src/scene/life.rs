@@ -19,7 +19,7 @@ fn times(intervals: usize) -> Vec<f32> {
 /// The camera's place and the point it looks at, at a moment in [0, 1].
 fn view(t: f32) -> (Vec3, Vec3) {
     let ease = t * t * (3.0 - 2.0 * t);
-    let place = Vec3::new(lerp(12.6, 8.6, ease), lerp(2.5, 3.6, ease), lerp(31.5, 27.0, ease));
+    let place = Vec3::new(lerp(12.6, 9.4, ease), lerp(2.5, 3.7, ease), lerp(31.5, 28.2, ease));
     let target = Vec3::new(lerp(-0.4, -1.0, ease), lerp(4.3, 4.6, ease), lerp(2.0, 1.0, ease));
     (place, target)
 }

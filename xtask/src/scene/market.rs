@@ -92,7 +92,7 @@ fn crate_of(color: Vec3, random: &mut Random) -> Model {
             let x = (column as f32 - 2.0) * 0.107 + random.around(0.008);
             let z = (row as f32 - 1.5) * 0.104 + random.around(0.008);
             let bulge = 0.05 * (1.0 - (x / half.x).powi(2)) + random.range(0.0, 0.02);
-            fruit.ellipsoid(Vec3::new(x, height - 0.03 + bulge, z), Vec3::splat(radius), 10);
+            fruit.ellipsoid(Vec3::new(x, height - 0.03 + bulge, z), Vec3::splat(radius), 8);
             let ripe = random.range(0.75, 1.2);
             fruit.paint(|_, normal| color * ripe * (0.75 + 0.25 * normal.y));
         }
@@ -122,7 +122,7 @@ const AMPHORA: [(f32, f32); 14] = [
 pub fn amphora() -> Model {
     let mut model = Model::default();
     let clay = model.part(Material::Terracotta);
-    clay.lathe(&smooth(&AMPHORA, 40), 28);
+    clay.lathe(&smooth(&AMPHORA, 30), 26);
     handles(clay, 0.08, 0.93, 0.22, 0.66, 0.028);
     model
 }
@@ -182,7 +182,7 @@ pub fn painted_vase() -> Model {
         (0.42, 1.60),
     ];
     let mut body = Mesh::default();
-    body.lathe(&smooth(&outline, 60), 56);
+    body.lathe(&smooth(&outline, 42), 48);
     body.fit_uvs();
     let mut rim = Mesh::default();
     rim.lathe(&[(0.42, 1.60), (0.40, 1.62), (0.35, 1.60), (0.26, 1.48)].map(Vec2::from), 56);

@@ -114,17 +114,17 @@ impl Material {
         match self {
             Self::Marble => Definition {
                 name: "marble",
-                color: [0.93, 0.90, 0.84],
+                color: [0.84, 0.80, 0.73],
                 roughness: 0.55,
                 tile: Some(3.0),
                 texture: Some(Texture::Marble),
                 ..PLAIN
             },
-            Self::MarbleBlocks => blocks("marble blocks", [1.0, 0.97, 0.91], 2.4),
+            Self::MarbleBlocks => blocks("marble blocks", [0.92, 0.87, 0.79], 2.4),
             Self::Ashlar => blocks("ashlar", [0.80, 0.66, 0.47], 3.2),
             Self::Paving => Definition {
                 name: "paving",
-                color: [0.86, 0.80, 0.70],
+                color: [0.74, 0.67, 0.57],
                 roughness: 0.85,
                 tile: Some(5.0),
                 texture: Some(Texture::Paving),
@@ -145,11 +145,11 @@ impl Material {
             Self::Earth => Definition {
                 name: "earth",
                 roughness: 1.0,
-                tile: Some(7.0),
+                tile: Some(5.0),
                 texture: Some(Texture::Earth),
                 ..PLAIN
             },
-            Self::PlasterWhite => plaster("white plaster", [0.88, 0.83, 0.74]),
+            Self::PlasterWhite => plaster("white plaster", [0.82, 0.76, 0.66]),
             Self::PlasterOchre => plaster("ochre plaster", [0.80, 0.55, 0.26]),
             Self::PlasterRose => plaster("rose plaster", [0.76, 0.47, 0.36]),
             Self::PlasterRed => plaster("red paint", [0.44, 0.095, 0.06]),

@@ -24,15 +24,28 @@ pub fn pavement() -> Model {
         [(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)]
             .map(|(x, z)| Vec3::new(half.x * x, y, centre + half.y * z))
     };
-    model.part(Material::Paving).face(&flat(HALF - 0.45, LEVEL, CENTRE_Z));
+    // In pieces, so that no triangle reaches from one end of the picture to the other.
+    let (pieces, inner) = (6, HALF - 0.45);
+    let at = |x: i32, z: i32| {
+        let step = Vec2::new(x as f32, z as f32) / pieces as f32 * 2.0 - 1.0;
+        Vec3::new(inner.x * step.x, LEVEL, CENTRE_Z + inner.y * step.y)
+    };
+    for z in 0..pieces {
+        for x in 0..pieces {
+            let corners = [at(x, z + 1), at(x + 1, z + 1), at(x + 1, z), at(x, z)];
+            model.part(Material::Paving).face(&corners);
+        }
+    }
     model.part(Material::Cobbles).face(&flat(Vec2::new(27.0, 33.0), 0.0, 0.0));
     let mosaic = Vec2::splat(3.4);
     let frame: Vec<Vec2> = [(0.28, -0.02), (0.26, 0.035), (0.0, 0.035)].map(Vec2::from).to_vec();
     let mut border = Mesh::default();
     border.moulding(mosaic, &frame);
-    let lift = Mat4::from_translation(Vec3::new(0.0, LEVEL, 12.0));
+    let lift = Mat4::from_translation(Vec3::new(-2.6, LEVEL, 10.8));
     model.part(Material::Marble).append(&border, lift);
-    model.part(Material::Mosaic).picture(flat(mosaic, LEVEL + 0.034, 12.0));
+    let mut carpet = Mesh::default();
+    carpet.picture(flat(mosaic, 0.034, 0.0));
+    model.part(Material::Mosaic).append(&carpet, lift);
     model
 }
 
@@ -90,6 +103,26 @@ pub fn fountain() -> Model {
         let radii: Vec<f32> = (0..=9).map(|step| 0.03 + 0.012 * (step as f32 / 9.0)).collect();
         model.part(Material::Spray).tube(&path, &radii, 7);
     }
+    model
+}
+
+/// A round stone bench about a bed of earth, for a tree that stands in the square.
+pub fn planter() -> Model {
+    let mut model = Model::default();
+    let outline = [
+        (1.3, -0.1),
+        (1.3, 0.08),
+        (1.18, 0.1),
+        (1.18, 0.36),
+        (1.3, 0.42),
+        (1.3, 0.5),
+        (0.92, 0.5),
+        (0.92, 0.3),
+    ];
+    model.part(Material::Marble).lathe(&outline.map(Vec2::from), 40);
+    let mut bed = Mesh::default();
+    bed.lathe(&[(0.95, 0.38), (0.0, 0.46)].map(Vec2::from), 24);
+    model.part(Material::Earth).append(&bed, Mat4::IDENTITY);
     model
 }
 
@@ -251,20 +284,28 @@ pub fn portico(length: f32) -> Model {
     );
     model.part(Material::MarbleBlocks).append(&base, Mat4::IDENTITY);
     let back = -depth / 2.0;
-    for (low, high, paint) in [
-        (0.4, 1.7, Material::PlasterRed),
-        (1.7, 3.5, Material::PlasterOchre),
-        (3.5, 5.9, Material::PlasterWhite),
-    ] {
-        model.part(paint).cuboid(
-            Vec3::new(-half, low, back - 0.4),
-            Vec3::new(half, high, back),
-            Faces::Sides,
-        );
+    model.part(Material::PlasterWhite).cuboid(
+        Vec3::new(-half, 0.3, back - 0.4),
+        Vec3::new(half, 5.9, back - 0.02),
+        Faces::Sides,
+    );
+    for (low, high, paint) in [(0.4, 1.7, Material::PlasterRed), (1.7, 3.5, Material::PlasterOchre)] {
+        let (low, high) = (Vec3::new(-half + 0.3, low, back - 0.1), Vec3::new(half - 0.3, high, back));
+        model.part(paint).cuboid(low, high, Faces::Standing);
+    }
+    for index in 0..8 {
+        // Painted panels between the columns.
+        let x = (index as f32 + 0.5) / 8.0 * (length - 0.9) - half + 0.45;
+        let (low, high) = (Vec3::new(x - 0.8, 1.95, back - 0.1), Vec3::new(x + 0.8, 3.2, back + 0.012));
+        model.part(Material::PlasterRed).cuboid(low, high, Faces::Standing);
+        let inset = Vec3::new(0.07, 0.07, -0.004);
+        model.part(Material::PlasterWhite).cuboid(low + inset, high - inset, Faces::Standing);
+        let inset = Vec3::new(0.12, 0.12, -0.008);
+        model.part(Material::PlasterBlue).cuboid(low + inset, high - inset, Faces::Standing);
     }
     model.part(Material::PlasterBlue).cuboid(
-        Vec3::new(-half, 1.66, back),
-        Vec3::new(half, 1.78, back + 0.02),
+        Vec3::new(-half + 0.3, 1.66, back - 0.1),
+        Vec3::new(half - 0.3, 1.78, back + 0.02),
         Faces::All,
     );
     let front = depth / 2.0 - 0.3;

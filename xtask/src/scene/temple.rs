@@ -255,7 +255,7 @@ fn cella(model: &mut Model) {
         }
         let hinge = Mat4::from_translation(Vec3::new(side * 1.08, PLATFORM, porch - 0.5))
             * Mat4::from_scale(Vec3::new(-side, 1.0, 1.0))
-            * Mat4::from_rotation_y(0.9);
+            * Mat4::from_rotation_y(1.35);
         model.part(Material::Bronze).append(&leaf, hinge);
     }
     let dark = model.part(Material::Dark);
@@ -273,7 +273,7 @@ fn roof(model: &mut Model) {
     let half = axes() + BEAM;
     let run = half.x + 0.62;
     let base = PLATFORM + COLUMN + ENTABLATURE;
-    let (eave, length) = (base + 0.16, (half.y + 0.60) * 2.0);
+    let (eave, length) = (base + 0.16, (half.y + 0.50) * 2.0);
     let ridge = eave + run * PITCH;
     for side in [-1.0, 1.0] {
         let slope = Slope {

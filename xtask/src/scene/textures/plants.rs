@@ -8,11 +8,11 @@ use std::f32::consts::FRAC_PI_2;
 /// Dry ground with tufts of grass; vertex colours make it greener or paler.
 pub fn earth() -> Vec<Painted> {
     let picture = Picture::paint(1024, 1024, |uv| {
-        let grass = smoothstep(0.42, 0.62, fractal(uv, 5, 5, 101));
-        let blades = fractal_stretched(uv, IVec2::new(128, 48), 3, 103);
-        let grit = fractal(uv, 64, 3, 107);
-        let soil = Vec3::new(0.72, 0.60, 0.43) * (0.82 + 0.36 * grit);
-        let green = Vec3::new(0.50, 0.52, 0.27) * (0.60 + 0.75 * blades);
+        let grass = smoothstep(0.30, 0.66, fractal(uv, 11, 5, 101));
+        let blades = fractal_stretched(uv, IVec2::new(256, 96), 2, 103);
+        let grit = fractal(uv, 96, 3, 107);
+        let soil = Vec3::new(0.76, 0.69, 0.52) * (0.80 + 0.40 * grit);
+        let green = Vec3::new(0.64, 0.65, 0.41) * (0.66 + 0.62 * blades);
         blend(soil, green, grass)
     });
     vec![(Texture::Earth, picture)]
