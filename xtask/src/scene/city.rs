@@ -14,7 +14,7 @@ use glam::{Mat4, Quat, Vec2, Vec3};
 const TEMPLE: Vec3 = Vec3::new(-2.6, 0.0, -11.0);
 
 /// Trees that stand in the square.
-const PLANTERS: [Vec3; 2] = [Vec3::new(-5.2, LEVEL, 19.3), Vec3::new(12.9, LEVEL, 24.6)];
+const PLANTERS: [Vec3; 2] = [Vec3::new(-5.2, LEVEL, 19.3), Vec3::new(-12.4, LEVEL, 25.6)];
 
 /// A model of one mesh.
 fn single(material: Material, mesh: Mesh) -> Model {

@@ -195,7 +195,7 @@ impl Material {
             Self::Spray => plain("running water", [0.62, 0.74, 0.76], 0.25),
             Self::Broadleaf => leaves("broad leaves", [1.0; 3], Texture::Leaves),
             Self::Cypress => leaves("cypress", [1.0; 3], Texture::Needles),
-            Self::Bark => Definition { name: "bark", ..wood("", [0.36, 0.29, 0.23]) },
+            Self::Bark => Definition { name: "bark", texture: Some(Texture::Bark), ..wood("", [0.42, 0.33, 0.25]) },
             Self::StripedCloth => Definition {
                 name: "striped cloth",
                 roughness: 0.95,

@@ -18,7 +18,7 @@ pub fn earth() -> Vec<Painted> {
     vec![(Texture::Earth, picture)]
 }
 
-/// Eight upright planks.
+/// Eight upright planks, and bark.
 pub fn wood() -> Vec<Painted> {
     let picture = Picture::paint(512, 512, |uv| {
         let plank = (uv.x * 8.0).floor();
@@ -32,7 +32,12 @@ pub fn wood() -> Vec<Painted> {
             (0.66 + 0.22 * unit(id) + 0.10 * (rings - 0.5) + 0.2 * (grain - 0.5)) * (0.35 + 0.65 * gap);
         Vec3::new(value, value * 0.96, value * 0.90)
     });
-    vec![(Texture::Wood, picture)]
+    let bark = Picture::paint(256, 256, |uv| {
+        let ridges = fractal_stretched(uv, IVec2::new(18, 3), 3, 117);
+        let value = 0.50 + 0.42 * smoothstep(0.36, 0.60, ridges) + 0.2 * (fractal(uv, 24, 3, 119) - 0.5);
+        Vec3::new(value, value * 0.95, value * 0.88)
+    });
+    vec![(Texture::Wood, picture), (Texture::Bark, bark)]
 }
 
 /// Ripples.
