@@ -87,6 +87,10 @@ fn sunlight(position: vec3f, normal: vec3f) -> f32 {
     let moved = position + normal * texel * (0.6 + 2.4 * slope) + frame.sun_direction.xyz * texel;
     let projected = frame.sun_matrix * vec4f(moved, 1.0);
     let uv = projected.xy * vec2f(0.5, -0.5) + 0.5;
+    // The map covers the framed scene; backdrops beyond it are in the sun.
+    if (any(uv < vec2f(0.0)) || any(uv > vec2f(1.0)) || projected.z > 1.0) {
+        return 1.0;
+    }
     let step = 1.0 / vec2f(textureDimensions(shadow_map));
     var sum = 0.0;
     for (var y = -1.5; y < 2.0; y += 1.0) {

@@ -264,7 +264,14 @@ impl Renderer {
         });
         pass.set_bind_group(0, &self.buffers.bind_group, &[]);
         if look.sun_color.is_some() {
-            (0..scene.draws.len()).for_each(|index| self.draw(&mut pass, scene, index, Pass::Shadow));
+            // What is shown as it is, such as a painted sky, stands in no light.
+            let unlit = |index: usize| {
+                let material = scene.primitive(&scene.draws[index]).material;
+                scene.materials[material].unlit
+            };
+            (0..scene.draws.len())
+                .filter(|&index| !unlit(index))
+                .for_each(|index| self.draw(&mut pass, scene, index, Pass::Shadow));
         }
     }
 

@@ -229,6 +229,7 @@ fn read_nodes(document: &gltf::Document, scene: &mut Scene) -> std::result::Resu
             light: node.light().map(|l| l.index()),
             weights: node.weights().unwrap_or(defaults).to_vec(),
             visible: false,
+            backdrop: is_backdrop(node.extras()),
         });
     }
     for node in document.nodes() {
@@ -252,6 +253,12 @@ fn read_nodes(document: &gltf::Document, scene: &mut Scene) -> std::result::Resu
         }
     }
     Ok(())
+}
+
+/// Whether the extras of a node mark it as a backdrop; extras of other programs can hold anything.
+fn is_backdrop(extras: &json::Extras) -> bool {
+    let value = extras.as_ref().and_then(|raw| serde_json::from_str::<serde_json::Value>(raw.get()).ok());
+    value.is_some_and(|value| value["backdrop"] == true)
 }
 
 fn read_skins(

@@ -178,6 +178,9 @@ pub struct Node {
     pub weights: Vec<f32>,
     /// Whether the node belongs to the scene that is shown.
     pub visible: bool,
+    /// Whether it is a backdrop, such as sky or hills, that views of the whole scene need not frame. In glTF
+    /// a node says so by `"extras": { "backdrop": true }`.
+    pub backdrop: bool,
 }
 
 impl Default for Node {
@@ -192,6 +195,7 @@ impl Default for Node {
             light: None,
             weights: Vec::new(),
             visible: true,
+            backdrop: false,
         }
     }
 }
@@ -295,7 +299,7 @@ pub struct Scene {
     pub animations: Vec<Animation>,
     /// Visible primitives; object ids count them from 1.
     pub draws: Vec<Draw>,
-    /// Extent of everything visible.
+    /// Extent of everything visible but backdrops.
     pub bounds: Bounds,
     /// What was read but could not be honoured, one line each.
     pub warnings: Vec<String>,

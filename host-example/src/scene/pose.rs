@@ -133,15 +133,18 @@ pub fn parents_first(nodes: &[Node]) -> Result<Vec<usize>, String> {
 /// Moments of each animation at which the bounds are taken.
 const BOUNDS_SAMPLES: usize = 8;
 
-/// Extent of all visible geometry at rest and over its animations; `None` if it is not finite.
+/// Extent of all visible geometry but backdrops, at rest and over its animations; `None` if it is not
+/// finite. Where all is backdrop, all counts.
 pub fn bounds(scene: &Scene) -> Option<Bounds> {
     let directions = fan();
     let mut extremes = vec![(f32::NEG_INFINITY, Vec3::ZERO); directions.len()];
     let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     let mut finite = true;
     let mut pose = Pose::at_rest(scene);
+    let backdrop = |draw: &Draw| scene.nodes[draw.node].backdrop;
+    let all = scene.draws.iter().all(backdrop);
     let mut include = |pose: &Pose| {
-        for draw in &scene.draws {
+        for draw in scene.draws.iter().filter(|draw| all || !backdrop(draw)) {
             pose.positions(scene, draw, |p| {
                 finite &= p.is_finite();
                 (min, max) = (min.min(p), max.max(p));
