@@ -4,7 +4,7 @@ use super::elements::{fluted_column, smooth_column};
 use super::houses::House;
 use super::materials::{Material, Model};
 use super::mesh::Mesh;
-use super::nature::ground_height;
+use super::nature::{TOWN, ground_height};
 use super::square::{CENTRE_Z, LEVEL};
 use super::writer::{Node, Writer};
 use super::{life, market, nature, square, temple};
@@ -15,6 +15,11 @@ const TEMPLE: Vec3 = Vec3::new(-2.6, 0.0, -11.0);
 
 /// Trees that stand in the square.
 const PLANTERS: [Vec3; 2] = [Vec3::new(-5.2, LEVEL, 19.3), Vec3::new(-12.4, LEVEL, 25.6)];
+
+/// Whether a place lies outside of the town.
+fn is_outside(x: f32, z: f32) -> bool {
+    Vec2::new(x, z).length() > TOWN - 4.0
+}
 
 /// A model of one mesh.
 fn single(material: Material, mesh: Mesh) -> Model {
@@ -50,15 +55,17 @@ pub fn city(writer: &mut Writer) {
     life::birds(writer, &[(Vec3::new(6.0, 10.5, 2.0), 4.5), (Vec3::new(-9.0, 13.5, -4.0), 6.5)]);
 }
 
-/// Ground, hills and the sun.
+/// Ground, surroundings and the sun.
 fn land(writer: &mut Writer) {
     let mesh = writer.model("land", &nature::land());
     writer.place("land", mesh, Vec3::ZERO, 0.0);
+    let mesh = writer.model("surroundings", &nature::surroundings());
+    writer.root(Node { name: "surroundings".into(), mesh: Some(mesh), backdrop: true, ..Node::default() });
     let mesh = writer.model("pavement", &square::pavement());
     writer.place("pavement", mesh, Vec3::ZERO, 0.0);
     // About 35 degrees high, from the left: it grazes the front of the temple and models its flutes.
     let from = Vec3::new(-0.66, 0.62, 0.60).normalize();
-    let sun = writer.light("sun", "directional", Vec3::new(1.0, 0.90, 0.74), 4.0, None);
+    let sun = writer.light("sun", "directional", Vec3::new(1.0, 0.90, 0.74), 4.6, None);
     writer.root(Node {
         name: "sun".into(),
         translation: from * 60.0,
@@ -233,8 +240,14 @@ fn houses(writer: &mut Writer) {
         (31.5, 31.0, -120.0),
     ];
     for (index, (x, z, degrees)) in places.into_iter().enumerate() {
-        let place = Vec3::new(x, ground_height(x, z) - 0.3, z);
-        writer.place("far house", kinds[index % kinds.len()], place, degrees);
+        writer.root(Node {
+            name: "far house".into(),
+            translation: Vec3::new(x, ground_height(x, z) - 0.3, z),
+            rotation: Quat::from_rotation_y(f32::to_radians(degrees)),
+            mesh: Some(kinds[index % kinds.len()]),
+            backdrop: is_outside(x, z),
+            ..Node::default()
+        });
     }
 }
 
@@ -268,6 +281,7 @@ fn trees(writer: &mut Writer) {
             rotation: Quat::from_rotation_y(f32::to_radians(degrees)),
             scale,
             mesh: Some(broad[kind]),
+            backdrop: is_outside(x, z),
             ..Node::default()
         });
     }
@@ -281,6 +295,7 @@ fn trees(writer: &mut Writer) {
                 rotation: Quat::from_rotation_y((row * 5 + column) as f32 * 2.3),
                 scale: 0.72 + 0.05 * ((row * 2 + column * 3) % 4) as f32,
                 mesh: Some(broad[1]),
+                backdrop: is_outside(x, z),
                 ..Node::default()
             });
         }
@@ -306,6 +321,7 @@ fn trees(writer: &mut Writer) {
             rotation: Quat::from_rotation_y(index as f32 * 1.3),
             scale,
             mesh: Some(cypress),
+            backdrop: is_outside(x, z),
             ..Node::default()
         });
     }

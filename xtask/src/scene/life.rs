@@ -19,14 +19,14 @@ fn times(intervals: usize) -> Vec<f32> {
 /// The camera's place and the point it looks at, at a moment in [0, 1].
 fn view(t: f32) -> (Vec3, Vec3) {
     let ease = t * t * (3.0 - 2.0 * t);
-    let place = Vec3::new(lerp(12.6, 9.4, ease), lerp(2.5, 3.7, ease), lerp(31.5, 28.2, ease));
+    let place = Vec3::new(lerp(12.6, 9.4, ease), lerp(3.0, 4.4, ease), lerp(31.5, 28.2, ease));
     let target = Vec3::new(lerp(-0.4, -1.0, ease), lerp(4.3, 4.6, ease), lerp(2.0, 1.0, ease));
     (place, target)
 }
 
 /// Adds the camera and its path: a cubic spline for its place, linear turns.
 pub fn camera(writer: &mut Writer) {
-    let camera = writer.camera("view of the temple", 38.0, 0.2, 400.0);
+    let camera = writer.camera("view of the temple", 38.0, 0.2, 800.0);
     let turn = |t: f32| {
         let (place, target) = view(t);
         let back = (place - target).normalize();

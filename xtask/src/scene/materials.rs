@@ -40,6 +40,7 @@ pub enum Material {
     Flame,
     Charcoal,
     Hills,
+    Sky,
     Plumage,
 }
 
@@ -114,13 +115,13 @@ impl Material {
         match self {
             Self::Marble => Definition {
                 name: "marble",
-                color: [0.84, 0.80, 0.73],
+                color: [0.80, 0.75, 0.67],
                 roughness: 0.55,
                 tile: Some(3.0),
                 texture: Some(Texture::Marble),
                 ..PLAIN
             },
-            Self::MarbleBlocks => blocks("marble blocks", [0.92, 0.87, 0.79], 2.4),
+            Self::MarbleBlocks => blocks("marble blocks", [0.88, 0.82, 0.73], 2.4),
             Self::Ashlar => blocks("ashlar", [0.80, 0.66, 0.47], 3.2),
             Self::Paving => Definition {
                 name: "paving",
@@ -149,7 +150,7 @@ impl Material {
                 texture: Some(Texture::Earth),
                 ..PLAIN
             },
-            Self::PlasterWhite => plaster("white plaster", [0.82, 0.76, 0.66]),
+            Self::PlasterWhite => plaster("white plaster", [0.78, 0.71, 0.60]),
             Self::PlasterOchre => plaster("ochre plaster", [0.80, 0.55, 0.26]),
             Self::PlasterRose => plaster("rose plaster", [0.76, 0.47, 0.36]),
             Self::PlasterRed => plaster("red paint", [0.44, 0.095, 0.06]),
@@ -195,7 +196,9 @@ impl Material {
             Self::Spray => plain("running water", [0.62, 0.74, 0.76], 0.25),
             Self::Broadleaf => leaves("broad leaves", [1.0; 3], Texture::Leaves),
             Self::Cypress => leaves("cypress", [1.0; 3], Texture::Needles),
-            Self::Bark => Definition { name: "bark", texture: Some(Texture::Bark), ..wood("", [0.42, 0.33, 0.25]) },
+            Self::Bark => {
+                Definition { name: "bark", texture: Some(Texture::Bark), ..wood("", [0.42, 0.33, 0.25]) }
+            }
             Self::StripedCloth => Definition {
                 name: "striped cloth",
                 roughness: 0.95,
@@ -217,8 +220,8 @@ impl Material {
             Self::Produce => plain("produce", [1.0; 3], 0.6),
             Self::Flame => Definition {
                 name: "flame",
-                color: [0.9, 0.35, 0.05],
-                emissive: Some(([1.0, 0.42, 0.08], 4.0)),
+                color: [0.2, 0.05, 0.01],
+                emissive: Some(([1.0, 0.38, 0.06], 1.6)),
                 ..PLAIN
             },
             Self::Charcoal => Definition {
@@ -228,6 +231,7 @@ impl Material {
                 ..PLAIN
             },
             Self::Hills => Definition { name: "hills", unlit: true, ..PLAIN },
+            Self::Sky => Definition { name: "sky", texture: Some(Texture::Sky), unlit: true, ..PLAIN },
             Self::Plumage => Definition { name: "plumage", double_sided: true, ..PLAIN },
         }
     }

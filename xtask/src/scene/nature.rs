@@ -1,66 +1,92 @@
-//! Ground, hills and trees.
+//! Ground, hills, sky and trees.
 
 use super::materials::{Material, Model};
 use super::mesh::Mesh;
 use super::noise::{Random, fractal, lerp, smoothstep};
-use glam::{Vec2, Vec3};
-use std::f32::consts::TAU;
+use super::textures::SKY_HORIZON;
+use glam::{Mat4, Vec2, Vec3};
+use std::f32::consts::{FRAC_PI_2, TAU};
 
-/// Where the ground ends and the hills begin, in metres from the centre.
-const EDGE: f32 = 78.0;
+/// Where the town ends, in metres from the centre; what lies beyond is backdrop.
+pub const TOWN: f32 = 37.0;
+/// Where the ground ends and the hills begin.
+const EDGE: f32 = 112.0;
 
 /// Height of the ground: level in the town, rising behind it.
 pub fn ground_height(x: f32, z: f32) -> f32 {
-    let back = smoothstep(-30.0, -62.0, z) * 9.0;
-    let rim = smoothstep(40.0, 80.0, Vec2::new(x, z).length()) * 2.5;
-    let town = smoothstep(28.0, 40.0, x.abs().max(z.abs()));
-    let uv = Vec2::new(x, z) / 200.0 + 0.5;
-    back + rim + town * 1.6 * (fractal(uv, 6, 3, 151) - 0.5) - 0.04
+    let distance = Vec2::new(x, z).length();
+    let back = smoothstep(-30.0, -66.0, z) * 9.0;
+    let rim = smoothstep(45.0, EDGE, distance) * 4.0;
+    let outside = smoothstep(28.0, 44.0, x.abs().max(z.abs()));
+    let uv = Vec2::new(x, z) / 300.0 + 0.5;
+    back + rim + outside * 2.0 * (fractal(uv, 8, 3, 151) - 0.5) - 0.04
 }
 
-/// The ground, a disc with colours between earth and grass, and the hills that close the view.
-pub fn land() -> Model {
-    let mut model = Model::default();
-    let point = |x: f32, z: f32| Vec3::new(x, ground_height(x, z), z);
+/// A ring of ground with colours between earth and grass.
+fn ground(from: f32, to: f32, rings: u32) -> Mesh {
     let mut ground = Mesh::default();
-    ground.patch(96, 40, Vec2::ONE, |u, v| {
+    ground.patch(96, rings, Vec2::ONE, |u, v| {
         let (sin, cos) = (u * TAU).sin_cos();
-        // Rings lie closer where the ground rises.
-        let radius = lerp(0.0, EDGE, 1.0 - v);
-        point(radius * sin, radius * cos)
+        let radius = lerp(to, from, v);
+        let (x, z) = (radius * sin, radius * cos);
+        Vec3::new(x, ground_height(x, z), z)
     });
     for (uv, position) in ground.uvs.iter_mut().zip(&ground.positions) {
         *uv = Vec2::new(position.x, position.z);
     }
     ground.paint(|point, _| {
-        let uv = Vec2::new(point.x, point.z) / 200.0 + 0.5;
-        let dry = fractal(uv, 8, 4, 157);
-        let green =
-            Vec3::new(0.62, 0.78, 0.42).lerp(Vec3::new(0.95, 0.86, 0.66), smoothstep(0.35, 0.65, dry));
+        let uv = Vec2::new(point.x, point.z) / 300.0 + 0.5;
+        let dry = smoothstep(0.35, 0.65, fractal(uv, 12, 4, 157));
+        let green = Vec3::new(0.62, 0.78, 0.42).lerp(Vec3::new(0.95, 0.86, 0.66), dry);
         let distance = Vec2::new(point.x, point.z).length();
-        green.lerp(Vec3::new(0.86, 0.92, 0.82), smoothstep(45.0, EDGE, distance))
+        green.lerp(Vec3::new(0.86, 0.92, 0.82), smoothstep(55.0, EDGE, distance))
     });
-    model.part(Material::Earth).append(&ground, glam::Mat4::IDENTITY);
+    ground
+}
+
+/// The ground of the town.
+pub fn land() -> Model {
+    let mut model = Model::default();
+    *model.part(Material::Earth) = ground(0.0, TOWN, 16);
+    model
+}
+
+/// The ground about the town, the hills that close the view, and the sky.
+pub fn surroundings() -> Model {
+    let mut model = Model::default();
+    *model.part(Material::Earth) = ground(TOWN, EDGE, 22);
     // Each range is farther, higher and paler, as in haze.
     let ranges = [
-        (EDGE - 2.0, 7.0, 9, Vec3::new(0.40, 0.50, 0.38), Vec3::new(0.50, 0.58, 0.47)),
-        (EDGE + 16.0, 15.0, 7, Vec3::new(0.50, 0.61, 0.62), Vec3::new(0.63, 0.70, 0.68)),
-        (EDGE + 38.0, 27.0, 5, Vec3::new(0.60, 0.71, 0.79), Vec3::new(0.76, 0.82, 0.84)),
+        (EDGE - 2.0, 9.0, 9, Vec3::new(0.33, 0.43, 0.34), Vec3::new(0.44, 0.52, 0.42)),
+        (EDGE + 20.0, 17.0, 7, Vec3::new(0.42, 0.54, 0.58), Vec3::new(0.54, 0.64, 0.66)),
+        (EDGE + 48.0, 32.0, 5, Vec3::new(0.50, 0.63, 0.74), Vec3::new(0.60, 0.72, 0.81)),
     ];
     for (index, (radius, height, period, crest, foot)) in ranges.into_iter().enumerate() {
         let mut range = Mesh::default();
         let seed = 163 + index as u32;
         let profile = |u: f32| fractal(Vec2::new(u.fract(), 0.37), period, 5, seed);
         range.patch(180, 3, Vec2::ONE, |u, v| {
-            // Seen from inside the ring, u runs the other way around.
-            let (sin, cos) = (-u * TAU).sin_cos();
-            let top = 3.0 + height * smoothstep(0.15, 0.85, profile(u));
-            Vec3::new(radius * sin, lerp(-3.0, top, v), radius * cos)
+            let top = 4.0 + height * smoothstep(0.15, 0.85, profile(u));
+            around(radius, u, lerp(-4.0, top, v))
         });
         range.paint(|point, _| foot.lerp(crest, smoothstep(0.0, height, point.y)));
-        model.part(Material::Hills).append(&range, glam::Mat4::IDENTITY);
+        model.part(Material::Hills).append(&range, Mat4::IDENTITY);
     }
+    model.part(Material::Sky).patch(64, 24, Vec2::ONE, |u, v| {
+        // The picture spreads evenly over the angle above the horizon.
+        let (sin, cos) = (FRAC_PI_2 * (1.0 - (1.0 - v) / SKY_HORIZON)).sin_cos();
+        around(SKY * cos.max(0.0), u, SKY * sin)
+    });
     model
+}
+
+/// Radius of the sky.
+const SKY: f32 = 320.0;
+
+/// A point at a share `u` of the way around a ring; it runs to the right as seen from inside.
+fn around(radius: f32, u: f32, y: f32) -> Vec3 {
+    let (sin, cos) = (-u * TAU).sin_cos();
+    Vec3::new(radius * sin, y, radius * cos)
 }
 
 /// A broad-leaved tree about 6 m high. `tint` colours its leaves.

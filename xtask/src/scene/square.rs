@@ -37,7 +37,7 @@ pub fn pavement() -> Model {
         }
     }
     model.part(Material::Cobbles).face(&flat(Vec2::new(27.0, 33.0), 0.0, 0.0));
-    let mosaic = Vec2::splat(3.4);
+    let mosaic = Vec2::splat(3.9);
     let frame: Vec<Vec2> = [(0.28, -0.02), (0.26, 0.035), (0.0, 0.035)].map(Vec2::from).to_vec();
     let mut border = Mesh::default();
     border.moulding(mosaic, &frame);

@@ -27,6 +27,8 @@ pub struct Node {
     pub light: Option<usize>,
     pub skin: Option<usize>,
     pub children: Vec<usize>,
+    /// Whether it only surrounds the scene: viewers that frame the scene leave it out.
+    pub backdrop: bool,
 }
 
 /// What a channel animates, with one value for each key (three for cubic splines: in-tangent,
@@ -271,6 +273,9 @@ impl Writer {
         }
         if !node.children.is_empty() {
             value["children"] = json!(node.children);
+        }
+        if node.backdrop {
+            value["extras"] = json!({ "backdrop": true });
         }
         self.nodes.push(value);
         self.nodes.len() - 1

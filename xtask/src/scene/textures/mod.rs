@@ -10,6 +10,7 @@ use glam::{Vec2, Vec3};
 use image::ImageEncoder;
 use image::codecs::jpeg::JpegEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+pub use plants::SKY_HORIZON;
 use std::sync::Mutex;
 
 /// Every texture.
@@ -37,6 +38,7 @@ pub enum Texture {
     Stripes,
     Pennant,
     Vase,
+    Sky,
 }
 
 impl Texture {
@@ -66,10 +68,11 @@ impl Texture {
             Self::Stripes => "stripes.png",
             Self::Pennant => "pennant.png",
             Self::Vase => "vase.png",
+            Self::Sky => "sky.png",
         }
     }
 
-    /// Whether it holds colours (not directions or other quantities).
+    /// Whether its file is a JPEG; the others are PNG.
     pub fn is_jpeg(self) -> bool {
         self.file_name().ends_with(".jpg")
     }
@@ -182,7 +185,8 @@ type Painted = (Texture, Picture);
 /// # Errors
 /// When an encoder refuses a picture.
 pub fn paint_all() -> Result<Vec<(Texture, Vec<u8>)>> {
-    const JOBS: [fn() -> Vec<Painted>; 12] = [
+    const JOBS: [fn() -> Vec<Painted>; 13] = [
+        plants::sky,
         masonry::blocks,
         masonry::paving,
         masonry::cobbles,

@@ -16,7 +16,7 @@ fn key(point: Vec2) -> bool {
     KEY[row][column.min(5)] == b'#'
 }
 
-/// A carpet of black and white tesserae: borders of key pattern and saw teeth around a disc of
+/// A carpet of black and white tesserae: a border of key pattern around a disc of
 /// triangles that shrink towards the centre.
 pub fn mosaic() -> Vec<Painted> {
     let picture = Picture::paint(1024, 1024, |uv| {
@@ -41,41 +41,32 @@ pub fn mosaic() -> Vec<Painted> {
 fn carpet(uv: Vec2) -> bool {
     let edge = uv.min(1.0 - uv).min_element();
     let along = if uv.x.min(1.0 - uv.x) < uv.y.min(1.0 - uv.y) { uv.y } else { uv.x };
-    if edge < 0.02 {
-        return true;
+    if edge < 0.05 {
+        return edge < 0.025;
     }
-    if edge < 0.04 {
-        return false;
+    if edge < 0.16 {
+        return key(Vec2::new(along * 10.0, (edge - 0.05) / 0.11));
     }
-    if edge < 0.12 {
-        return key(Vec2::new(along * 16.0, (edge - 0.04) / 0.08));
+    if edge < 0.20 {
+        return edge > 0.18;
     }
-    if edge < 0.14 {
-        return false;
-    }
-    if edge < 0.18 {
-        // Saw teeth.
-        return (edge - 0.14) / 0.04 < 1.0 - ((along * 32.0).fract() * 2.0 - 1.0).abs();
-    }
-    if edge < 0.19 {
-        return true;
-    }
-    let centre = (uv - 0.5) * 2.0 / 0.60;
+    let centre = (uv - 0.5) * 2.0 / 0.58;
     let radius = centre.length();
+    let angle = centre.y.atan2(centre.x) / TAU;
     if radius > 1.0 {
-        // Spandrels: a small checker.
-        let check = (uv * 36.0).floor().as_ivec2();
-        return radius > 1.06 && (check.x + check.y) % 2 == 0;
+        // In the corners, quarters of a smaller disc.
+        let corner = centre.abs() - 1.0;
+        return radius > 1.08 && corner.length() < 0.30;
     }
-    if radius > 0.95 || (radius > 0.16 && radius < 0.2) {
+    if radius > 0.93 {
         return true;
     }
-    if radius < 0.16 {
-        return (centre.y.atan2(centre.x) / TAU * 8.0).rem_euclid(1.0) < 0.5;
+    if radius < 0.2 {
+        return radius > 0.16 || (angle * 6.0).rem_euclid(1.0) < 0.5;
     }
     // Rings of triangles; their height follows the radius, so that they keep their shape.
-    let rings = (radius / 0.2).ln() / (0.95_f32 / 0.2).ln() * 8.0;
-    let turn = (centre.y.atan2(centre.x) / TAU + 0.5) * 32.0 + rings.floor() * 0.5;
+    let rings = (radius / 0.2).ln() / (0.93_f32 / 0.2).ln() * 5.0;
+    let turn = (angle + 0.5) * 18.0 + rings.floor() * 0.5;
     1.0 - rings.fract() > (turn.fract() * 2.0 - 1.0).abs()
 }
 

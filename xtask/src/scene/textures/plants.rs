@@ -1,4 +1,4 @@
-//! Earth, wood, water and leaves.
+//! Sky, earth, wood, water and leaves.
 
 use super::{Heights, Painted, Picture, Texture, blend, byte};
 use crate::scene::noise::{Random, fractal, fractal_stretched, hash, smoothstep, unit};
@@ -45,6 +45,28 @@ pub fn water() -> Vec<Painted> {
     let heights = Heights::sample(512, |uv| 0.6 * fractal(uv, 5, 3, 127) + 0.4 * fractal(uv, 9, 2, 131));
     vec![(Texture::WaterNormal, heights.normal_map(0.10))]
 }
+
+/// A bright sky with thin clouds, once around; from the zenith (top) to below the horizon.
+pub fn sky() -> Vec<Painted> {
+    let picture = Picture::paint(2048, 512, |uv| {
+        let height = (1.0 - uv.y / SKY_HORIZON).max(0.0);
+        let haze = (1.0 - height).powi(5);
+        let clear = blend(Vec3::new(0.36, 0.56, 0.80), Vec3::new(0.80, 0.88, 0.93), haze);
+        // Clouds look flatter towards the horizon, as layers seen from the side do.
+        let layer = Vec2::new(uv.x, (uv.y * uv.y * 1.4).fract());
+        let bend = fractal_stretched(layer, IVec2::new(6, 4), 3, 241) - 0.5;
+        let drift = Vec2::new((layer.x + bend * 0.04).rem_euclid(1.0), layer.y);
+        let cloud = fractal_stretched(drift, IVec2::new(9, 10), 6, 239);
+        let cover = smoothstep(0.48, 0.74, cloud) * smoothstep(0.02, 0.22, height) * 0.85;
+        let lit = fractal_stretched(drift + Vec2::new(0.004, -0.012), IVec2::new(9, 10), 6, 239);
+        let shade = 0.95 + 0.5 * (cloud - lit).clamp(-0.12, 0.08);
+        blend(clear, Vec3::new(shade, shade, shade + 0.01), cover)
+    });
+    vec![(Texture::Sky, picture)]
+}
+
+/// Where the horizon lies in the picture of the sky, from its top.
+pub const SKY_HORIZON: f32 = 0.94;
 
 /// One leaf of a card, in pixels.
 struct Leaf {
