@@ -63,8 +63,10 @@ fn make_sampler(device: &wgpu::Device, sampler: Sampler) -> wgpu::Sampler {
         Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
     };
     let filter = |linear| if linear { wgpu::FilterMode::Linear } else { wgpu::FilterMode::Nearest };
-    // Surfaces seen at a slant would blur without; allowed only with linear filters throughout.
-    let anisotropic = sampler.linear_mag && sampler.linear_min && sampler.mipmaps;
+    // Surfaces seen at a slant would blur without; allowed only with linear filters throughout. Software
+    // drivers walk over every texel under a pixel for it, which can take minutes a frame.
+    let hardware = device.adapter_info().device_type != wgpu::DeviceType::Cpu;
+    let anisotropic = hardware && sampler.linear_mag && sampler.linear_min && sampler.mipmaps;
     device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("material"),
         address_mode_u: wrap(sampler.wrap_u),
