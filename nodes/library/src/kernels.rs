@@ -5,8 +5,10 @@
 //! kernel in [`KERNELS`]; no other file needs to change. The Rust file holds the uniform block
 //! ([`params!`](crate::params)), the twin and `pub static KERNEL` ([`kernel!`](crate::kernel)).
 
+pub mod blocks;
 pub mod colour_space;
 pub mod coverage;
+pub mod edge_threshold;
 pub mod rows;
 pub mod stream_line;
 pub mod support;

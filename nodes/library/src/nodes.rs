@@ -18,6 +18,13 @@ nodes! {
     structure {
         structure_tensor,
     }
+    colour {
+        composite_lines,
+        quantize_luminance,
+    }
+    lines {
+        difference_of_gaussians,
+    }
     smoothing {
         gaussian,
     }

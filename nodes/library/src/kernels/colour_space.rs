@@ -18,6 +18,8 @@ const LINEAR_TO_XYZ: [[f32; 3]; 3] = [
     [0.212_672_9, 0.715_152_2, 0.072_175_0],
     [0.019_333_9, 0.119_192_0, 0.950_304_1],
 ];
+/// Linear Rec. 709 to luminance: the middle row of the matrix to XYZ.
+pub const LUMINANCE: [f32; 3] = LINEAR_TO_XYZ[1];
 const XYZ_TO_LINEAR: [[f32; 3]; 3] = [
     [3.240_454_2, -1.537_138_5, -0.498_531_4],
     [-0.969_266_0, 1.876_010_8, 0.041_556_0],
@@ -65,13 +67,18 @@ pub fn srgb_decode<S: Simd>(c: Rgb<S>) -> Rgb<S> {
     })
 }
 
+/// f(t) of CIELAB: a cube root with a straight line towards 0.
+#[inline(always)]
+pub fn lab_curve<S: Simd>(t: f32x8<S>) -> f32x8<S> {
+    t.simd_le(EPSILON_LAB).select(t * SLOPE_LAB + 16.0 / 116.0, t.powf(1.0 / 3.0))
+}
+
 /// Linear Rec. 709 to CIELAB.
 #[inline(always)]
 pub fn linear_to_lab<S: Simd>(c: Rgb<S>) -> Rgb<S> {
     let xyz = transform(&LINEAR_TO_XYZ, c);
     let [x, y, z] = std::array::from_fn(|i| {
-        let t = xyz[i] / WHITE_D65[i];
-        t.simd_le(EPSILON_LAB).select(t * SLOPE_LAB + 16.0 / 116.0, t.powf(1.0 / 3.0))
+        lab_curve(xyz[i] / WHITE_D65[i])
     });
     [y * 116.0 - 16.0, (x - y) * 500.0, (y - z) * 200.0]
 }

@@ -4,7 +4,7 @@
 
 use crate::kernels::colour_space::{lab_to_linear, srgb_encode};
 use crate::kernels::support::map_pixels4;
-use isophote_engine::fearless_simd::{dispatch};
+use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::params! {

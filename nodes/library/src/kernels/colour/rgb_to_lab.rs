@@ -5,7 +5,7 @@
 
 use crate::kernels::colour_space::{linear_to_lab, srgb_decode};
 use crate::kernels::support::map_pixels4;
-use isophote_engine::fearless_simd::{dispatch};
+use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::params! {

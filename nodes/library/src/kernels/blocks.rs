@@ -1,0 +1,157 @@
+//! Blocks of eight neighbouring pixels: reading, writing and fetching them from anywhere.
+//!
+//! A block at the end of a row goes through the same arithmetic as a full one, its missing lanes
+//! filled, so that no pixel depends on where its tile ends.
+
+use isophote_engine::fearless_simd::{Simd, f32x8, f64x4, i32x8, prelude::*};
+use isophote_engine::math::{load4, store4};
+use isophote_engine::{Band, View};
+
+/// Pixels in a block.
+pub const BLOCK: usize = 8;
+
+/// Up to eight pixels of a row, starting at (`x`, `y`) (absolute).
+#[derive(Clone, Copy, Debug)]
+pub struct Block {
+    /// Column of the first pixel.
+    pub x: i32,
+    /// Row.
+    pub y: i32,
+    /// Pixels, 1..=8.
+    pub len: usize,
+}
+
+impl Block {
+    /// Columns of the pixels; lanes past the end repeat the last one, so that they are safe to fetch.
+    #[inline(always)]
+    pub fn columns<S: Simd>(&self, simd: S) -> i32x8<S> {
+        let lanes = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
+        lanes.min(i32x8::splat(simd, self.len as i32 - 1)) + i32x8::splat(simd, self.x)
+    }
+
+    /// Reads `N` values a pixel; lanes past the end are 0.
+    #[inline(always)]
+    fn values<const N: usize>(&self, view: &View<'_>, f: impl FnOnce(&[f32])) {
+        let at = view.offset(self.x, self.y);
+        if self.len == BLOCK {
+            return f(&view.data()[at..at + N * BLOCK]);
+        }
+        let mut block = [0.0; 4 * BLOCK];
+        block[..N * self.len].copy_from_slice(&view.data()[at..at + N * self.len]);
+        f(&block[..N * BLOCK]);
+    }
+
+    /// The pixels of a one-channel image.
+    #[inline(always)]
+    pub fn read1<S: Simd>(&self, simd: S, view: &View<'_>) -> f32x8<S> {
+        let mut out = f32x8::splat(simd, 0.0);
+        self.values::<1>(view, |v| out = f32x8::from_slice(simd, v));
+        out
+    }
+
+    /// The pixels of a two-channel image.
+    #[inline(always)]
+    pub fn read2<S: Simd>(&self, simd: S, view: &View<'_>) -> [f32x8<S>; 2] {
+        let mut out = [f32x8::splat(simd, 0.0); 2];
+        self.values::<2>(view, |v| {
+            out = f32x8::from_slice(simd, &v[..8]).deinterleave(f32x8::from_slice(simd, &v[8..])).into();
+        });
+        out
+    }
+
+    /// The pixels of a four-channel image.
+    #[inline(always)]
+    pub fn read4<S: Simd>(&self, simd: S, view: &View<'_>) -> [f32x8<S>; 4] {
+        let mut out = [f32x8::splat(simd, 0.0); 4];
+        self.values::<4>(view, |v| out = load4(simd, v));
+        out
+    }
+}
+
+/// Runs `f` on every block of a band; it is given the values of output 0 to fill, `N` a pixel.
+#[inline(always)]
+pub fn for_blocks<const N: usize>(band: &mut Band<'_>, mut f: impl FnMut(Block, &mut [f32])) {
+    let window = band.window;
+    for y in window.y0..window.y1 {
+        for (i, target) in band.row_mut(0, y).chunks_mut(N * BLOCK).enumerate() {
+            f(Block { x: window.x0 + (i * BLOCK) as i32, y, len: target.len() / N }, target);
+        }
+    }
+}
+
+/// Writes one value a pixel.
+#[inline(always)]
+pub fn write1<S: Simd>(v: f32x8<S>, target: &mut [f32]) {
+    if target.len() == BLOCK {
+        v.store_slice(target);
+    } else {
+        target.copy_from_slice(&v.to_array()[..target.len()]);
+    }
+}
+
+/// Writes two values a pixel.
+#[inline(always)]
+pub fn write2<S: Simd>([a, b]: [f32x8<S>; 2], target: &mut [f32]) {
+    let (low, high) = a.interleave(b);
+    let mut block = [0.0; 2 * BLOCK];
+    low.store_slice(&mut block[..8]);
+    high.store_slice(&mut block[8..]);
+    target.copy_from_slice(&block[..target.len()]);
+}
+
+/// Writes four values a pixel.
+#[inline(always)]
+pub fn write4<S: Simd>(v: [f32x8<S>; 4], target: &mut [f32]) {
+    if target.len() == 4 * BLOCK {
+        store4(v, target);
+    } else {
+        let mut block = [0.0; 4 * BLOCK];
+        store4(v, &mut block);
+        target.copy_from_slice(&block[..target.len()]);
+    }
+}
+
+/// Where eight pixels begin in the data of `view`; positions are clamped to the picture and must then
+/// lie in the window.
+#[inline(always)]
+pub fn offsets<S: Simd>(view: &View<'_>, x: i32x8<S>, y: i32x8<S>) -> i32x8<S> {
+    let c = |v: i32| i32x8::splat(x.simd, v);
+    let ([w, h], window) = (view.full(), view.window());
+    let column = x.max(c(0)).min(c(w - 1)) - c(window.x0);
+    let row = y.max(c(0)).min(c(h - 1)) - c(window.y0);
+    row * c(view.stride() as i32) + column * c(view.channels() as i32)
+}
+
+/// Eight pixels of a two-channel image, still interleaved, four a vector: one 64-bit load each.
+#[inline(always)]
+pub fn fetch2<S: Simd>(simd: S, view: &View<'_>, at: i32x8<S>) -> [f32x8<S>; 2] {
+    let data = view.data();
+    let pixel = |lane: usize| {
+        let start = at[lane] as usize;
+        let pair = &data[start..start + 2];
+        f64::from_bits(u64::from(pair[0].to_bits()) | u64::from(pair[1].to_bits()) << 32)
+    };
+    [
+        f64x4::from_fn(simd, |lane| pixel(lane)).bitcast(),
+        f64x4::from_fn(simd, |lane| pixel(lane + 4)).bitcast(),
+    ]
+}
+
+/// Eight values of a one-channel image.
+#[inline(always)]
+pub fn fetch1<S: Simd>(simd: S, view: &View<'_>, at: i32x8<S>) -> f32x8<S> {
+    let data = view.data();
+    f32x8::from_fn(simd, |lane| data[at[lane] as usize])
+}
+
+/// Eight pixels of a four-channel image, one vector per channel.
+#[inline(always)]
+pub fn fetch4<S: Simd>(simd: S, view: &View<'_>, at: i32x8<S>) -> [f32x8<S>; 4] {
+    let data = view.data();
+    let mut pixels = [0.0f32; 4 * BLOCK];
+    for (lane, pixel) in pixels.chunks_exact_mut(4).enumerate() {
+        let start = at[lane] as usize;
+        pixel.copy_from_slice(&data[start..start + 4]);
+    }
+    load4(simd, &pixels)
+}

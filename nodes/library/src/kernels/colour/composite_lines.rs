@@ -1,0 +1,50 @@
+//! Draws lines over a picture, or over paper in its place (§ 4.6); coverage stays.
+//!
+//! Cost: eight multiply-adds per pixel.
+
+use crate::kernels::blocks::{for_blocks, write4};
+use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for composite_lines {
+        /// RGB and opacity of the lines.
+        pub line: [f32; 4],
+        /// RGB of the paper and how much of it covers the picture.
+        pub paper: [f32; 4],
+    }
+}
+
+crate::kernel!(composite_lines {
+    cpu: run,
+    cost: |_| 10.0,
+    tolerance: Tolerance { absolute: 1e-6, relative: 2e-6, outliers: 0.0, reason: "a few roundings" },
+});
+
+/// Draws the `edges` (1 = paper, 0 = line) over `color`. The alpha of `line` is the opacity of lines,
+/// that of `paper` how much of the picture the paper covers.
+pub fn composite(
+    plan: &mut PlanBuilder,
+    color: ImageId,
+    edges: ImageId,
+    line: [f32; 4],
+    paper: [f32; 4],
+) -> ImageId {
+    plan.pass(&KERNEL, &[color, edges], &Params { line, paper }, Class::Colour, Support::Pixels(0))
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    let (source, edges) = (&pass.inputs[0], &pass.inputs[1]);
+    dispatch!(pass.level, simd => for_blocks::<4>(band, |block, target| {
+        let c = |v: f32| f32x8::splat(simd, v);
+        let v = block.read4(simd, source);
+        let ink = (c(1.0) - block.read1(simd, edges).max(c(0.0)).min(c(1.0))) * params.line[3];
+        let over = |i: usize| {
+            let base = v[i] + (c(params.paper[i]) - v[i]) * params.paper[3];
+            base + ink * (c(params.line[i]) - base)
+        };
+        write4([over(0), over(1), over(2), v[3]], target);
+    }));
+}

@@ -1,0 +1,105 @@
+//! From the response of a difference of Gaussians to an edge image (§ 4.3, 4.4): 1 is paper, 0 is
+//! line. Twin of `shaders/shared/edge_threshold.wgsl`.
+
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
+use isophote_engine::math::Elementary;
+
+/// Coverage below which a pixel counts as empty.
+pub const LEAST_COVERAGE: f32 = 1e-6;
+
+/// How a response becomes an edge image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Threshold {
+    /// Not at all: the response, in units of L.
+    None = 0,
+    /// 1 from epsilon on, 0 below (4.6).
+    Binary = 1,
+    /// 1 from epsilon on, 1 + tanh(phi (u - epsilon)) below (4.8).
+    Tanh = 2,
+    /// 2 smoothstep(-2, 2, phi (u - epsilon)), 1 from epsilon on.
+    Smoothstep = 3,
+}
+
+/// Weights and threshold of an extended difference of Gaussians, in the one form that both
+/// parameterisations come to: the response is base G_sigma + edge (G_sigma - G_k sigma) (4.9).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Xdog {
+    /// Weight of the smoothed lightness: 1 - tau, or 1.
+    pub base: f32,
+    /// Weight of the difference of Gaussians: tau, or p.
+    pub edge: f32,
+    /// Response from which on there is no line, units of L.
+    pub epsilon: f32,
+    /// Steepness of the ramp, per unit of L.
+    pub phi: f32,
+    /// The curve.
+    pub threshold: Threshold,
+}
+
+impl Xdog {
+    /// The original parameters: inhibition `tau` 0..=1 (4.7), level `epsilon`, steepness `phi` (4.8).
+    pub fn tau(tau: f32, epsilon: f32, phi: f32, threshold: Threshold) -> Self {
+        Self { base: 1.0 - tau, edge: tau, epsilon, phi, threshold }
+    }
+
+    /// The sharpening form (4.10): strength `p` = tau / (1 - tau), level and steepness on the scale
+    /// of the image.
+    pub fn sharpen(p: f32, epsilon: f32, phi: f32, threshold: Threshold) -> Self {
+        Self { base: 1.0, edge: p, epsilon, phi, threshold }
+    }
+}
+
+/// The edge image of response `u`; see [`Threshold`].
+#[inline(always)]
+pub fn edge_threshold<S: Simd>(u: f32x8<S>, kind: u32, epsilon: f32, phi: f32) -> f32x8<S> {
+    let c = |v: f32| f32x8::splat(u.simd, v);
+    if kind == Threshold::None as u32 {
+        return u;
+    }
+    let x = ((u - epsilon) * phi).max(c(-20.0));
+    let below = if kind == Threshold::Binary as u32 {
+        c(0.0)
+    } else if kind == Threshold::Tanh as u32 {
+        x.tanh() + 1.0
+    } else {
+        let t = (x * 0.25 + 0.5).max(c(0.0));
+        t * 2.0 * t * (c(3.0) - t * 2.0)
+    };
+    u.simd_ge(c(epsilon)).select(c(1.0), below)
+}
+
+/// The edge image where no covered pixel contributes: paper.
+pub fn edge_uncovered(kind: u32) -> f32 {
+    if kind == Threshold::None as u32 { 0.0 } else { 1.0 }
+}
+
+/// D = base G_sigma + edge (G_sigma - G_k sigma) (4.9).
+#[inline(always)]
+pub fn dog_response<S: Simd>(narrow: f32x8<S>, wide: f32x8<S>, base: f32, edge: f32) -> f32x8<S> {
+    narrow * base + (narrow - wide) * edge
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isophote_engine::fearless_simd::{Level, dispatch};
+
+    fn at(kind: Threshold, u: f32) -> f32 {
+        dispatch!(Level::new(), simd => edge_threshold(f32x8::splat(simd, u), kind as u32, 0.5, 2.0)[3])
+    }
+
+    #[test]
+    fn curves_meet_at_epsilon_and_end_at_zero() {
+        for kind in [Threshold::Tanh, Threshold::Smoothstep] {
+            assert_eq!(at(kind, 0.5), 1.0);
+            assert!((at(kind, 0.4999) - 1.0).abs() < 1e-3, "{kind:?}");
+            assert!(at(kind, -1e6) < 1e-6 && at(kind, -1e6) >= 0.0, "{kind:?}");
+            assert!(at(kind, 0.2) > at(kind, 0.1), "{kind:?}");
+        }
+        assert!((at(Threshold::Tanh, 0.0) - (1.0 - 1f32.tanh())).abs() < 1e-6);
+        // 2 smoothstep(-2, 2, -1) = 2 (3/16 - 2/64).
+        assert!((at(Threshold::Smoothstep, 0.0) - 0.3125).abs() < 1e-6);
+        assert_eq!([at(Threshold::Binary, 0.49), at(Threshold::Binary, 0.5)], [0.0, 1.0]);
+        assert_eq!(at(Threshold::None, -7.0), -7.0);
+    }
+}

@@ -1,0 +1,198 @@
+//! Adds lines where geometry breaks to the response of the first pass of the flow-based difference of
+//! Gaussians, so that the second pass smooths both kinds along the same flow.
+//!
+//! Across the tangent it measures how much of a Gaussian window lies past a break of normal, depth or
+//! object id, and takes that off the response; the result is a line centred on the break, as wide as
+//! those of the difference of Gaussians. The thesis has no guides; this is the second derivative test
+//! of § 4.5 applied to geometry: 1/z is linear in x and y over any plane, so z0/z+ + z0/z- - 2 is 0 on
+//! planes however slanted, and has no scale.
+//!
+//! Cost: per step (about 3 k sigma_e of them) up to six reads and an exponential.
+
+use crate::kernels::blocks::{fetch1, fetch4, for_blocks, offsets, write2};
+use crate::kernels::lines::flow_dog_gradient::{Across, halfwidth};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
+use isophote_engine::math::Elementary;
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for guide_lines {
+        /// -1 / (2 sigma^2) of the Gaussian across the line.
+        pub narrow: f32,
+        /// Cut-off, in pixels.
+        pub halfwidth: f32,
+        /// Units of response that a window wholly past a break takes off.
+        pub amount: f32,
+        /// Bit 0: normal, bit 1: depth, bit 2: object id are there.
+        pub guides: u32,
+    }
+}
+
+crate::kernel!(guide_lines {
+    cpu: run,
+    cost: |params| {
+        let p: Params = bytemuck::pod_read_unaligned(params);
+        f64::from(p.halfwidth) * 0.88 * 60.0 + 30.0
+    },
+    tolerance: Tolerance {
+        absolute: 1e-3,
+        relative: 1e-4,
+        outliers: 1e-2,
+        reason: "guides are read at the nearest pixel, and which one is nearest, or the last within the \
+                 cut-off, may turn on the last bit of the slope",
+    },
+});
+
+/// Response, in units of L, that a break of geometry takes off at weight 1: next to the break the
+/// line is then as dark as at a step of about 50 units of L.
+const AMOUNT: f32 = 16.0;
+
+/// The geometry that a renderer knows beside the colour.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct GuideImages {
+    /// View-space normals with validity.
+    pub normal: Option<ImageId>,
+    /// Distance from the camera, 0 or less where there is nothing.
+    pub depth: Option<ImageId>,
+    /// A number per object.
+    pub object_id: Option<ImageId>,
+}
+
+impl GuideImages {
+    /// True when there is none.
+    pub fn is_empty(&self) -> bool {
+        self.normal.is_none() && self.depth.is_none() && self.object_id.is_none()
+    }
+}
+
+/// `response` (u alpha, alpha) with lines of strength `weight` where the guides break; `edge` is the
+/// weight of the difference of Gaussians in the response.
+pub fn add(
+    plan: &mut PlanBuilder,
+    response: ImageId,
+    tensor: ImageId,
+    guides: &GuideImages,
+    sigma: f32,
+    k: f32,
+    weight: f32,
+    edge: f32,
+) -> ImageId {
+    let bit = |guide: Option<ImageId>, bit: u32| if guide.is_some() { bit } else { 0 };
+    let halfwidth = halfwidth(sigma, k);
+    let params = Params {
+        narrow: -0.5 / (sigma * sigma).max(1e-6),
+        halfwidth,
+        amount: AMOUNT * weight * edge,
+        guides: bit(guides.normal, 1) | bit(guides.depth, 2) | bit(guides.object_id, 4),
+    };
+    // A guide that is not there is not read; any image may stand in for it.
+    let [normal, depth, id] =
+        [guides.normal, guides.depth, guides.object_id].map(|guide| guide.unwrap_or(response));
+    let support = Support::Pixels(halfwidth as u32 + 1);
+    plan.pass(&KERNEL, &[response, tensor, normal, depth, id], &params, Class::Field, support)
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    dispatch!(pass.level, simd => breaks(simd, pass, &params, band));
+}
+
+#[inline(always)]
+fn breaks<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
+    let [response, tensor, normal, depth, object_id] = pass.inputs else { return };
+    let c = |v: f32| f32x8::splat(simd, v);
+    let has = |bit: u32| params.guides & bit != 0;
+    for_blocks::<2>(band, |block, target| {
+        let [e, f, g, _] = block.read4(simd, tensor);
+        let line = Across::new(simd, &block, [e, f, g]);
+        let at = line.at;
+        let n0 = if has(1) { normals(simd, normal, at) } else { [c(0.0); 3] };
+        let z0 = if has(2) { depths(simd, depth, at) } else { c(0.0) };
+        let id0 = if has(4) { ids(simd, object_id, at) } else { c(0.0) };
+        let (mut sums, mut weights) = ([c(0.0); 3], c(1.0));
+        for k in 1..=params.halfwidth as i32 {
+            let d = line.step * k as f32;
+            let w = d.simd_le(params.halfwidth).select((d * params.narrow * d).exp(), c(0.0));
+            weights += w * 2.0;
+            let sides = [line.nearest(k), line.nearest(-k)];
+            if has(1) {
+                let [a, b] = sides.map(|at| normal_break(n0, normals(simd, normal, at)));
+                sums[0] += w * (a + b);
+            }
+            if has(2) {
+                let [a, b] = sides.map(|at| relative_nearness(z0, depths(simd, depth, at)));
+                sums[1] += w * ramp(((a + b - 2.0).abs() - 0.02) * 10.0);
+            }
+            if has(4) {
+                let [a, b] = sides.map(|at| {
+                    ids(simd, object_id, at).simd_eq(id0).select(c(0.0), c(1.0))
+                });
+                sums[2] += w * (a + b);
+            }
+        }
+        let past = sums[0].max(sums[1]).max(sums[2]) / weights;
+        let [u, alpha] = block.read2(simd, response);
+        write2([u - past * params.amount * alpha, alpha], target);
+    });
+}
+
+#[inline(always)]
+fn finite<S: Simd>(v: f32x8<S>) -> S::mask32s8
+where
+    S: Simd,
+{
+    v.abs().simd_le(f32::MAX)
+}
+
+/// Normals, all zero where there is none.
+#[inline(always)]
+fn normals<S: Simd>(simd: S, view: &View<'_>, [x, y]: [i32x8<S>; 2]) -> [f32x8<S>; 3] {
+    let [x, y, z, w] = fetch4(simd, view, offsets(view, x, y));
+    let valid = finite(x) & finite(y) & finite(z) & w.simd_gt(0.5);
+    [x, y, z].map(|v| valid.select(v, f32x8::splat(simd, 0.0)))
+}
+
+/// Depths, 0 where there is nothing.
+#[inline(always)]
+fn depths<S: Simd>(simd: S, view: &View<'_>, [x, y]: [i32x8<S>; 2]) -> f32x8<S> {
+    let z = fetch1(simd, view, offsets(view, x, y));
+    (finite(z) & z.simd_gt(0.0)).select(z, f32x8::splat(simd, 0.0))
+}
+
+#[inline(always)]
+fn ids<S: Simd>(simd: S, view: &View<'_>, [x, y]: [i32x8<S>; 2]) -> f32x8<S> {
+    let id = fetch1(simd, view, offsets(view, x, y));
+    finite(id).select(id, f32x8::splat(simd, 0.0))
+}
+
+/// t^2 (3 - 2 t) of t clamped to 0..=1.
+#[inline(always)]
+fn ramp<S: Simd>(t: f32x8<S>) -> f32x8<S> {
+    let c = |v: f32| f32x8::splat(t.simd, v);
+    let t = t.max(c(0.0)).min(c(1.0));
+    t * t * (c(3.0) - t * 2.0)
+}
+
+/// 0 for equal directions or two missing normals, 1 for perpendicular ones or one that is missing.
+/// Below 18 degrees it is relief of the surface, from 41 degrees on an edge.
+#[inline(always)]
+fn normal_break<S: Simd>(a: [f32x8<S>; 3], b: [f32x8<S>; 3]) -> f32x8<S> {
+    let c = |v: f32| f32x8::splat(a[0].simd, v);
+    let dot = |a: [f32x8<S>; 3], b: [f32x8<S>; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let (aa, bb) = (dot(a, a), dot(b, b));
+    let (has_a, has_b) = (aa.simd_gt(0.0), bb.simd_gt(0.0));
+    let both = has_a & has_b;
+    let turn = c(1.0) - dot(a, b) / both.select(aa * bb, c(1.0)).sqrt();
+    let lone = (has_a | has_b).select(c(1.0), c(0.0));
+    both.select(ramp((turn - 0.05) * 5.0), lone)
+}
+
+/// Nearness relative to the pixel itself, 0..=2; two empty places are equally near.
+#[inline(always)]
+fn relative_nearness<S: Simd>(z0: f32x8<S>, z: f32x8<S>) -> f32x8<S> {
+    let c = |v: f32| f32x8::splat(z0.simd, v);
+    let there = z.simd_gt(0.0);
+    let near = there.select((z0 / there.select(z, c(1.0))).min(c(2.0)), c(0.0));
+    z0.simd_gt(0.0).select(near, there.select(c(2.0), c(1.0)))
+}

@@ -1,0 +1,34 @@
+//! Lines over a picture (§ 4.6).
+
+use crate::kernels::colour::composite_lines::composite;
+use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
+use isophote_engine::ImageId;
+
+/// The node.
+pub static NODE: NodeSpec = NodeSpec {
+    id: "composite_lines",
+    label: "Composite lines",
+    group: "colour",
+    doc: "Draws an edge image (1 = paper, 0 = line) over the picture, or over plain paper.",
+    section: "4.6",
+    inputs: &[
+        Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The picture." },
+        Port { id: "edges", kind: ImageKind::Scalar, optional: false, doc: "The edge image." },
+    ],
+    output: Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The picture with lines." },
+    own_params: &[
+        Param::color("color", "Line colour", [0.0, 0.0, 0.0, 1.0]).doc("Colour of the lines."),
+        Param::float("opacity", "Opacity", 1.0, [0.0, 1.0]).doc("Opacity of the lines."),
+        Param::color("paper", "Paper", [1.0, 1.0, 1.0, 0.0])
+            .doc("Paper in place of the picture; its alpha says how much it covers, 0 leaves it unset."),
+    ],
+    build,
+};
+
+fn build(scope: &mut Scope<'_>) -> ImageId {
+    let (color, edges) = (scope.required("color"), scope.required("edges"));
+    let mut line = scope.color("color");
+    line[3] *= scope.float("opacity");
+    let paper = scope.color("paper");
+    composite(scope.plan, color, edges, line, paper)
+}

@@ -1,0 +1,49 @@
+// Soft quantization of the lightness of a Lab image (section 4.6): bins continue below 0 and above 100.
+// Cost: one to five loads, a tanh and a square root.
+#import grid
+
+struct Params {
+    // Width of a bin, units of L, and its reciprocal.
+    width: f32,
+    inverse_width: f32,
+    // Steepness at the middle of a bin, where the output steps; used when not adaptive.
+    phi: f32,
+    // Nonzero: steepness from the gradient of L, clamped to lambda_delta..omega_delta.
+    adaptive: u32,
+    lambda_delta: f32,
+    // 1 / (omega_delta - lambda_delta).
+    inverse_delta: f32,
+    lambda_phi: f32,
+    omega_phi: f32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var source: texture_2d<f32>;
+@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+
+// Lightness of a neighbour; where it is not covered, that of the pixel itself.
+fn neighbour(p: vec2i, own: f32) -> f32 {
+    let v = fetch(source, 0u, p);
+    return own + (v.x - own) * clamp(v.w, 0.0, 1.0);
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let p = pixel(id);
+    let v = fetch(source, 0u, p);
+    var phi = params.phi;
+    if params.adaptive != 0u {
+        let gx = 0.5 * (neighbour(p + vec2i(1, 0), v.x) - neighbour(p - vec2i(1, 0), v.x));
+        let gy = 0.5 * (neighbour(p + vec2i(0, 1), v.x) - neighbour(p - vec2i(0, 1), v.x));
+        let g = sqrt(gx * gx + gy * gy);
+        let t = clamp((g - params.lambda_delta) * params.inverse_delta, 0.0, 1.0);
+        phi = params.lambda_phi + t * (params.omega_phi - params.lambda_phi);
+    }
+    let middle = (floor(v.x * params.inverse_width) + 0.5) * params.width;
+    let x = clamp(phi * (v.x - middle), -20.0, 20.0);
+    let lightness = middle + 0.5 * params.width * tanh(x);
+    textureStore(target_image, vec2i(id.xy), vec4f(lightness, v.yzw));
+}

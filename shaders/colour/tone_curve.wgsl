@@ -1,0 +1,27 @@
+// Raises or lowers the dark and the light tones of a Lab image; black, white and what lies beyond
+// them stay.
+// Cost: one load and ten multiply-adds.
+#import grid
+
+struct Params {
+    // Signed, -1..1: how far dark and light tones are raised.
+    darks: f32,
+    lights: f32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var source: texture_2d<f32>;
+@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let v = fetch(source, 0u, pixel(id));
+    let t = clamp(v.x * 0.01, 0.0, 1.0);
+    let hump = t * (1.0 - t);
+    // The factor keeps every slope at 0.1 or more, so that tones never change order.
+    let lift = 90.0 * hump * (params.darks * (1.0 - t) + params.lights * t);
+    textureStore(target_image, vec2i(id.xy), vec4f(v.x + lift, v.yzw));
+}

@@ -1,0 +1,32 @@
+// From the response of a difference of Gaussians to an edge image: 1 is paper, 0 is line.
+// Twin of kernels/edge_threshold.rs.
+
+// Kinds: 0 the response itself; 1 binary (4.6); 2 tanh (4.8); 3 smoothstep.
+fn edge_threshold(u: f32, kind: u32, epsilon: f32, phi: f32) -> f32 {
+    if kind == 0u {
+        return u;
+    }
+    if u >= epsilon {
+        return 1.0;
+    }
+    // Far down both curves are 0; the bound keeps tanh finite on every driver.
+    let x = max(phi * (u - epsilon), -20.0);
+    if kind == 1u {
+        return 0.0;
+    }
+    if kind == 2u {
+        return 1.0 + tanh(x);
+    }
+    let t = max(x * 0.25 + 0.5, 0.0);
+    return 2.0 * t * t * (3.0 - 2.0 * t);
+}
+
+// The edge image where no covered pixel contributes: paper.
+fn edge_uncovered(kind: u32) -> f32 {
+    return select(1.0, 0.0, kind == 0u);
+}
+
+// D = base G_sigma + edge (G_sigma - G_k sigma) (4.9), from two coverage-weighted means of lightness.
+fn dog_response(narrow: f32, wide: f32, base: f32, edge: f32) -> f32 {
+    return base * narrow + edge * (narrow - wide);
+}
