@@ -3,7 +3,7 @@
 //! A block at the end of a row goes through the same arithmetic as a full one, its missing lanes
 //! filled, so that no pixel depends on where its tile ends.
 
-use isophote_engine::fearless_simd::{Simd, f32x8, f64x4, i32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, prelude::*};
 use isophote_engine::math::{load4, store4};
 use isophote_engine::{Band, View};
 
@@ -120,21 +120,6 @@ pub fn offsets<S: Simd>(view: &View<'_>, x: i32x8<S>, y: i32x8<S>) -> i32x8<S> {
     let column = x.max(c(0)).min(c(w - 1)) - c(window.x0);
     let row = y.max(c(0)).min(c(h - 1)) - c(window.y0);
     row * c(view.stride() as i32) + column * c(view.channels() as i32)
-}
-
-/// Eight pixels of a two-channel image, still interleaved, four a vector: one 64-bit load each.
-#[inline(always)]
-pub fn fetch2<S: Simd>(simd: S, view: &View<'_>, at: i32x8<S>) -> [f32x8<S>; 2] {
-    let data = view.data();
-    let pixel = |lane: usize| {
-        let start = at[lane] as usize;
-        let pair = &data[start..start + 2];
-        f64::from_bits(u64::from(pair[0].to_bits()) | u64::from(pair[1].to_bits()) << 32)
-    };
-    [
-        f64x4::from_fn(simd, |lane| pixel(lane)).bitcast(),
-        f64x4::from_fn(simd, |lane| pixel(lane + 4)).bitcast(),
-    ]
 }
 
 /// Eight values of a one-channel image.

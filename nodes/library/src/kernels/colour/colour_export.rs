@@ -37,7 +37,7 @@ pub fn export(plan: &mut PlanBuilder, image: ImageId, space: ColourSpace, premul
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, |[r, g, b, a]| {
+    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, #[inline(always)] |[r, g, b, a]| {
         let mut rgb = [r, g, b];
         if params.space != ColourSpace::Srgb as u32 {
             rgb = srgb_decode(rgb);

@@ -40,7 +40,7 @@ pub fn import(plan: &mut PlanBuilder, image: ImageId, space: ColourSpace, premul
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, |v| {
+    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, #[inline(always)] |v| {
         let c = |x: f32| f32x8::splat(simd, x);
         let [r, g, b, a] = v.map(|v| {
             let bounded = v.min(c(LARGEST_HALF)).max(c(-LARGEST_HALF));

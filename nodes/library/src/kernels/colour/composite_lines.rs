@@ -37,7 +37,7 @@ pub fn composite(
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let (source, edges) = (&pass.inputs[0], &pass.inputs[1]);
-    dispatch!(pass.level, simd => for_blocks::<4>(band, |block, target| {
+    dispatch!(pass.level, simd => for_blocks::<4>(band, #[inline(always)] |block, target| {
         let c = |v: f32| f32x8::splat(simd, v);
         let v = block.read4(simd, source);
         let ink = (c(1.0) - block.read1(simd, edges).max(c(0.0)).min(c(1.0))) * params.line[3];

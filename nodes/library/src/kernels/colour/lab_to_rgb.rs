@@ -33,7 +33,7 @@ pub fn to_rgb(plan: &mut PlanBuilder, image: ImageId, chroma: f32) -> ImageId {
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, |[l, a, b, alpha]| {
+    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, #[inline(always)] |[l, a, b, alpha]| {
         let [r, g, b] = srgb_encode(lab_to_linear([l, a * params.chroma, b * params.chroma]));
         [r, g, b, alpha]
     }));

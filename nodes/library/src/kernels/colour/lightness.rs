@@ -40,7 +40,7 @@ pub fn of_lab(plan: &mut PlanBuilder, lab: ImageId) -> ImageId {
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let view = &pass.inputs[0];
-    dispatch!(pass.level, simd => for_blocks::<2>(band, |block, target| {
+    dispatch!(pass.level, simd => for_blocks::<2>(band, #[inline(always)] |block, target| {
         let [r, g, b, alpha] = block.read4(simd, view);
         let mut lightness = r;
         if params.source_space == 0 {

@@ -86,7 +86,7 @@ pub fn quantize(plan: &mut PlanBuilder, lab: ImageId, bins: i32, steepness: Stee
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let view = &pass.inputs[0];
-    dispatch!(pass.level, simd => for_blocks::<4>(band, |block, target| {
+    dispatch!(pass.level, simd => for_blocks::<4>(band, #[inline(always)] |block, target| {
         let [l, a, b, alpha] = block.read4(simd, view);
         let c = |v: f32| f32x8::splat(simd, v);
         let mut phi = c(params.phi);

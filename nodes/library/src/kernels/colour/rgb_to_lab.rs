@@ -34,7 +34,7 @@ pub fn to_lab(plan: &mut PlanBuilder, image: ImageId, chroma: f32) -> ImageId {
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, |[r, g, b, alpha]| {
+    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, #[inline(always)] |[r, g, b, alpha]| {
         let [l, a, b] = linear_to_lab(srgb_decode([r, g, b]));
         [l, a * params.chroma, b * params.chroma, alpha]
     }));

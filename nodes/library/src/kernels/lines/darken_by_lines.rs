@@ -29,7 +29,7 @@ pub fn darken(plan: &mut PlanBuilder, lightness: ImageId, edges: ImageId) -> Ima
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let (lightness, edges) = (&pass.inputs[0], &pass.inputs[1]);
-    dispatch!(pass.level, simd => for_blocks::<2>(band, |block, target| {
+    dispatch!(pass.level, simd => for_blocks::<2>(band, #[inline(always)] |block, target| {
         let c = |v: f32| f32x8::splat(simd, v);
         let [l, alpha] = block.read2(simd, lightness);
         let e = block.read1(simd, edges).max(c(0.0)).min(c(1.0));

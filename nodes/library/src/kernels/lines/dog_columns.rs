@@ -79,7 +79,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let view = &pass.inputs[0];
     let r = params.radius;
-    for_blocks::<1>(band, |block, target| {
+    for_blocks::<1>(band, #[inline(always)] |block, target| {
         let mut sums = [0.0; 32];
         let values = 4 * block.len;
         let row = |dy: i32| {

@@ -5,11 +5,11 @@
 //! one row or column, and two reads interpolate it exactly as a bilinear sample would.
 //! Cost: per step (about 3 k sigma_e of them) four reads of two values and two exponentials.
 
-use crate::kernels::blocks::{Block, fetch2, for_blocks, offsets, write2};
+use crate::kernels::blocks::{Block, for_blocks, offsets, write2};
 use crate::kernels::edge_threshold::{LEAST_COVERAGE, Xdog, dog_response};
 use crate::kernels::tensor_algebra::tangent;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
-use isophote_engine::math::Elementary;
+use isophote_engine::math::{Elementary, load_pairs};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::params! {
@@ -134,8 +134,8 @@ impl<S: Simd> Across<S> {
         let ([ox, oy], f) = self.place(k);
         let (x, y) = (self.at[0] + ox, self.at[1] + oy);
         let one = i32x8::splat(simd, 1);
-        let a = fetch2(simd, view, offsets(view, x, y));
-        let b = fetch2(simd, view, offsets(view, x + (self.upright & one), y + (!self.upright & one)));
+        let a = load_pairs(simd, view.data(), offsets(view, x, y));
+        let b = load_pairs(simd, view.data(), offsets(view, x + (self.upright & one), y + (!self.upright & one)));
         let (f0, f1) = f.interleave(f);
         [a[0] + (b[0] - a[0]) * f0, a[1] + (b[1] - a[1]) * f1]
     }
@@ -149,7 +149,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 #[inline(always)]
 fn gradient<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let (lightness, tensor) = (&pass.inputs[0], &pass.inputs[1]);
-    for_blocks::<2>(band, |block, target| {
+    for_blocks::<2>(band, #[inline(always)] |block, target| {
         let c = |v: f32| f32x8::splat(simd, v);
         let [e, f, g, _] = block.read4(simd, tensor);
         let line = Across::new(simd, &block, [e, f, g]);

@@ -11,7 +11,7 @@
 
 use crate::kernels::blocks::{fetch1, fetch4, for_blocks, offsets, write2};
 use crate::kernels::lines::flow_dog_gradient::{Across, halfwidth};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
@@ -48,47 +48,28 @@ crate::kernel!(guide_lines {
 /// line is then as dark as at a step of about 50 units of L.
 const AMOUNT: f32 = 16.0;
 
-/// The geometry that a renderer knows beside the colour.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct GuideImages {
-    /// View-space normals with validity.
-    pub normal: Option<ImageId>,
-    /// Distance from the camera, 0 or less where there is nothing.
-    pub depth: Option<ImageId>,
-    /// A number per object.
-    pub object_id: Option<ImageId>,
-}
-
-impl GuideImages {
-    /// True when there is none.
-    pub fn is_empty(&self) -> bool {
-        self.normal.is_none() && self.depth.is_none() && self.object_id.is_none()
-    }
-}
-
-/// `response` (u alpha, alpha) with lines of strength `weight` where the guides break; `edge` is the
-/// weight of the difference of Gaussians in the response.
+/// `response` (u alpha, alpha) with lines of strength `weight` where the guides, that is normal, depth
+/// and object id as far as there are any, break; `edge` is the weight of the difference of Gaussians
+/// in the response.
 pub fn add(
     plan: &mut PlanBuilder,
     response: ImageId,
     tensor: ImageId,
-    guides: &GuideImages,
+    guides: [Option<ImageId>; 3],
     sigma: f32,
     k: f32,
     weight: f32,
     edge: f32,
 ) -> ImageId {
-    let bit = |guide: Option<ImageId>, bit: u32| if guide.is_some() { bit } else { 0 };
     let halfwidth = halfwidth(sigma, k);
     let params = Params {
         narrow: -0.5 / (sigma * sigma).max(1e-6),
         halfwidth,
         amount: AMOUNT * weight * edge,
-        guides: bit(guides.normal, 1) | bit(guides.depth, 2) | bit(guides.object_id, 4),
+        guides: (0..3).map(|i| u32::from(guides[i].is_some()) << i).sum(),
     };
     // A guide that is not there is not read; any image may stand in for it.
-    let [normal, depth, id] =
-        [guides.normal, guides.depth, guides.object_id].map(|guide| guide.unwrap_or(response));
+    let [normal, depth, id] = guides.map(|guide| guide.unwrap_or(response));
     let support = Support::Pixels(halfwidth as u32 + 1);
     plan.pass(&KERNEL, &[response, tensor, normal, depth, id], &params, Class::Field, support)
 }
@@ -103,7 +84,7 @@ fn breaks<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
     let [response, tensor, normal, depth, object_id] = pass.inputs else { return };
     let c = |v: f32| f32x8::splat(simd, v);
     let has = |bit: u32| params.guides & bit != 0;
-    for_blocks::<2>(band, |block, target| {
+    for_blocks::<2>(band, #[inline(always)] |block, target| {
         let [e, f, g, _] = block.read4(simd, tensor);
         let line = Across::new(simd, &block, [e, f, g]);
         let at = line.at;
@@ -138,10 +119,7 @@ fn breaks<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
 }
 
 #[inline(always)]
-fn finite<S: Simd>(v: f32x8<S>) -> S::mask32s8
-where
-    S: Simd,
-{
+fn finite<S: Simd>(v: f32x8<S>) -> mask32x8<S> {
     v.abs().simd_le(f32::MAX)
 }
 
