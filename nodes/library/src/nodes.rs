@@ -24,6 +24,7 @@ nodes! {
     }
     lines {
         difference_of_gaussians,
+        flow_dog,
     }
     smoothing {
         gaussian,

@@ -29,42 +29,37 @@ impl Block {
         lanes.min(i32x8::splat(simd, self.len as i32 - 1)) + i32x8::splat(simd, self.x)
     }
 
-    /// Reads `N` values a pixel; lanes past the end are 0.
+    /// `N` values a pixel, copied to `short` where the block is; lanes past the end are as they were there.
     #[inline(always)]
-    fn values<const N: usize>(&self, view: &View<'_>, f: impl FnOnce(&[f32])) {
+    fn values<'v, const N: usize>(&self, view: &View<'v>, short: &'v mut [f32; 4 * BLOCK]) -> &'v [f32] {
         let at = view.offset(self.x, self.y);
         if self.len == BLOCK {
-            return f(&view.data()[at..at + N * BLOCK]);
+            return &view.data()[at..at + N * BLOCK];
         }
-        let mut block = [0.0; 4 * BLOCK];
-        block[..N * self.len].copy_from_slice(&view.data()[at..at + N * self.len]);
-        f(&block[..N * BLOCK]);
+        short[..N * self.len].copy_from_slice(&view.data()[at..at + N * self.len]);
+        &short[..N * BLOCK]
     }
 
     /// The pixels of a one-channel image.
     #[inline(always)]
     pub fn read1<S: Simd>(&self, simd: S, view: &View<'_>) -> f32x8<S> {
-        let mut out = f32x8::splat(simd, 0.0);
-        self.values::<1>(view, |v| out = f32x8::from_slice(simd, v));
-        out
+        let mut short = [0.0; 4 * BLOCK];
+        f32x8::from_slice(simd, self.values::<1>(view, &mut short))
     }
 
     /// The pixels of a two-channel image.
     #[inline(always)]
     pub fn read2<S: Simd>(&self, simd: S, view: &View<'_>) -> [f32x8<S>; 2] {
-        let mut out = [f32x8::splat(simd, 0.0); 2];
-        self.values::<2>(view, |v| {
-            out = f32x8::from_slice(simd, &v[..8]).deinterleave(f32x8::from_slice(simd, &v[8..])).into();
-        });
-        out
+        let mut short = [0.0; 4 * BLOCK];
+        let v = self.values::<2>(view, &mut short);
+        f32x8::from_slice(simd, &v[..8]).deinterleave(f32x8::from_slice(simd, &v[8..])).into()
     }
 
     /// The pixels of a four-channel image.
     #[inline(always)]
     pub fn read4<S: Simd>(&self, simd: S, view: &View<'_>) -> [f32x8<S>; 4] {
-        let mut out = [f32x8::splat(simd, 0.0); 4];
-        self.values::<4>(view, |v| out = load4(simd, v));
-        out
+        let mut short = [0.0; 4 * BLOCK];
+        load4(simd, self.values::<4>(view, &mut short))
     }
 }
 
@@ -115,11 +110,10 @@ pub fn write4<S: Simd>(v: [f32x8<S>; 4], target: &mut [f32]) {
 /// lie in the window.
 #[inline(always)]
 pub fn offsets<S: Simd>(view: &View<'_>, x: i32x8<S>, y: i32x8<S>) -> i32x8<S> {
-    let c = |v: i32| i32x8::splat(x.simd, v);
     let ([w, h], window) = (view.full(), view.window());
-    let column = x.max(c(0)).min(c(w - 1)) - c(window.x0);
-    let row = y.max(c(0)).min(c(h - 1)) - c(window.y0);
-    row * c(view.stride() as i32) + column * c(view.channels() as i32)
+    let column = x.max(0).min(w - 1) - window.x0;
+    let row = y.max(0).min(h - 1) - window.y0;
+    row * view.stride() as i32 + column * view.channels() as i32
 }
 
 /// Eight values of a one-channel image.

@@ -52,20 +52,20 @@ impl Xdog {
 /// The edge image of response `u`; see [`Threshold`].
 #[inline(always)]
 pub fn edge_threshold<S: Simd>(u: f32x8<S>, kind: u32, epsilon: f32, phi: f32) -> f32x8<S> {
-    let c = |v: f32| f32x8::splat(u.simd, v);
+    let (zero, one) = (f32x8::splat(u.simd, 0.0), f32x8::splat(u.simd, 1.0));
     if kind == Threshold::None as u32 {
         return u;
     }
-    let x = ((u - epsilon) * phi).max(c(-20.0));
+    let x = ((u - epsilon) * phi).max(-20.0);
     let below = if kind == Threshold::Binary as u32 {
-        c(0.0)
+        zero
     } else if kind == Threshold::Tanh as u32 {
         x.tanh() + 1.0
     } else {
-        let t = (x * 0.25 + 0.5).max(c(0.0));
-        t * 2.0 * t * (c(3.0) - t * 2.0)
+        let t = (x * 0.25 + 0.5).max(0.0);
+        t * 2.0 * t * (t * -2.0 + 3.0)
     };
-    u.simd_ge(c(epsilon)).select(c(1.0), below)
+    u.simd_ge(epsilon).select(one, below)
 }
 
 /// The edge image where no covered pixel contributes: paper.

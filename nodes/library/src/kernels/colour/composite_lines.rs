@@ -3,7 +3,7 @@
 //! Cost: eight multiply-adds per pixel.
 
 use crate::kernels::blocks::{for_blocks, write4};
-use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::params! {
@@ -38,13 +38,17 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let (source, edges) = (&pass.inputs[0], &pass.inputs[1]);
     dispatch!(pass.level, simd => for_blocks::<4>(band, #[inline(always)] |block, target| {
-        let c = |v: f32| f32x8::splat(simd, v);
         let v = block.read4(simd, source);
-        let ink = (c(1.0) - block.read1(simd, edges).max(c(0.0)).min(c(1.0))) * params.line[3];
-        let over = |i: usize| {
-            let base = v[i] + (c(params.paper[i]) - v[i]) * params.paper[3];
-            base + ink * (c(params.line[i]) - base)
-        };
-        write4([over(0), over(1), over(2), v[3]], target);
+        let ink = (f32x8::splat(simd, 1.0) - block.read1(simd, edges).max(0.0).min(1.0)) * params.line[3];
+        let [r, g, b] = [over(v[0], ink, &params, 0), over(v[1], ink, &params, 1), over(v[2], ink, &params, 2)];
+        write4([r, g, b, v[3]], target);
     }));
+}
+
+/// Channel `i` of the paper and then the line over `v`.
+#[inline(always)]
+fn over<S: Simd>(v: f32x8<S>, ink: f32x8<S>, params: &Params, i: usize) -> f32x8<S> {
+    let (line, paper) = (f32x8::splat(v.simd, params.line[i]), f32x8::splat(v.simd, params.paper[i]));
+    let base = v + (paper - v) * params.paper[3];
+    base + ink * (line - base)
 }

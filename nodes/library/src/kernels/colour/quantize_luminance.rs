@@ -88,18 +88,19 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let view = &pass.inputs[0];
     dispatch!(pass.level, simd => for_blocks::<4>(band, #[inline(always)] |block, target| {
         let [l, a, b, alpha] = block.read4(simd, view);
-        let c = |v: f32| f32x8::splat(simd, v);
-        let mut phi = c(params.phi);
+        let mut phi = f32x8::splat(simd, params.phi);
         if params.adaptive != 0 {
-            let [right, left] = [1, -1].map(|d| neighbours(simd, view, &block, d, 0, l));
-            let [below, above] = [1, -1].map(|d| neighbours(simd, view, &block, 0, d, l));
+            let (right, left) =
+                (neighbours(simd, view, &block, 1, 0, l), neighbours(simd, view, &block, -1, 0, l));
+            let (below, above) =
+                (neighbours(simd, view, &block, 0, 1, l), neighbours(simd, view, &block, 0, -1, l));
             let (gx, gy) = ((right - left) * 0.5, (below - above) * 0.5);
             let g = (gx * gx + gy * gy).sqrt();
-            let t = ((g - params.lambda_delta) * params.inverse_delta).max(c(0.0)).min(c(1.0));
+            let t = ((g - params.lambda_delta) * params.inverse_delta).max(0.0).min(1.0);
             phi = t * (params.omega_phi - params.lambda_phi) + params.lambda_phi;
         }
         let middle = ((l * params.inverse_width).floor() + 0.5) * params.width;
-        let x = (phi * (l - middle)).max(c(-20.0)).min(c(20.0));
+        let x = (phi * (l - middle)).max(-20.0).min(20.0);
         let lightness = middle + x.tanh() * (0.5 * params.width);
         write4([lightness, a, b, alpha], target);
     }));
@@ -108,7 +109,6 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 /// Lightness of the neighbours at (dx, dy); where one is not covered, that of the pixel itself.
 #[inline(always)]
 fn neighbours<S: Simd>(simd: S, view: &View<'_>, block: &Block, dx: i32, dy: i32, own: f32x8<S>) -> f32x8<S> {
-    let c = |v: f32| f32x8::splat(simd, v);
     let (x, y) = (block.x + dx, block.y + dy);
     let inside = x >= 0 && x + block.len as i32 <= view.full()[0];
     let [l, alpha] = if inside {
@@ -120,7 +120,7 @@ fn neighbours<S: Simd>(simd: S, view: &View<'_>, block: &Block, dx: i32, dy: i32
             let [l, _, _, alpha] = view.pixel4(x + lane as i32, y);
             (values[0][lane], values[1][lane]) = (l, alpha);
         }
-        values.map(|v| f32x8::simd_from(simd, v))
+        [f32x8::simd_from(simd, values[0]), f32x8::simd_from(simd, values[1])]
     };
-    own + (l - own) * alpha.max(c(0.0)).min(c(1.0))
+    own + (l - own) * alpha.max(0.0).min(1.0)
 }

@@ -32,10 +32,9 @@ pub fn tones(plan: &mut PlanBuilder, lab: ImageId, darks: f32, lights: f32) -> I
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     dispatch!(pass.level, simd => map_pixels4(simd, pass, band, #[inline(always)] |[l, a, b, alpha]| {
-        let c = |v: f32| f32x8::splat(simd, v);
-        let t = (l * 0.01).max(c(0.0)).min(c(1.0));
-        let hump = t * (c(1.0) - t);
-        let lift = hump * 90.0 * ((c(1.0) - t) * params.darks + t * params.lights);
+        let t = (l * 0.01).max(0.0).min(1.0);
+        let rest = f32x8::splat(simd, 1.0) - t;
+        let lift = t * rest * 90.0 * (rest * params.darks + t * params.lights);
         [l + lift, a, b, alpha]
     }));
 }

@@ -30,10 +30,10 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let (lightness, edges) = (&pass.inputs[0], &pass.inputs[1]);
     dispatch!(pass.level, simd => for_blocks::<2>(band, #[inline(always)] |block, target| {
-        let c = |v: f32| f32x8::splat(simd, v);
         let [l, alpha] = block.read2(simd, lightness);
-        let e = block.read1(simd, edges).max(c(0.0)).min(c(1.0));
-        let factor = c(1.0) - (c(1.0) - e) * params.amount;
+        let e = block.read1(simd, edges).max(0.0).min(1.0);
+        let one = f32x8::splat(simd, 1.0);
+        let factor = one - (one - e) * params.amount;
         write2([l * factor, alpha], target);
     }));
 }

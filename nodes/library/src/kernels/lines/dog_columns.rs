@@ -89,23 +89,34 @@ fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
         for (half, sum) in sums.chunks_exact_mut(16).enumerate() {
             let v = 16 * half;
             if v + 16 <= values {
-                smooth(simd, params, |dy| f32x16::from_slice(simd, &row(dy)[v..v + 16])).store_slice(sum);
+                let tap = smooth(
+                    simd,
+                    params,
+                    #[inline(always)]
+                    |dy| f32x16::from_slice(simd, &row(dy)[v..v + 16]),
+                );
+                tap.store_slice(sum);
             } else if v < values {
-                let short = |dy: i32| {
-                    let mut part = [0.0; 16];
-                    part[..values - v].copy_from_slice(&row(dy)[v..]);
-                    f32x16::simd_from(simd, part)
-                };
-                smooth(simd, params, short).store_slice(sum);
+                let tap = smooth(
+                    simd,
+                    params,
+                    #[inline(always)]
+                    |dy| {
+                        let mut part = [0.0; 16];
+                        part[..values - v].copy_from_slice(&row(dy)[v..]);
+                        f32x16::simd_from(simd, part)
+                    },
+                );
+                tap.store_slice(sum);
             }
         }
         let [nl, na, wl, wa]: [f32x8<S>; 4] = load4(simd, &sums);
-        let c = |v: f32| f32x8::splat(simd, v);
+        let one = f32x8::splat(simd, 1.0);
         let covered = na.min(wa).simd_gt(LEAST_COVERAGE);
-        let (na, wa) = (covered.select(na, c(1.0)), covered.select(wa, c(1.0)));
+        let (na, wa) = (covered.select(na, one), covered.select(wa, one));
         let u = dog_response(nl / na, wl / wa, params.base, params.edge);
         let line = edge_threshold(u, params.threshold, params.epsilon, params.phi);
-        write1(covered.select(line, c(edge_uncovered(params.threshold))), target);
+        write1(covered.select(line, f32x8::splat(simd, edge_uncovered(params.threshold))), target);
     });
     debug_assert!(r >= 0);
 }
@@ -113,13 +124,15 @@ fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
 /// Four pixels (narrow L, narrow alpha, wide L, wide alpha) smoothed along y.
 #[inline(always)]
 fn smooth<S: Simd>(simd: S, params: &Params, tap: impl Fn(i32) -> f32x16<S>) -> f32x16<S> {
-    let weight = |i: usize| {
-        let (n, w) = (params.narrow[i / 4][i % 4], params.wide[i / 4][i % 4]);
-        f32x16::simd_from(simd, [n, n, w, w, n, n, w, w, n, n, w, w, n, n, w, w])
-    };
-    let mut sum = tap(0) * weight(0);
+    let mut sum = tap(0) * weight(simd, params, 0);
     for i in 1..=params.radius {
-        sum = (tap(-i) + tap(i)).mul_add(weight(i as usize), sum);
+        sum = (tap(-i) + tap(i)).mul_add(weight(simd, params, i as usize), sum);
     }
     sum
+}
+
+#[inline(always)]
+fn weight<S: Simd>(simd: S, params: &Params, i: usize) -> f32x16<S> {
+    let (n, w) = (params.narrow[i / 4][i % 4], params.wide[i / 4][i % 4]);
+    f32x16::simd_from(simd, [n, n, w, w, n, n, w, w, n, n, w, w, n, n, w, w])
 }

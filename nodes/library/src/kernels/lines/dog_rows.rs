@@ -71,17 +71,27 @@ fn smooth<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
             // Tap i of value v lies 2 i values to either side of 2 r + v.
             let first = 16 * i;
             if target.len() == 32 {
-                let [a, b] = pair(simd, params, |tap| f32x16::from_slice(simd, &source[first + 2 * tap..][..16]));
+                let [a, b] = pair(
+                    simd,
+                    params,
+                    #[inline(always)]
+                    |tap| f32x16::from_slice(simd, &source[first + 2 * tap..][..16]),
+                );
                 a.store_slice(&mut target[..16]);
                 b.store_slice(&mut target[16..]);
                 continue;
             }
             let rest = target.len() / 2;
-            let [a, b] = pair(simd, params, |tap| {
-                let mut block = [0.0; 16];
-                block[..rest].copy_from_slice(&source[first + 2 * tap..][..rest]);
-                f32x16::simd_from(simd, block)
-            });
+            let [a, b] = pair(
+                simd,
+                params,
+                #[inline(always)]
+                |tap| {
+                    let mut block = [0.0; 16];
+                    block[..rest].copy_from_slice(&source[first + 2 * tap..][..rest]);
+                    f32x16::simd_from(simd, block)
+                },
+            );
             let mut block = [0.0; 32];
             a.store_slice(&mut block[..16]);
             b.store_slice(&mut block[16..]);
@@ -95,14 +105,13 @@ fn smooth<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
 #[inline(always)]
 fn pair<S: Simd>(simd: S, params: &Params, tap: impl Fn(usize) -> f32x16<S>) -> [f32x16<S>; 2] {
     let r = params.radius as usize;
-    let weight = |table: &GaussianTable, i: usize| f32x16::splat(simd, table[i / 4][i % 4]);
     let middle = tap(r);
-    let mut narrow = middle * weight(&params.narrow, 0);
-    let mut wide = middle * weight(&params.wide, 0);
+    let mut narrow = middle * params.narrow[0][0];
+    let mut wide = middle * params.wide[0][0];
     for i in 1..=r {
         let both = tap(r - i) + tap(r + i);
-        narrow = both.mul_add(weight(&params.narrow, i), narrow);
-        wide = both.mul_add(weight(&params.wide, i), wide);
+        narrow = both.mul_add(f32x16::splat(simd, params.narrow[i / 4][i % 4]), narrow);
+        wide = both.mul_add(f32x16::splat(simd, params.wide[i / 4][i % 4]), wide);
     }
     // (L, alpha) pairs move as one 64-bit value.
     let (a, b) = narrow.bitcast::<f64x8<S>>().interleave(wide.bitcast::<f64x8<S>>());

@@ -96,10 +96,10 @@ impl<S: Simd> Across<S> {
         let [tx, ty] = tangent(e, f, g);
         let upright = tx.abs().simd_gt(ty.abs());
         let slope = upright.select(-ty / tx, -tx / ty);
-        let c = |v: i32| i32x8::splat(simd, v);
+        let none = i32x8::splat(simd, 0);
         Self {
-            at: [block.columns(simd), c(block.y)],
-            upright: upright.select(c(-1), c(0)),
+            at: [block.columns(simd), i32x8::splat(simd, block.y)],
+            upright: upright.select(!none, none),
             slope,
             step: (slope * slope + 1.0).sqrt(),
         }
@@ -150,26 +150,27 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 fn gradient<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let (lightness, tensor) = (&pass.inputs[0], &pass.inputs[1]);
     for_blocks::<2>(band, #[inline(always)] |block, target| {
-        let c = |v: f32| f32x8::splat(simd, v);
+        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
         let [e, f, g, _] = block.read4(simd, tensor);
         let line = Across::new(simd, &block, [e, f, g]);
         let [middle, alpha] = block.read2(simd, lightness);
-        let (mut narrow, mut wide) = ([middle, alpha], [middle, alpha]);
+        let (mut narrow, mut narrow_alpha, mut wide, mut wide_alpha) = (middle, alpha, middle, alpha);
         for k in 1..=params.halfwidth as i32 {
             let d = line.step * k as f32;
             let near = d.simd_le(params.halfwidth);
             let (ahead, behind) = (line.sample2(simd, lightness, k), line.sample2(simd, lightness, -k));
             let both = (ahead[0] + behind[0]).deinterleave(ahead[1] + behind[1]);
-            let weight = |falloff: f32| near.select((d * falloff * d).exp(), c(0.0));
-            for (sum, falloff) in [(&mut narrow, params.narrow), (&mut wide, params.wide)] {
-                let w = weight(falloff);
-                sum[0] = both.0.mul_add(w, sum[0]);
-                sum[1] = both.1.mul_add(w, sum[1]);
-            }
+            let n = near.select((d * params.narrow * d).exp(), zero);
+            let w = near.select((d * params.wide * d).exp(), zero);
+            narrow = both.0.mul_add(n, narrow);
+            narrow_alpha = both.1.mul_add(n, narrow_alpha);
+            wide = both.0.mul_add(w, wide);
+            wide_alpha = both.1.mul_add(w, wide_alpha);
         }
-        let covered = narrow[1].min(wide[1]).simd_gt(LEAST_COVERAGE);
-        let mean = |sum: [f32x8<S>; 2]| sum[0] / covered.select(sum[1], c(1.0));
-        let u = dog_response(mean(narrow), mean(wide), params.base, params.edge);
-        write2([covered.select(u, c(0.0)) * alpha, alpha], target);
+        let covered = narrow_alpha.min(wide_alpha).simd_gt(LEAST_COVERAGE);
+        let narrow = narrow / covered.select(narrow_alpha, one);
+        let wide = wide / covered.select(wide_alpha, one);
+        let u = dog_response(narrow, wide, params.base, params.edge);
+        write2([covered.select(u, zero) * alpha, alpha], target);
     });
 }

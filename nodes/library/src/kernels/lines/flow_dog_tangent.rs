@@ -83,7 +83,7 @@ fn smooth<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
     let falloff = -0.721_347_52 / (params.sigma * params.sigma).max(1e-6);
     let last = band.window.x1 - 1;
     for_blocks::<1>(band, #[inline(always)] |block, target| {
-        let c = |v: f32| f32x8::splat(simd, v);
+        let zero = f32x8::splat(simd, 0.0);
         let [e, f, g, _] = block.read4(simd, tensors);
         let [tx, ty] = tangent(e, f, g);
         let [x, y] = centres(simd, block.x, block.y, last);
@@ -95,15 +95,15 @@ fn smooth<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                 field.advance(simd, &mut line, active);
                 active = active & field.inside(simd, &line);
                 // The lanes share the arc length, so one power serves them all.
-                let weight = active.select(c((falloff * (u * u) as f32).exp2()), c(0.0));
+                let weight = active.select(f32x8::splat(simd, (falloff * (u * u) as f32).exp2()), zero);
                 let [v, alpha] = sample_linear2(simd, response, line.x, line.y);
                 sum = weight.mul_add(v, sum);
                 norm = weight.mul_add(alpha, norm);
             }
         }
         let covered = norm.simd_gt(LEAST_COVERAGE);
-        let u = sum / covered.select(norm, c(1.0));
+        let u = sum / covered.select(norm, zero + 1.0);
         let edge = edge_threshold(u, params.threshold, params.epsilon, params.phi);
-        write1(covered.select(edge, c(edge_uncovered(params.threshold))), target);
+        write1(covered.select(edge, zero + edge_uncovered(params.threshold)), target);
     });
 }

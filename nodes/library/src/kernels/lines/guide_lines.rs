@@ -82,33 +82,34 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 #[inline(always)]
 fn breaks<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let [response, tensor, normal, depth, object_id] = pass.inputs else { return };
-    let c = |v: f32| f32x8::splat(simd, v);
+    let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     let has = |bit: u32| params.guides & bit != 0;
     for_blocks::<2>(band, #[inline(always)] |block, target| {
         let [e, f, g, _] = block.read4(simd, tensor);
         let line = Across::new(simd, &block, [e, f, g]);
         let at = line.at;
-        let n0 = if has(1) { normals(simd, normal, at) } else { [c(0.0); 3] };
-        let z0 = if has(2) { depths(simd, depth, at) } else { c(0.0) };
-        let id0 = if has(4) { ids(simd, object_id, at) } else { c(0.0) };
-        let (mut sums, mut weights) = ([c(0.0); 3], c(1.0));
+        let n0 = if has(1) { normals(simd, normal, at) } else { [zero; 3] };
+        let z0 = if has(2) { depths(simd, depth, at) } else { zero };
+        let id0 = if has(4) { ids(simd, object_id, at) } else { zero };
+        let (mut sums, mut weights) = ([zero; 3], one);
         for k in 1..=params.halfwidth as i32 {
             let d = line.step * k as f32;
-            let w = d.simd_le(params.halfwidth).select((d * params.narrow * d).exp(), c(0.0));
+            let w = d.simd_le(params.halfwidth).select((d * params.narrow * d).exp(), zero);
             weights += w * 2.0;
-            let sides = [line.nearest(k), line.nearest(-k)];
+            let (ahead, behind) = (line.nearest(k), line.nearest(-k));
             if has(1) {
-                let [a, b] = sides.map(|at| normal_break(n0, normals(simd, normal, at)));
+                let a = normal_break(n0, normals(simd, normal, ahead));
+                let b = normal_break(n0, normals(simd, normal, behind));
                 sums[0] += w * (a + b);
             }
             if has(2) {
-                let [a, b] = sides.map(|at| relative_nearness(z0, depths(simd, depth, at)));
+                let a = relative_nearness(z0, depths(simd, depth, ahead));
+                let b = relative_nearness(z0, depths(simd, depth, behind));
                 sums[1] += w * ramp(((a + b - 2.0).abs() - 0.02) * 10.0);
             }
             if has(4) {
-                let [a, b] = sides.map(|at| {
-                    ids(simd, object_id, at).simd_eq(id0).select(c(0.0), c(1.0))
-                });
+                let a = ids(simd, object_id, ahead).simd_eq(id0).select(zero, one);
+                let b = ids(simd, object_id, behind).simd_eq(id0).select(zero, one);
                 sums[2] += w * (a + b);
             }
         }
@@ -128,7 +129,8 @@ fn finite<S: Simd>(v: f32x8<S>) -> mask32x8<S> {
 fn normals<S: Simd>(simd: S, view: &View<'_>, [x, y]: [i32x8<S>; 2]) -> [f32x8<S>; 3] {
     let [x, y, z, w] = fetch4(simd, view, offsets(view, x, y));
     let valid = finite(x) & finite(y) & finite(z) & w.simd_gt(0.5);
-    [x, y, z].map(|v| valid.select(v, f32x8::splat(simd, 0.0)))
+    let zero = f32x8::splat(simd, 0.0);
+    [valid.select(x, zero), valid.select(y, zero), valid.select(z, zero)]
 }
 
 /// Depths, 0 where there is nothing.
@@ -147,30 +149,33 @@ fn ids<S: Simd>(simd: S, view: &View<'_>, [x, y]: [i32x8<S>; 2]) -> f32x8<S> {
 /// t^2 (3 - 2 t) of t clamped to 0..=1.
 #[inline(always)]
 fn ramp<S: Simd>(t: f32x8<S>) -> f32x8<S> {
-    let c = |v: f32| f32x8::splat(t.simd, v);
-    let t = t.max(c(0.0)).min(c(1.0));
-    t * t * (c(3.0) - t * 2.0)
+    let t = t.max(0.0).min(1.0);
+    t * t * (t * -2.0 + 3.0)
 }
 
 /// 0 for equal directions or two missing normals, 1 for perpendicular ones or one that is missing.
 /// Below 18 degrees it is relief of the surface, from 41 degrees on an edge.
 #[inline(always)]
 fn normal_break<S: Simd>(a: [f32x8<S>; 3], b: [f32x8<S>; 3]) -> f32x8<S> {
-    let c = |v: f32| f32x8::splat(a[0].simd, v);
-    let dot = |a: [f32x8<S>; 3], b: [f32x8<S>; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let (zero, one) = (f32x8::splat(a[0].simd, 0.0), f32x8::splat(a[0].simd, 1.0));
     let (aa, bb) = (dot(a, a), dot(b, b));
     let (has_a, has_b) = (aa.simd_gt(0.0), bb.simd_gt(0.0));
     let both = has_a & has_b;
-    let turn = c(1.0) - dot(a, b) / both.select(aa * bb, c(1.0)).sqrt();
-    let lone = (has_a | has_b).select(c(1.0), c(0.0));
+    let turn = one - dot(a, b) / both.select(aa * bb, one).sqrt();
+    let lone = (has_a | has_b).select(one, zero);
     both.select(ramp((turn - 0.05) * 5.0), lone)
+}
+
+#[inline(always)]
+fn dot<S: Simd>(a: [f32x8<S>; 3], b: [f32x8<S>; 3]) -> f32x8<S> {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Nearness relative to the pixel itself, 0..=2; two empty places are equally near.
 #[inline(always)]
 fn relative_nearness<S: Simd>(z0: f32x8<S>, z: f32x8<S>) -> f32x8<S> {
-    let c = |v: f32| f32x8::splat(z0.simd, v);
+    let (zero, one) = (f32x8::splat(z0.simd, 0.0), f32x8::splat(z0.simd, 1.0));
     let there = z.simd_gt(0.0);
-    let near = there.select((z0 / there.select(z, c(1.0))).min(c(2.0)), c(0.0));
-    z0.simd_gt(0.0).select(near, there.select(c(2.0), c(1.0)))
+    let near = there.select((z0 / there.select(z, one)).min(2.0), zero);
+    z0.simd_gt(0.0).select(near, there.select(one + 1.0, one))
 }
