@@ -151,6 +151,18 @@ pub fn store4<S: Simd, V: SimdBase<S, Element = f32>>([r, g, b, a]: [V; 4], rgba
     }
 }
 
+/// One vector per channel from eight pixels.
+#[inline(always)]
+pub fn channels<S: Simd>(pixels: [f32x4<S>; 8]) -> [f32x8<S>; 4] {
+    // Joined in registers: a wide load of what narrow stores have just written would stall.
+    let pair = |i: usize| pixels[2 * i].combine(pixels[2 * i + 1]);
+    let (rb0, ga0) = pair(0).deinterleave(pair(1));
+    let (rb1, ga1) = pair(2).deinterleave(pair(3));
+    let (r, b) = rb0.deinterleave(rb1);
+    let (g, a) = ga0.deinterleave(ga1);
+    [r, g, b, a]
+}
+
 /// Bilinear sample of a four-channel image at eight positions (absolute, pixel centres at +0.5,
 /// clamped to the edge), one vector per channel.
 ///
@@ -159,19 +171,17 @@ pub fn store4<S: Simd, V: SimdBase<S, Element = f32>>([r, g, b, a]: [V; 4], rgba
 pub fn sample_linear4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 4] {
     let taps = LinearTaps::new(simd, view, x, y);
     let data = view.data();
-    let mut pixels = [0.0f32; 32];
-    for lane in 0..8 {
-        let load = |at: i32| f32x4::from_slice(simd, &data[at as usize..at as usize + 4]);
-        let (fx, fy) = (taps.fx[lane], taps.fy[lane]);
-        let (a, b) = (load(taps.at[0][lane]), load(taps.at[1][lane]));
-        let (c, d) = (load(taps.at[2][lane]), load(taps.at[3][lane]));
-        let fx = f32x4::splat(simd, fx);
-        let top = (b - a).mul_add(fx, a);
-        let bottom = (d - c).mul_add(fx, c);
-        let value = (bottom - top).mul_add(f32x4::splat(simd, fy), top);
-        value.store_slice(&mut pixels[lane * 4..lane * 4 + 4]);
-    }
-    load4(simd, &pixels)
+    let load = |at: i32| f32x4::from_slice(simd, &data[at as usize..at as usize + 4]);
+    let (fx, fy) = (taps.fx.to_array(), taps.fy.to_array());
+    let at = taps.at.map(|a| a.to_array());
+    channels(std::array::from_fn(|lane| {
+        let (a, b) = (load(at[0][lane]), load(at[1][lane]));
+        let (c, d) = (load(at[2][lane]), load(at[3][lane]));
+        let x = f32x4::splat(simd, fx[lane]);
+        let top = (b - a).mul_add(x, a);
+        let bottom = (d - c).mul_add(x, c);
+        (bottom - top).mul_add(f32x4::splat(simd, fy[lane]), top)
+    }))
 }
 
 /// Bilinear sample of a one-channel image at eight positions; see [`sample_linear4`].

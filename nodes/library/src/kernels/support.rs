@@ -2,7 +2,7 @@
 
 use isophote_engine::fearless_simd::{Simd, f32x8};
 use isophote_engine::math::{load4, store4};
-use isophote_engine::{Band, CpuPass};
+use isophote_engine::{Band, CpuPass, View};
 
 /// Fails the build when a uniform block differs from the struct of its shader.
 pub const fn assert_layout(rust: &[(&str, usize)], size: usize, wgsl: &[(&str, usize)], wgsl_size: usize) {
@@ -77,6 +77,21 @@ pub fn map_pixels4<S: Simd>(
             }
         }
     }
+}
+
+/// Eight four-channel pixels of row `y` from column `x` on; columns past `last` repeat it.
+#[inline(always)]
+pub fn get_pixels4<S: Simd>(simd: S, view: &View<'_>, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
+    let data = view.data();
+    if x + 7 <= last {
+        let at = view.offset(x, y);
+        return load4(simd, &data[at..at + 32]);
+    }
+    let mut block = [0.0; 32];
+    for (lane, pixel) in block.chunks_exact_mut(4).enumerate() {
+        pixel.copy_from_slice(&view.pixel4((x + lane as i32).min(last), y));
+    }
+    load4(simd, &block)
 }
 
 /// Writes eight four-channel pixels to the start of `row`, or as many as it still has.

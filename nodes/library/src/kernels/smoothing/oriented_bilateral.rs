@@ -1,0 +1,281 @@
+//! One pass of the orientation-aligned bilateral filter (§ 3.4, Listing 3.1), along the gradient or
+//! along the tangent; the first pass of the flow-based bilateral filter (§ 3.5) is the same.
+//!
+//! Taps are one pixel apart along the axis that is nearer to the direction, so each lies between two
+//! pixels (3.6, 3.7). The range is measured as Euclidean distance of the three colour channels, taps
+//! count by their coverage, and coverage itself passes: the edge of a cut-out is an edge to preserve.
+//!
+//! Cost: about 1.8 cutoff taps of two loads, one interpolation and one exponential (manual: two).
+
+use crate::kernels::coverage::Covered;
+use crate::kernels::support::{get_pixels4, put_pixels4};
+use crate::kernels::tensor_algebra::{anisotropy, tangent};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, f32x8, i32x8, mask32x8, prelude::*};
+use isophote_engine::math::{Elementary, channels};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for oriented_bilateral {
+        /// Standard deviation along the line, pixels.
+        pub sigma_d: f32,
+        /// Standard deviation of the range, in the unit of the colour.
+        pub sigma_r: f32,
+        /// Distance of the last tap, pixels.
+        pub cutoff: f32,
+        /// Growth of the tangent's scale, and shrinking of the gradient's, per unit of anisotropy.
+        pub elongation: f32,
+        /// 1: along the tangent; 0: along the gradient.
+        pub tangential: u32,
+        /// 1: range weights before the interpolation (3.9); 0: after it.
+        pub manual: u32,
+    }
+}
+
+crate::kernel!(oriented_bilateral {
+    cpu: run,
+    cost: |params| {
+        let p: Params = bytemuck::pod_read_unaligned(params);
+        1.8 * f64::from(p.cutoff) * if p.manual != 0 { 50.0 } else { 35.0 }
+    },
+    tolerance: Tolerance {
+        absolute: 2e-3,
+        relative: 2e-4,
+        outliers: 0.002,
+        reason: "where the tensor is nearly isotropic its direction turns by many roundings, and the \
+                 last bit decides whether a line has one more tap",
+    },
+});
+
+/// Direction of a pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// Across the edges: the major eigenvector.
+    Gradient = 0,
+    /// Along the edges: the minor eigenvector.
+    Tangent = 1,
+}
+
+/// Where range weights are applied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sampling {
+    /// To the interpolated colour.
+    Linear = 0,
+    /// To both pixels, before the interpolation (3.9).
+    Manual = 1,
+}
+
+/// What a pass is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Standard deviation along the line, pixels.
+    pub sigma_d: f32,
+    /// Standard deviation of the range, in the unit of the colour.
+    pub sigma_r: f32,
+    /// Where range weights are applied.
+    pub sampling: Sampling,
+    /// Elongation per unit of anisotropy; 0 for none.
+    pub elongation: f32,
+}
+
+/// Lines are cut at ceil(3 sigma_d) pixels (§ 3.4).
+const PRECISION: f32 = 3.0;
+
+/// Filters a colour, usually CIELAB, along one direction of the tensors.
+pub fn pass(
+    plan: &mut PlanBuilder,
+    color: ImageId,
+    tensors: ImageId,
+    direction: Direction,
+    options: &Options,
+) -> ImageId {
+    let params = Params {
+        sigma_d: options.sigma_d,
+        sigma_r: options.sigma_r,
+        cutoff: (PRECISION * options.sigma_d).ceil(),
+        elongation: options.elongation,
+        tangential: direction as u32,
+        manual: options.sampling as u32,
+    };
+    plan.pass(&KERNEL, &[color, tensors], &params, Class::Colour, Support::Pixels(reach(&params) as u32))
+}
+
+/// The most pixels that a tap lies away along either axis.
+///
+/// At 45 degrees a tap at distance d reads floor(d / sqrt 2) + 1 pixels away along the minor axis,
+/// which is never more than ceil(d) for the distances that can occur there.
+fn reach(params: &Params) -> i32 {
+    let stretch = if params.tangential != 0 { 1.0 + params.elongation } else { 1.0 };
+    (params.cutoff * stretch).ceil() as i32
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    let covered = (params.manual == 0).then(|| Covered::new(&pass.inputs[0], band, reach(&params)));
+    let source = covered.as_ref().map_or(pass.inputs[0], |c| c.view(&pass.inputs[0]));
+    let block = Blocks { params, origins: pass.inputs[0], source, tensors: pass.inputs[1] };
+    dispatch!(pass.level, simd => {
+        let window = band.window;
+        for y in window.y0..window.y1 {
+            for x in (window.x0..window.x1).step_by(8) {
+                let values = block.filtered(simd, x, y, window.x1 - 1);
+                put_pixels4(values, &mut band.row_mut(0, y)[4 * (x - window.x0) as usize..]);
+            }
+        }
+    });
+}
+
+/// What all blocks of a band share.
+struct Blocks<'a> {
+    params: Params,
+    origins: View<'a>,
+    /// Colours times coverage for linear sampling, as they are for manual.
+    source: View<'a>,
+    tensors: View<'a>,
+}
+
+/// Where the taps of eight lines lie.
+#[derive(Clone, Copy)]
+struct Lines<S: Simd> {
+    x: i32x8<S>,
+    y: i32x8<S>,
+    /// Lanes whose axis nearer to the direction is x.
+    along_x: mask32x8<S>,
+    /// Advance along the other axis per pixel of that one.
+    slope: f32x8<S>,
+}
+
+impl Blocks<'_> {
+    #[inline(always)]
+    fn filtered<S: Simd>(&self, simd: S, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
+        let c = |v: f32| f32x8::splat(simd, v);
+        let params = &self.params;
+        let [e, f, g, _] = get_pixels4(simd, &self.tensors, x, y, last);
+        let [tx, ty] = tangent(e, f, g);
+        let stretch = if params.elongation > 0.0 {
+            anisotropy(e, f, g) * params.elongation + 1.0
+        } else {
+            c(1.0)
+        };
+        let tangential = params.tangential != 0;
+        let [tx, ty] = if tangential { [tx, ty] } else { [ty, -tx] };
+        let scale = if tangential { stretch } else { c(1.0) / stretch };
+
+        let along_x = tx.abs().simd_gt(ty.abs());
+        let major = along_x.select(tx, ty);
+        let slope = along_x.select(ty, tx) / major;
+        let steps = ((scale * params.cutoff + 1e-3) * major.abs()).floor();
+        let sigma_d = scale * params.sigma_d * major.abs();
+        let domain = c(-0.721_347_52) / (sigma_d * sigma_d).max(c(1e-6));
+        let range = -0.721_347_52 / (params.sigma_r * params.sigma_r).max(1e-6);
+
+        let origin = get_pixels4(simd, &self.origins, x, y, last);
+        let alpha = origin[3];
+        let mut sum = [origin[0] * alpha, origin[1] * alpha, origin[2] * alpha, alpha];
+        let columns = i32x8::from_fn(simd, |lane| (x + lane as i32).min(last));
+        let lines = Lines { x: columns, y: i32x8::splat(simd, y), along_x, slope };
+        // Away from the picture's edges no position needs to be clamped.
+        let reach = reach(params);
+        let [w, h] = self.source.full();
+        let inner = x >= reach && y >= reach && x + 7 + reach < w && y + reach < h;
+        let mut k = 1.0;
+        loop {
+            let active = steps.simd_ge(c(k));
+            if !active.any_true() {
+                break;
+            }
+            let domain = domain * (k * k);
+            // Lines that have ended stay within the support.
+            let reached = steps.min(c(k));
+            for side in [-reached, reached] {
+                let (at, f) = if inner { self.inner(lines, side) } else { self.clamped(lines, side) };
+                if params.manual != 0 {
+                    let [a, b] = self.both(simd, at);
+                    for (tap, share) in [(a, c(1.0) - f), (b, f)] {
+                        let weight = (distance2(&tap, &origin) * range + domain).exp2();
+                        let weight = active.select(weight * share * tap[3], c(0.0));
+                        for (sum, tap) in sum.iter_mut().zip(tap).take(3) {
+                            *sum = weight.mul_add(tap, *sum);
+                        }
+                        sum[3] = sum[3] + weight;
+                    }
+                } else {
+                    let [r, g, b, a] = self.between(simd, at, f);
+                    let seen = c(1.0) / a.max(c(1e-6));
+                    let colour = [r * seen, g * seen, b * seen, a];
+                    let weight = (distance2(&colour, &origin) * range + domain).exp2();
+                    let weight = active.select(weight, c(0.0));
+                    for (sum, tap) in sum.iter_mut().zip([r, g, b, a]) {
+                        *sum = weight.mul_add(tap, *sum);
+                    }
+                }
+            }
+            k += 1.0;
+        }
+        let seen = sum[3].simd_gt(c(1e-6));
+        let result = |i: usize| seen.select(sum[i] / sum[3], origin[i]);
+        [result(0), result(1), result(2), alpha]
+    }
+
+    /// Offsets of the two pixels around the taps `k` pixels along the axis, and the second one's share.
+    #[inline(always)]
+    fn inner<S: Simd>(&self, lines: Lines<S>, k: f32x8<S>) -> ([[i32; 8]; 2], f32x8<S>) {
+        let simd = lines.slope.simd;
+        let c = |v: i32| i32x8::splat(simd, v);
+        let o = lines.slope * k;
+        let i = o.floor();
+        let held = self.source.window();
+        let stride = self.source.stride() as i32;
+        let start = (lines.y - c(held.y0)) * c(stride) + (lines.x - c(held.x0)) * c(4);
+        let major = lines.along_x.select(c(4), c(stride));
+        let minor = lines.along_x.select(c(stride), c(4));
+        let at = start + major * k.to_int::<i32x8<S>>() + minor * i.to_int::<i32x8<S>>();
+        ([at.to_array(), (at + minor).to_array()], o - i)
+    }
+
+    /// As [`Blocks::inner`], with positions clamped to the picture.
+    #[inline(always)]
+    fn clamped<S: Simd>(&self, lines: Lines<S>, k: f32x8<S>) -> ([[i32; 8]; 2], f32x8<S>) {
+        let simd = lines.slope.simd;
+        let c = |v: i32| i32x8::splat(simd, v);
+        let o = lines.slope * k;
+        let i = o.floor();
+        let (k, i): (i32x8<S>, i32x8<S>) = (k.to_int(), i.to_int());
+        let held = self.source.window();
+        let [w, h] = self.source.full();
+        let offset = |i: i32x8<S>| {
+            let x = (lines.x + lines.along_x.select(k, i)).max(c(0)).min(c(w - 1)) - c(held.x0);
+            let y = (lines.y + lines.along_x.select(i, k)).max(c(0)).min(c(h - 1)) - c(held.y0);
+            (y * c(self.source.stride() as i32) + x * c(4)).to_array()
+        };
+        ([offset(i), offset(i + c(1))], o - o.floor())
+    }
+
+    /// Interpolated taps.
+    #[inline(always)]
+    fn between<S: Simd>(&self, simd: S, at: [[i32; 8]; 2], f: f32x8<S>) -> [f32x8<S>; 4] {
+        let f = f.to_array();
+        channels(std::array::from_fn(|lane| {
+            let (a, b) = (self.load(simd, at[0][lane]), self.load(simd, at[1][lane]));
+            (b - a).mul_add(f32x4::splat(simd, f[lane]), a)
+        }))
+    }
+
+    /// Both pixels around the taps.
+    #[inline(always)]
+    fn both<S: Simd>(&self, simd: S, at: [[i32; 8]; 2]) -> [[f32x8<S>; 4]; 2] {
+        at.map(|at| channels(at.map(|at| self.load(simd, at))))
+    }
+
+    #[inline(always)]
+    fn load<S: Simd>(&self, simd: S, at: i32) -> f32x4<S> {
+        f32x4::from_slice(simd, &self.source.data()[at as usize..at as usize + 4])
+    }
+}
+
+/// Squared Euclidean distance of the three colour channels.
+#[inline(always)]
+fn distance2<S: Simd>(a: &[f32x8<S>; 4], b: &[f32x8<S>; 4]) -> f32x8<S> {
+    let d = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    d[2].mul_add(d[2], d[1].mul_add(d[1], d[0] * d[0]))
+}
