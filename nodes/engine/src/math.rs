@@ -30,38 +30,36 @@ macro_rules! elementary {
             #[inline(always)]
             fn exp(self) -> Self {
                 let simd = self.simd;
-                let c = |v: f32| $float::splat(simd, v);
-                let x = self.min(c(88.3)).max(c(-88.0));
-                let n = (x * c(std::f32::consts::LOG2_E)).round_ties_even();
-                let r = n.mul_add(c(-LN2_HIGH), x);
-                let r = n.mul_add(c(-LN2_LOW), r);
-                let p = c(1.987_569_1e-4);
-                let p = p.mul_add(r, c(1.398_2e-3));
-                let p = p.mul_add(r, c(8.333_452e-3));
-                let p = p.mul_add(r, c(4.166_579_6e-2));
-                let p = p.mul_add(r, c(1.666_666_5e-1));
-                let p = p.mul_add(r, c(0.5));
-                let p = p.mul_add(r * r, r + c(1.0));
+                let x = self.min($float::splat(simd, 88.3)).max($float::splat(simd, -88.0));
+                let n = (x * $float::splat(simd, std::f32::consts::LOG2_E)).round_ties_even();
+                let r = n.mul_add($float::splat(simd, -LN2_HIGH), x);
+                let r = n.mul_add($float::splat(simd, -LN2_LOW), r);
+                let p = $float::splat(simd, 1.987_569_1e-4);
+                let p = p.mul_add(r, $float::splat(simd, 1.398_2e-3));
+                let p = p.mul_add(r, $float::splat(simd, 8.333_452e-3));
+                let p = p.mul_add(r, $float::splat(simd, 4.166_579_6e-2));
+                let p = p.mul_add(r, $float::splat(simd, 1.666_666_5e-1));
+                let p = p.mul_add(r, $float::splat(simd, 0.5));
+                let p = p.mul_add(r * r, r + $float::splat(simd, 1.0));
                 let n: $int<S> = n.to_int();
                 let scale: $float<S> = ((n + $int::splat(simd, 127)) << 23).bitcast();
                 let result = p * scale;
-                self.simd_lt(c(-87.3)).select(c(0.0), result)
+                self.simd_lt($float::splat(simd, -87.3)).select($float::splat(simd, 0.0), result)
             }
 
             #[inline(always)]
             fn exp2(self) -> Self {
                 let simd = self.simd;
-                let c = |v: f32| $float::splat(simd, v);
-                let x = self.min(c(127.0)).max(c(-126.0));
+                let x = self.min($float::splat(simd, 127.0)).max($float::splat(simd, -126.0));
                 let n = x.round_ties_even();
                 let r = x - n;
-                let p = c(1.535_336_2e-4);
-                let p = p.mul_add(r, c(1.339_887_4e-3));
-                let p = p.mul_add(r, c(9.618_437e-3));
-                let p = p.mul_add(r, c(5.550_332_5e-2));
-                let p = p.mul_add(r, c(2.402_264_8e-1));
-                let p = p.mul_add(r, c(6.931_472e-1));
-                let p = p.mul_add(r, c(1.0));
+                let p = $float::splat(simd, 1.535_336_2e-4);
+                let p = p.mul_add(r, $float::splat(simd, 1.339_887_4e-3));
+                let p = p.mul_add(r, $float::splat(simd, 9.618_437e-3));
+                let p = p.mul_add(r, $float::splat(simd, 5.550_332_5e-2));
+                let p = p.mul_add(r, $float::splat(simd, 2.402_264_8e-1));
+                let p = p.mul_add(r, $float::splat(simd, 6.931_472e-1));
+                let p = p.mul_add(r, $float::splat(simd, 1.0));
                 let n: $int<S> = n.to_int();
                 let scale: $float<S> = ((n + $int::splat(simd, 127)) << 23).bitcast();
                 p * scale
@@ -70,30 +68,29 @@ macro_rules! elementary {
             #[inline(always)]
             fn ln(self) -> Self {
                 let simd = self.simd;
-                let c = |v: f32| $float::splat(simd, v);
                 let bits: $int<S> = self.bitcast();
                 let exponent = (bits >> 23) - $int::splat(simd, 126);
                 let mantissa = (bits & $int::splat(simd, 0x007f_ffff)) | $int::splat(simd, 0x3f00_0000);
                 let m: $float<S> = mantissa.bitcast();
                 let e: $float<S> = exponent.to_float();
                 // m lies in [0.5, 1); below sqrt(1/2) it is doubled so that the series stays short.
-                let small = m.simd_lt(c(std::f32::consts::FRAC_1_SQRT_2));
-                let e = small.select(e - c(1.0), e);
-                let x = small.select(m + m, m) - c(1.0);
+                let small = m.simd_lt($float::splat(simd, std::f32::consts::FRAC_1_SQRT_2));
+                let e = small.select(e - $float::splat(simd, 1.0), e);
+                let x = small.select(m + m, m) - $float::splat(simd, 1.0);
                 let z = x * x;
-                let p = c(7.037_683_6e-2);
-                let p = p.mul_add(x, c(-1.151_461e-1));
-                let p = p.mul_add(x, c(1.167_699_9e-1));
-                let p = p.mul_add(x, c(-1.242_014_1e-1));
-                let p = p.mul_add(x, c(1.424_932_3e-1));
-                let p = p.mul_add(x, c(-1.666_805_7e-1));
-                let p = p.mul_add(x, c(2.000_071_5e-1));
-                let p = p.mul_add(x, c(-2.499_999_4e-1));
-                let p = p.mul_add(x, c(3.333_333_1e-1));
+                let p = $float::splat(simd, 7.037_683_6e-2);
+                let p = p.mul_add(x, $float::splat(simd, -1.151_461e-1));
+                let p = p.mul_add(x, $float::splat(simd, 1.167_699_9e-1));
+                let p = p.mul_add(x, $float::splat(simd, -1.242_014_1e-1));
+                let p = p.mul_add(x, $float::splat(simd, 1.424_932_3e-1));
+                let p = p.mul_add(x, $float::splat(simd, -1.666_805_7e-1));
+                let p = p.mul_add(x, $float::splat(simd, 2.000_071_5e-1));
+                let p = p.mul_add(x, $float::splat(simd, -2.499_999_4e-1));
+                let p = p.mul_add(x, $float::splat(simd, 3.333_333_1e-1));
                 let y = p * x * z;
-                let y = e.mul_add(c(LN2_LOW), y);
-                let y = z.mul_add(c(-0.5), y);
-                e.mul_add(c(LN2_HIGH), x + y)
+                let y = e.mul_add($float::splat(simd, LN2_LOW), y);
+                let y = z.mul_add($float::splat(simd, -0.5), y);
+                e.mul_add($float::splat(simd, LN2_HIGH), x + y)
             }
 
             #[inline(always)]
@@ -107,18 +104,17 @@ macro_rules! elementary {
             #[inline(always)]
             fn tanh(self) -> Self {
                 let simd = self.simd;
-                let c = |v: f32| $float::splat(simd, v);
                 let a = self.abs();
                 let z = self * self;
-                let p = c(-5.704_988_7e-3);
-                let p = p.mul_add(z, c(2.063_908_9e-2));
-                let p = p.mul_add(z, c(-5.373_971_5e-2));
-                let p = p.mul_add(z, c(1.333_144_2e-1));
-                let p = p.mul_add(z, c(-3.333_328_2e-1));
+                let p = $float::splat(simd, -5.704_988_7e-3);
+                let p = p.mul_add(z, $float::splat(simd, 2.063_908_9e-2));
+                let p = p.mul_add(z, $float::splat(simd, -5.373_971_5e-2));
+                let p = p.mul_add(z, $float::splat(simd, 1.333_144_2e-1));
+                let p = p.mul_add(z, $float::splat(simd, -3.333_328_2e-1));
                 let near = (p * z).mul_add(self, self);
-                let e = (a + a).min(c(40.0)).exp();
-                let far = (c(1.0) - c(2.0) / (e + c(1.0))).copysign(self);
-                a.simd_lt(c(0.625)).select(near, far)
+                let e = (a + a).min($float::splat(simd, 40.0)).exp();
+                let far = ($float::splat(simd, 1.0) - $float::splat(simd, 2.0) / (e + $float::splat(simd, 1.0))).copysign(self);
+                a.simd_lt($float::splat(simd, 0.625)).select(near, far)
             }
         }
     };
@@ -153,11 +149,10 @@ pub fn store4<S: Simd, V: SimdBase<S, Element = f32>>([r, g, b, a]: [V; 4], rgba
 
 /// One vector per channel from eight pixels.
 #[inline(always)]
-pub fn channels<S: Simd>(pixels: [f32x4<S>; 8]) -> [f32x8<S>; 4] {
+pub fn channels<S: Simd>(p: [f32x4<S>; 8]) -> [f32x8<S>; 4] {
     // Joined in registers: a wide load of what narrow stores have just written would stall.
-    let pair = |i: usize| pixels[2 * i].combine(pixels[2 * i + 1]);
-    let (rb0, ga0) = pair(0).deinterleave(pair(1));
-    let (rb1, ga1) = pair(2).deinterleave(pair(3));
+    let (rb0, ga0) = p[0].combine(p[1]).deinterleave(p[2].combine(p[3]));
+    let (rb1, ga1) = p[4].combine(p[5]).deinterleave(p[6].combine(p[7]));
     let (r, b) = rb0.deinterleave(rb1);
     let (g, a) = ga0.deinterleave(ga1);
     [r, g, b, a]
@@ -171,17 +166,24 @@ pub fn channels<S: Simd>(pixels: [f32x4<S>; 8]) -> [f32x8<S>; 4] {
 pub fn sample_linear4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 4] {
     let taps = LinearTaps::new(simd, view, x, y);
     let data = view.data();
-    let load = |at: i32| f32x4::from_slice(simd, &data[at as usize..at as usize + 4]);
-    let (fx, fy) = (taps.fx.to_array(), taps.fy.to_array());
-    let at = taps.at.map(|a| a.to_array());
-    channels(std::array::from_fn(|lane| {
-        let (a, b) = (load(at[0][lane]), load(at[1][lane]));
-        let (c, d) = (load(at[2][lane]), load(at[3][lane]));
-        let x = f32x4::splat(simd, fx[lane]);
+    let mut pixels = [f32x4::splat(simd, 0.0); 8];
+    for (lane, pixel) in pixels.iter_mut().enumerate() {
+        let a = load_pixel(simd, data, taps.at[0][lane]);
+        let b = load_pixel(simd, data, taps.at[1][lane]);
+        let c = load_pixel(simd, data, taps.at[2][lane]);
+        let d = load_pixel(simd, data, taps.at[3][lane]);
+        let x = f32x4::splat(simd, taps.fx[lane]);
         let top = (b - a).mul_add(x, a);
         let bottom = (d - c).mul_add(x, c);
-        (bottom - top).mul_add(f32x4::splat(simd, fy[lane]), top)
-    }))
+        *pixel = (bottom - top).mul_add(f32x4::splat(simd, taps.fy[lane]), top);
+    }
+    channels(pixels)
+}
+
+/// The four values from offset `at` on.
+#[inline(always)]
+pub fn load_pixel<S: Simd>(simd: S, data: &[f32], at: i32) -> f32x4<S> {
+    f32x4::from_slice(simd, &data[at as usize..at as usize + 4])
 }
 
 /// Bilinear sample of a one-channel image at eight positions; see [`sample_linear4`].
@@ -189,11 +191,19 @@ pub fn sample_linear4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S
 pub fn sample_linear1<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> f32x8<S> {
     let taps = LinearTaps::new(simd, view, x, y);
     let data = view.data();
-    let load = |corner: usize| f32x8::from_fn(simd, |lane| data[taps.at[corner][lane] as usize]);
-    let (a, b, c, d) = (load(0), load(1), load(2), load(3));
-    let top = (b - a).mul_add(taps.fx, a);
-    let bottom = (d - c).mul_add(taps.fx, c);
-    (bottom - top).mul_add(taps.fy, top)
+    let mut corners = [[0.0f32; 8]; 4];
+    for (values, at) in corners.iter_mut().zip(&taps.at) {
+        for (value, at) in values.iter_mut().zip(at) {
+            *value = data[*at as usize];
+        }
+    }
+    let [a, b, c, d] = corners;
+    let (a, b) = (f32x8::simd_from(simd, a), f32x8::simd_from(simd, b));
+    let (c, d) = (f32x8::simd_from(simd, c), f32x8::simd_from(simd, d));
+    let (fx, fy) = (f32x8::simd_from(simd, taps.fx), f32x8::simd_from(simd, taps.fy));
+    let top = (b - a).mul_add(fx, a);
+    let bottom = (d - c).mul_add(fx, c);
+    (bottom - top).mul_add(fy, top)
 }
 
 /// Bilinear sample of a two-channel image at eight positions, one vector per channel; see
@@ -201,55 +211,78 @@ pub fn sample_linear1<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S
 #[inline(always)]
 pub fn sample_linear2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
     let taps = LinearTaps::new(simd, view, x, y);
-    let [a, b, c, d] = taps.at.map(|at| load_pairs(simd, view.data(), at));
-    let (fx, fy) = (taps.fx.interleave(taps.fx), taps.fy.interleave(taps.fy));
-    let mix = |i: usize, fx: f32x8<S>, fy: f32x8<S>| {
-        let top = (b[i] - a[i]).mul_add(fx, a[i]);
-        let bottom = (d[i] - c[i]).mul_add(fx, c[i]);
-        (bottom - top).mul_add(fy, top)
-    };
-    mix(0, fx.0, fy.0).deinterleave(mix(1, fx.1, fy.1)).into()
+    let (fx, fy) = (f32x8::simd_from(simd, taps.fx), f32x8::simd_from(simd, taps.fy));
+    let (fx, fy) = (fx.interleave(fx), fy.interleave(fy));
+    let a = load_pairs(simd, view.data(), taps.at[0]);
+    let b = load_pairs(simd, view.data(), taps.at[1]);
+    let c = load_pairs(simd, view.data(), taps.at[2]);
+    let d = load_pairs(simd, view.data(), taps.at[3]);
+    let (top0, bottom0) = ((b[0] - a[0]).mul_add(fx.0, a[0]), (d[0] - c[0]).mul_add(fx.0, c[0]));
+    let (top1, bottom1) = ((b[1] - a[1]).mul_add(fx.1, a[1]), (d[1] - c[1]).mul_add(fx.1, c[1]));
+    (bottom0 - top0).mul_add(fy.0, top0).deinterleave((bottom1 - top1).mul_add(fy.1, top1)).into()
 }
 
 /// Eight pairs of neighbouring values, from where `at` says, four pairs to a vector: one 64-bit load
 /// each.
 #[inline(always)]
-pub fn load_pairs<S: Simd>(simd: S, data: &[f32], at: i32x8<S>) -> [f32x8<S>; 2] {
-    let pair = |lane: usize| {
-        let start = at[lane] as usize;
-        let pair = &data[start..start + 2];
-        f64::from_bits(u64::from(pair[0].to_bits()) | u64::from(pair[1].to_bits()) << 32)
-    };
-    [
-        f64x4::from_fn(simd, |lane| pair(lane)).bitcast(),
-        f64x4::from_fn(simd, |lane| pair(lane + 4)).bitcast(),
-    ]
+pub fn load_pairs<S: Simd>(simd: S, data: &[f32], at: [i32; 8]) -> [f32x8<S>; 2] {
+    let mut pairs = [0.0f64; 8];
+    for (pair, at) in pairs.iter_mut().zip(at) {
+        let values = &data[at as usize..at as usize + 2];
+        *pair = f64::from_bits(u64::from(values[0].to_bits()) | u64::from(values[1].to_bits()) << 32);
+    }
+    let [a, b, c, d, e, f, g, h] = pairs;
+    [f64x4::simd_from(simd, [a, b, c, d]).bitcast(), f64x4::simd_from(simd, [e, f, g, h]).bitcast()]
 }
 
 /// Offsets and weights of the four pixels around eight positions.
-struct LinearTaps<S: Simd> {
-    at: [i32x8<S>; 4],
-    fx: f32x8<S>,
-    fy: f32x8<S>,
+struct LinearTaps {
+    at: [[i32; 8]; 4],
+    fx: [f32; 8],
+    fy: [f32; 8],
 }
 
-impl<S: Simd> LinearTaps<S> {
+/// What one axis of an image says about positions on it.
+struct Axis {
+    full: i32,
+    start: i32,
+    stride: i32,
+}
+
+impl Axis {
+    /// Offsets of the pixels on both sides of a position, and the second one's share.
+    // A function, since the compiler does not inline closures dependably, and a call from a function
+    // for wide vectors into one without is what SIMD code can least afford.
     #[inline(always)]
-    fn new(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> Self {
-        let c = |v: i32| i32x8::splat(simd, v);
-        let half = f32x8::splat(simd, 0.5);
-        let [w, h] = view.full();
+    fn taps<S: Simd>(&self, simd: S, position: f32x8<S>) -> (i32x8<S>, i32x8<S>, f32x8<S>) {
+        let last = i32x8::splat(simd, self.full - 1);
+        let (zero, start) = (i32x8::splat(simd, 0), i32x8::splat(simd, self.start));
+        let stride = i32x8::splat(simd, self.stride);
         // Far outside, the integer conversion would saturate or wrap: keep positions near the picture.
-        let limit = |v: f32x8<S>, n: i32| v.max(-2.0f32).min(n as f32 + 2.0);
-        let (x, y) = (limit(x - half, w), limit(y - half, h));
-        let (x0, y0) = (x.floor(), y.floor());
-        let (ix, iy): (i32x8<S>, i32x8<S>) = (x0.to_int(), y0.to_int());
-        let window = view.window();
-        let columns = |v: i32x8<S>| (v.max(c(0)).min(c(w - 1)) - c(window.x0)) * c(view.channels() as i32);
-        let rows = |v: i32x8<S>| (v.max(c(0)).min(c(h - 1)) - c(window.y0)) * c(view.stride() as i32);
-        let (left, right) = (columns(ix), columns(ix + c(1)));
-        let (top, bottom) = (rows(iy), rows(iy + c(1)));
-        Self { at: [top + left, top + right, bottom + left, bottom + right], fx: x - x0, fy: y - y0 }
+        let position = (position - 0.5).max(-2.0f32).min(self.full as f32 + 2.0);
+        let floor = position.floor();
+        let i: i32x8<S> = floor.to_int();
+        let first = (i.max(zero).min(last) - start) * stride;
+        let second = ((i + 1).max(zero).min(last) - start) * stride;
+        (first, second, position - floor)
+    }
+}
+
+impl LinearTaps {
+    #[inline(always)]
+    fn new<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> Self {
+        let ([w, h], window) = (view.full(), view.window());
+        let columns = Axis { full: w, start: window.x0, stride: view.channels() as i32 };
+        let rows = Axis { full: h, start: window.y0, stride: view.stride() as i32 };
+        let (left, right, fx) = columns.taps(simd, x);
+        let (top, bottom, fy) = rows.taps(simd, y);
+        let at = [
+            (top + left).to_array(),
+            (top + right).to_array(),
+            (bottom + left).to_array(),
+            (bottom + right).to_array(),
+        ];
+        Self { at, fx: fx.to_array(), fy: fy.to_array() }
     }
 }
 

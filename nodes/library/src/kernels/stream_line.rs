@@ -61,22 +61,16 @@ impl StreamField<'_> {
     /// Moves the `active` lanes by one step.
     #[inline(always)]
     pub fn advance<S: Simd>(&self, simd: S, line: &mut Stream<S>, active: mask32x8<S>) {
-        let zero = f32x8::splat(simd, 0.0);
-        let h = active.select(f32x8::splat(simd, self.step), zero);
-        let [lx, ly] = line.direction;
-        let mut t = if line.begins { line.direction } else { self.tangent(simd, line.x, line.y) };
-        let along = |[tx, ty]: [f32x8<S>; 2]| lx * tx + ly * ty;
-        let turned = |t: [f32x8<S>; 2], along: f32x8<S>| {
-            let back = along.simd_lt(zero);
-            t.map(|c| back.select(-c, c))
-        };
+        let h = active.select(f32x8::splat(simd, self.step), f32x8::splat(simd, 0.0));
+        let last = line.direction;
+        let mut t = if line.begins { last } else { self.tangent(simd, line.x, line.y) };
         if self.midpoint {
-            let [kx, ky] = turned(t, along(t));
+            let [kx, ky] = signed(t, dot(last, t));
             let half = h * 0.5;
             t = self.tangent(simd, half.mul_add(kx, line.x), half.mul_add(ky, line.y));
         }
-        let cosine = along(t);
-        let [tx, ty] = turned(t, cosine);
+        let cosine = dot(last, t);
+        let [tx, ty] = signed(t, cosine);
         line.x = h.mul_add(tx, line.x);
         line.y = h.mul_add(ty, line.y);
         line.direction = [tx, ty];
@@ -87,10 +81,23 @@ impl StreamField<'_> {
     /// Lanes that lie inside the picture.
     #[inline(always)]
     pub fn inside<S: Simd>(&self, simd: S, line: &Stream<S>) -> mask32x8<S> {
-        let [w, h] = self.tensors.full().map(|n| f32x8::splat(simd, n as f32));
+        let [w, h] = self.tensors.full();
+        let (w, h) = (f32x8::splat(simd, w as f32), f32x8::splat(simd, h as f32));
         let zero = f32x8::splat(simd, 0.0);
         line.x.simd_ge(zero) & line.x.simd_lt(w) & line.y.simd_ge(zero) & line.y.simd_lt(h)
     }
+}
+
+#[inline(always)]
+fn dot<S: Simd>(a: [f32x8<S>; 2], b: [f32x8<S>; 2]) -> f32x8<S> {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// The tangent or its opposite, whichever has a positive scalar product with the last one.
+#[inline(always)]
+fn signed<S: Simd>([x, y]: [f32x8<S>; 2], along: f32x8<S>) -> [f32x8<S>; 2] {
+    let back = along.simd_lt(f32x8::splat(along.simd, 0.0));
+    [back.select(-x, x), back.select(-y, y)]
 }
 
 /// Centres of the eight pixels from column `x` of row `y` on. Columns past `last`, the last one to be

@@ -134,8 +134,8 @@ impl<S: Simd> Across<S> {
         let ([ox, oy], f) = self.place(k);
         let (x, y) = (self.at[0] + ox, self.at[1] + oy);
         let one = i32x8::splat(simd, 1);
-        let a = load_pairs(simd, view.data(), offsets(view, x, y));
-        let b = load_pairs(simd, view.data(), offsets(view, x + (self.upright & one), y + (!self.upright & one)));
+        let a = load_pairs(simd, view.data(), offsets(view, x, y).to_array());
+        let b = load_pairs(simd, view.data(), offsets(view, x + (self.upright & one), y + (!self.upright & one)).to_array());
         let (f0, f1) = f.interleave(f);
         [a[0] + (b[0] - a[0]) * f0, a[1] + (b[1] - a[1]) * f1]
     }

@@ -80,21 +80,19 @@ fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
         let target = band.row_mut(0, y);
         // Tap i of value v lies 4 i values to either side.
         let (centre, len) = (4 * r as usize, target.len());
-        let tap = |v: usize, i: i32| f32x16::from_slice(simd, &source[(centre as i32 + 4 * i) as usize + v..][..16]);
         let mut v = 0;
         while v + 16 <= len {
-            weighted(simd, params, |i| tap(v, i)).store_slice(&mut target[v..v + 16]);
+            weighted(simd, params, #[inline(always)] |i| block(simd, source, (centre as i32 + 4 * i) as usize + v))
+                .store_slice(&mut target[v..v + 16]);
             v += 16;
         }
         // The same lanes, the same order: a shorter block is padded with zeros.
         if v < len {
             let rest = len - v;
-            let short = |i: i32| {
-                let mut block = [0.0; 16];
-                block[..rest].copy_from_slice(&source[(centre as i32 + 4 * i) as usize + v..][..rest]);
-                f32x16::simd_from(simd, block)
-            };
-            target[v..].copy_from_slice(&weighted(simd, params, short).to_array()[..rest]);
+            let short = weighted(simd, params, #[inline(always)] |i| {
+                part(simd, &source[(centre as i32 + 4 * i) as usize + v..][..rest])
+            });
+            target[v..].copy_from_slice(&short.to_array()[..rest]);
         }
         finish(params, target);
     }
@@ -124,21 +122,30 @@ fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
         let target = band.row_mut(0, y);
         let mut v = 0;
         while v + 16 <= len {
-            weighted(simd, params, |i| f32x16::from_slice(simd, &row(i)[v..v + 16]))
+            weighted(simd, params, #[inline(always)] |i| block(simd, row(i), v))
                 .store_slice(&mut target[v..v + 16]);
             v += 16;
         }
         if v < len {
             let rest = len - v;
-            let short = |i: i32| {
-                let mut block = [0.0; 16];
-                block[..rest].copy_from_slice(&row(i)[v..]);
-                f32x16::simd_from(simd, block)
-            };
-            target[v..].copy_from_slice(&weighted(simd, params, short).to_array()[..rest]);
+            let short = weighted(simd, params, #[inline(always)] |i| part(simd, &row(i)[v..]));
+            target[v..].copy_from_slice(&short.to_array()[..rest]);
         }
         finish(params, target);
     }
+}
+
+#[inline(always)]
+fn block<S: Simd>(simd: S, values: &[f32], at: usize) -> f32x16<S> {
+    f32x16::from_slice(simd, &values[at..at + 16])
+}
+
+/// A block that is shorter, padded with zeros.
+#[inline(always)]
+fn part<S: Simd>(simd: S, values: &[f32]) -> f32x16<S> {
+    let mut block = [0.0; 16];
+    block[..values.len()].copy_from_slice(values);
+    f32x16::simd_from(simd, block)
 }
 
 #[inline(always)]

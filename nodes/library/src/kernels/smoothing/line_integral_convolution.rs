@@ -168,6 +168,6 @@ fn convolved<S: Simd>(
     }
     let [r, g, b, alpha] = sum;
     let seen = alpha.simd_gt(c(1e-6));
-    let colour = [r, g, b].map(|v| seen.select(v / alpha, c(0.0)));
-    [colour[0], colour[1], colour[2], alpha / norm]
+    let zero = c(0.0);
+    [seen.select(r / alpha, zero), seen.select(g / alpha, zero), seen.select(b / alpha, zero), alpha / norm]
 }

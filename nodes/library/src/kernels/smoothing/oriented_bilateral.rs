@@ -11,7 +11,7 @@ use crate::kernels::coverage::Covered;
 use crate::kernels::support::{get_pixels4, put_pixels4};
 use crate::kernels::tensor_algebra::{anisotropy, tangent};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, f32x8, i32x8, mask32x8, prelude::*};
-use isophote_engine::math::{Elementary, channels};
+use isophote_engine::math::{Elementary, channels, load_pixel};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::params! {
@@ -190,7 +190,7 @@ impl Blocks<'_> {
             for side in [-reached, reached] {
                 let (at, f) = if inner { self.inner(lines, side) } else { self.clamped(lines, side) };
                 if params.manual != 0 {
-                    let [a, b] = self.both(simd, at);
+                    let (a, b) = (self.pixels(simd, at[0]), self.pixels(simd, at[1]));
                     for (tap, share) in [(a, c(1.0) - f), (b, f)] {
                         let weight = (distance2(&tap, &origin) * range + domain).exp2();
                         let weight = active.select(weight * share * tap[3], c(0.0));
@@ -213,8 +213,12 @@ impl Blocks<'_> {
             k += 1.0;
         }
         let seen = sum[3].simd_gt(c(1e-6));
-        let result = |i: usize| seen.select(sum[i] / sum[3], origin[i]);
-        [result(0), result(1), result(2), alpha]
+        [
+            seen.select(sum[0] / sum[3], origin[0]),
+            seen.select(sum[1] / sum[3], origin[1]),
+            seen.select(sum[2] / sum[3], origin[2]),
+            alpha,
+        ]
     }
 
     /// Offsets of the two pixels around the taps `k` pixels along the axis, and the second one's share.
@@ -241,35 +245,46 @@ impl Blocks<'_> {
         let o = lines.slope * k;
         let i = o.floor();
         let (k, i): (i32x8<S>, i32x8<S>) = (k.to_int(), i.to_int());
-        let held = self.source.window();
         let [w, h] = self.source.full();
-        let offset = |i: i32x8<S>| {
-            let x = (lines.x + lines.along_x.select(k, i)).max(c(0)).min(c(w - 1)) - c(held.x0);
-            let y = (lines.y + lines.along_x.select(i, k)).max(c(0)).min(c(h - 1)) - c(held.y0);
-            (y * c(self.source.stride() as i32) + x * c(4)).to_array()
-        };
-        ([offset(i), offset(i + c(1))], o - o.floor())
+        let (x, y) = (lines.along_x.select(k, i), lines.along_x.select(i, k));
+        let next = lines.along_x.select(c(0), c(1));
+        let (x, y) = (lines.x + x, lines.y + y);
+        let a = self.offset(simd, x, y, [w, h]);
+        let b = self.offset(simd, x + next, y + (c(1) - next), [w, h]);
+        ([a, b], o - o.floor())
+    }
+
+    #[inline(always)]
+    fn offset<S: Simd>(&self, simd: S, x: i32x8<S>, y: i32x8<S>, [w, h]: [i32; 2]) -> [i32; 8] {
+        let held = self.source.window();
+        let zero = i32x8::splat(simd, 0);
+        let x = x.max(zero).min(i32x8::splat(simd, w - 1)) - held.x0;
+        let y = y.max(zero).min(i32x8::splat(simd, h - 1)) - held.y0;
+        (y * self.source.stride() as i32 + x * 4).to_array()
     }
 
     /// Interpolated taps.
     #[inline(always)]
     fn between<S: Simd>(&self, simd: S, at: [[i32; 8]; 2], f: f32x8<S>) -> [f32x8<S>; 4] {
-        let f = f.to_array();
-        channels(std::array::from_fn(|lane| {
-            let (a, b) = (self.load(simd, at[0][lane]), self.load(simd, at[1][lane]));
-            (b - a).mul_add(f32x4::splat(simd, f[lane]), a)
-        }))
+        let (data, f) = (self.source.data(), f.to_array());
+        let mut pixels = [f32x4::splat(simd, 0.0); 8];
+        for (lane, pixel) in pixels.iter_mut().enumerate() {
+            let a = load_pixel(simd, data, at[0][lane]);
+            let b = load_pixel(simd, data, at[1][lane]);
+            *pixel = (b - a).mul_add(f32x4::splat(simd, f[lane]), a);
+        }
+        channels(pixels)
     }
 
-    /// Both pixels around the taps.
+    /// The pixels at eight offsets.
     #[inline(always)]
-    fn both<S: Simd>(&self, simd: S, at: [[i32; 8]; 2]) -> [[f32x8<S>; 4]; 2] {
-        at.map(|at| channels(at.map(|at| self.load(simd, at))))
-    }
-
-    #[inline(always)]
-    fn load<S: Simd>(&self, simd: S, at: i32) -> f32x4<S> {
-        f32x4::from_slice(simd, &self.source.data()[at as usize..at as usize + 4])
+    fn pixels<S: Simd>(&self, simd: S, at: [i32; 8]) -> [f32x8<S>; 4] {
+        let data = self.source.data();
+        let mut pixels = [f32x4::splat(simd, 0.0); 8];
+        for (pixel, at) in pixels.iter_mut().zip(at) {
+            *pixel = load_pixel(simd, data, at);
+        }
+        channels(pixels)
     }
 }
 
