@@ -113,7 +113,9 @@ macro_rules! elementary {
                 let p = p.mul_add(z, $float::splat(simd, -3.333_328_2e-1));
                 let near = (p * z).mul_add(self, self);
                 let e = (a + a).min($float::splat(simd, 40.0)).exp();
-                let far = ($float::splat(simd, 1.0) - $float::splat(simd, 2.0) / (e + $float::splat(simd, 1.0))).copysign(self);
+                let far = ($float::splat(simd, 1.0)
+                    - $float::splat(simd, 2.0) / (e + $float::splat(simd, 1.0)))
+                .copysign(self);
                 a.simd_lt($float::splat(simd, 0.625)).select(near, far)
             }
         }
