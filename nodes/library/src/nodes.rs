@@ -28,5 +28,7 @@ nodes! {
     }
     smoothing {
         gaussian,
+        line_integral_convolution,
+        oriented_bilateral,
     }
 }

@@ -134,7 +134,7 @@ fn convolved<S: Simd>(
     let mut sigma = c(params.sigma);
     if params.adapt == Adapt::Anisotropy as u32 {
         let a = anisotropy(e, f, g) + 1.0;
-        sigma = sigma * (a * a * 0.25);
+        sigma *= a * a * 0.25;
     }
     let radius = (sigma * 2.0 + 1e-3).floor();
     let limit = radius + 1e-3;
@@ -154,16 +154,16 @@ fn convolved<S: Simd>(
             if params.adapt == Adapt::Angle as u32 {
                 du = du.max(acos(line.turn) * radius / std::f32::consts::PI);
             }
-            u = u + du;
-            active = active & u.simd_le(limit) & line.turn.simd_ge(c(params.least_turn));
-            active = active & field.inside(simd, &line);
+            u += du;
+            active &= u.simd_le(limit) & line.turn.simd_ge(c(params.least_turn));
+            active &= field.inside(simd, &line);
             let weight = active.select((falloff * u * u).exp2(), c(0.0));
             let tap = sample_linear4(simd, source, line.x, line.y);
             for (sum, tap) in sum.iter_mut().zip(tap) {
                 *sum = weight.mul_add(tap, *sum);
             }
-            norm = norm + weight;
-            active = active & (u + step).simd_le(limit);
+            norm += weight;
+            active &= (u + step).simd_le(limit);
         }
     }
     let [r, g, b, alpha] = sum;

@@ -197,7 +197,7 @@ impl Blocks<'_> {
                         for (sum, tap) in sum.iter_mut().zip(tap).take(3) {
                             *sum = weight.mul_add(tap, *sum);
                         }
-                        sum[3] = sum[3] + weight;
+                        sum[3] += weight;
                     }
                 } else {
                     let [r, g, b, a] = self.between(simd, at, f);
