@@ -17,6 +17,7 @@ macro_rules! nodes {
 nodes! {
     structure {
         structure_tensor,
+        tensor_view,
     }
     colour {
         composite_lines,

@@ -1,0 +1,36 @@
+//! Stretches contrast about middle grey and clamps to 0..=1; alpha passes. Averages of noise along
+//! stream lines (§ 2.9) are made visible with it.
+//!
+//! Cost: one multiply-add a value.
+
+use crate::kernels::support::map_pixels4;
+use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for contrast {
+        /// Factor on the distance to middle grey.
+        pub gain: f32,
+    }
+}
+
+crate::kernel!(contrast {
+    cpu: run,
+    cost: |_| 4.0,
+    tolerance: Tolerance { absolute: 2e-6, relative: 0.0, outliers: 0.0, reason: "three roundings of values up to 1" },
+});
+
+/// Adds the pass: 0.5 + gain (colour - 0.5), clamped.
+pub fn stretch(plan: &mut PlanBuilder, color: ImageId, gain: f32) -> ImageId {
+    plan.pass(&KERNEL, &[color], &Params { gain }, Class::Colour, Support::Pixels(0))
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, |[r, g, b, a]| {
+        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+        let [r, g, b] = [r, g, b].map(|v| ((v - 0.5) * params.gain + 0.5).max(zero).min(one));
+        [r, g, b, a]
+    }));
+}

@@ -1,0 +1,135 @@
+//! A tensor field made visible (§ 2.6.1, 2.9).
+
+use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
+use crate::kernels::structure::tensor_display::{self, Show};
+use crate::kernels::structure::{contrast, noise};
+use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
+use isophote_engine::ImageId;
+
+/// The node.
+pub static NODE: NodeSpec = NodeSpec {
+    id: "tensor_view",
+    label: "Tensor View",
+    group: "structure",
+    doc: "Shows a tensor field: noise smeared along its stream lines by line integral convolution; the \
+          tangent's orientation as a hue that is the more saturated the more anisotropic the place is \
+          (horizontal edges are red); or the anisotropy as grey.",
+    section: "2.6, 2.9",
+    inputs: &[Port {
+        id: "tensor",
+        kind: ImageKind::Tensor,
+        optional: false,
+        doc: "The tensor field to show.",
+    }],
+    output: Port { id: "color", kind: ImageKind::Color, optional: false, doc: "An opaque picture of it." },
+    own_params: &[
+        Param::choice(
+            "show",
+            "Show",
+            0,
+            &[
+                Choice { id: "lic", label: "Line integral convolution" },
+                Choice { id: "orientation", label: "Orientation" },
+                Choice { id: "anisotropy", label: "Anisotropy" },
+            ],
+        )
+        .doc("What to show: stream lines (2.186), the angle of the tangent, or the anisotropy (2.137)."),
+        Param::float("sigma", "Sigma", 6.0, [0.5, 40.0])
+            .slider(1.0, 20.0)
+            .pixels()
+            .doc("Standard deviation of the convolution along the stream lines."),
+    ],
+    build,
+};
+
+/// Standard deviation of the greys that noise along stream lines is stretched to.
+const SPREAD: f32 = 0.22;
+
+fn build(scope: &mut Scope<'_>) -> ImageId {
+    let tensor = scope.required("tensor");
+    match scope.choice("show") {
+        "orientation" => tensor_display::color(scope.plan, tensor, Show::Orientation),
+        "anisotropy" => tensor_display::color(scope.plan, tensor, Show::Anisotropy),
+        _ => {
+            let (sigma, scale) = (scope.float("sigma"), scope.scale());
+            let grains = noise::white(scope.plan, scale, 0);
+            let options = Options { sigma, adapt: Adapt::None, ..Options::default() };
+            let lines = line_integral_convolution::color(scope.plan, grains, tensor, &options);
+            contrast::stretch(scope.plan, lines, SPREAD / deviation(sigma))
+        }
+    }
+}
+
+/// Standard deviation that uniform noise keeps under a Gaussian of `sigma` pixels along a line: the
+/// mean square of the noise, 1/12, times the integral of the Gaussian's square. Where lines run
+/// between pixels, interpolation takes about a third of that; the mean case is 0.8.
+fn deviation(sigma: f32) -> f32 {
+    let square = 1.0 / (2.0 * std::f32::consts::PI.sqrt() * sigma.max(0.5));
+    0.8 * (square / 12.0).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::graph::GraphInput;
+    use crate::{Graph, Planned, Request};
+    use isophote_engine::cpu::{CallingThread, Control, CpuExecutor};
+    use isophote_engine::{Image, Rect};
+
+    const SIZE: u32 = 96;
+
+    /// A view of the tensor of waves along (x, y).
+    fn view(show: &str, [x, y]: [f32; 2]) -> Image {
+        let mut graph = Graph::new();
+        let tensor = graph.add("tensor", "structure_tensor").unwrap();
+        let view = graph.add("view", "tensor_view").unwrap();
+        graph.connect_input(GraphInput::Color, tensor, "color").unwrap();
+        graph.connect(tensor, view, "tensor").unwrap();
+        graph.set_text(view, "show", show).unwrap();
+        graph.set_output(view).unwrap();
+        let planned = Planned::new(&graph, Request::new(SIZE, SIZE)).unwrap();
+        let pixels = (0..SIZE * SIZE).flat_map(|i| {
+            let phase = (i % SIZE) as f32 * x + (i / SIZE) as f32 * y;
+            [[0.5 + 0.4 * phase.sin(); 3].as_slice(), &[1.0]].concat()
+        });
+        let color = Image::from_vec(SIZE, SIZE, 4, pixels.collect()).unwrap();
+        let region = Rect::of_size(SIZE, SIZE);
+        CpuExecutor::new()
+            .run(planned.plan(), &[("color", &color)], region, &CallingThread, Control::default())
+            .unwrap()
+            .remove(0)
+    }
+
+    #[test]
+    fn hues_tell_orientations_apart() {
+        let near = |direction: [f32; 2], want: [f32; 3]| {
+            let image = view("orientation", direction);
+            let got = image.pixel(48, 48);
+            assert!((0..3).all(|c| (got[c] - want[c]).abs() < 0.05) && got[3] == 1.0, "{got:?} for {want:?}");
+        };
+        near([0.0, 0.5], [1.0, 0.25, 0.25]);
+        near([0.5, 0.0], [0.0, 0.75, 0.75]);
+        near([0.0, 0.0], [0.5; 3]);
+    }
+
+    #[test]
+    fn waves_are_anisotropic_and_flat_parts_are_not() {
+        assert!(view("anisotropy", [0.3, 0.4]).pixel(48, 48)[0] > 0.99);
+        assert_eq!(view("anisotropy", [0.0, 0.0]).pixel(48, 48), [0.0, 0.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn noise_is_smeared_along_edges_only_and_keeps_its_contrast() {
+        let image = view("lic", [0.5, 0.0]);
+        let (mut along, mut across, mut square) = (0.0, 0.0, 0.0);
+        let inner = 20..76;
+        for (x, y) in inner.clone().flat_map(|y| inner.clone().map(move |x| (x, y))) {
+            let value = |x: i32, y: i32| f64::from(image.pixel(x, y)[0]) - 0.5;
+            along += (value(x, y + 1) - value(x, y)).powi(2);
+            across += (value(x + 1, y) - value(x, y)).powi(2);
+            square += value(x, y).powi(2);
+        }
+        assert!(across > 10.0 * along, "{across} across, {along} along");
+        let deviation = (square / inner.len().pow(2) as f64).sqrt();
+        assert!((0.1..0.35).contains(&deviation), "{deviation}");
+    }
+}

@@ -1,0 +1,20 @@
+// Stretches contrast about middle grey and clamps to 0..1. Cost: one load, one multiply-add.
+#import grid
+
+struct Params {
+    gain: f32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var source: texture_2d<f32>;
+@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let v = fetch(source, 0u, pixel(id));
+    let rgb = clamp((v.rgb - 0.5) * params.gain + 0.5, vec3f(0.0), vec3f(1.0));
+    textureStore(target_image, vec2i(id.xy), vec4f(rgb, v.a));
+}
