@@ -190,7 +190,7 @@ pub fn fluted_column(height: f32) -> Mesh {
     let scale = height / 5.9;
     let radius = |t: f32| (0.56 - 0.12 * t + 0.026 * (PI * t).sin()) * scale;
     for flute in 0..FLUTES {
-        mesh.patch(4, 8, Vec2::new(0.18, shaft), |u, v| {
+        mesh.patch(4, 6, Vec2::new(0.18, shaft), |u, v| {
             let (sin, cos) = ((flute as f32 + u) / FLUTES as f32 * TAU).sin_cos();
             let hollow = radius(v) * (1.0 - 0.085 * (PI * u).sin());
             Vec3::new(hollow * sin, v * shaft, hollow * cos)

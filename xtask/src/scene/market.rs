@@ -122,7 +122,7 @@ const AMPHORA: [(f32, f32); 14] = [
 pub fn amphora() -> Model {
     let mut model = Model::default();
     let clay = model.part(Material::Terracotta);
-    clay.lathe(&smooth(&AMPHORA, 30), 26);
+    clay.lathe(&smooth(&AMPHORA, 24), 22);
     handles(clay, 0.08, 0.93, 0.22, 0.66, 0.028);
     model
 }
@@ -182,7 +182,7 @@ pub fn painted_vase() -> Model {
         (0.42, 1.60),
     ];
     let mut body = Mesh::default();
-    body.lathe(&smooth(&outline, 42), 48);
+    body.lathe(&smooth(&outline, 36), 42);
     body.fit_uvs();
     let mut rim = Mesh::default();
     rim.lathe(&[(0.42, 1.60), (0.40, 1.62), (0.35, 1.60), (0.26, 1.48)].map(Vec2::from), 56);

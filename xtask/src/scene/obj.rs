@@ -10,11 +10,6 @@ pub struct Obj {
     pub materials: String,
 }
 
-/// Encodes a linear value for display, as the colours of a material library are.
-fn encode(linear: f32) -> f32 {
-    if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
-}
-
 /// Writes a model; `library` is the file name of its materials.
 pub fn write(model: &Model, library: &str) -> Obj {
     let mut geometry = format!("# A house of the city. Metres, y up.\nmtllib {library}\no house\n");
@@ -23,7 +18,7 @@ pub fn write(model: &Model, library: &str) -> Obj {
     for (&material, mesh) in model.parts.iter().filter(|(_, mesh)| !mesh.indices.is_empty()) {
         let look = material.definition();
         let name = look.name.replace([' ', ','], "_");
-        let [r, g, b] = look.color.map(encode);
+        let [r, g, b] = look.color;
         let gloss = (1.0 - look.roughness) * 200.0;
         // Writing to a string cannot fail.
         let _ = writeln!(

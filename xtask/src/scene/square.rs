@@ -169,7 +169,7 @@ pub fn statue() -> Model {
         };
         Vec2::new(spline(p0.1, p1.1, p2.1, p3.1), spline(p0.2, p1.2, p2.2, p3.2))
     };
-    marble.patch(96, 72, Vec2::new(2.0, 2.2), |u, v| {
+    marble.patch(78, 54, Vec2::new(2.0, 2.2), |u, v| {
         let (angle, height) = (u * TAU, v * 2.0);
         let half = profile(height);
         let hem = smoothstep(1.45, 0.2, height);
