@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::stylize::style::Setting;
 
 /// Renders scenes and stylizes what it renders.
 #[derive(Debug, Parser)]
@@ -18,6 +20,10 @@ pub struct Cli {
 pub enum Command {
     /// Renders a glTF or OBJ scene to PNG or EXR frames.
     Render(RenderArgs),
+    /// Applies a node or graph to a picture.
+    Apply(ApplyArgs),
+    /// Lists the nodes, or the parameters of one.
+    Nodes(NodesArgs),
 }
 
 /// Options of `render`.
@@ -60,9 +66,67 @@ pub struct RenderArgs {
     /// Image that colours an OBJ without textures.
     #[arg(long, value_name = "FILE")]
     pub texture: Option<PathBuf>,
-    /// How frames are stylized.
+    /// How frames are stylized: none, the id of a node, or a graph file (.json).
     #[arg(long, default_value = "none")]
     pub style: String,
+    /// Sets a parameter of the style; node.id=value for one node of a graph. May be repeated.
+    #[arg(long, value_name = "ID=VALUE")]
+    pub set: Vec<Setting>,
+}
+
+/// Options of `apply`.
+#[derive(Args, Debug)]
+pub struct ApplyArgs {
+    /// The id of a node, or a graph file (.json).
+    pub style: String,
+    /// The picture: PNG, JPEG or EXR.
+    pub input: PathBuf,
+    /// The result: .png, .jpg or .exr; may be the same file.
+    pub output: PathBuf,
+    /// Sets a parameter; node.id=value for one node of a graph. May be repeated.
+    #[arg(long, value_name = "ID=VALUE")]
+    pub set: Vec<Setting>,
+    /// Where the work is done; auto takes a graphics card if there is one, otherwise the CPU.
+    #[arg(long, value_enum, default_value_t = Backend::Auto)]
+    pub backend: Backend,
+    /// What the numbers of the picture mean; without it sRGB for PNG and JPEG, linear for EXR.
+    #[arg(long, value_enum)]
+    pub space: Option<Space>,
+    /// Threads on the CPU; 0 for one per core.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1024))]
+    pub threads: u32,
+}
+
+/// Where a graph runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Backend {
+    /// A graphics card if there is one, otherwise the CPU.
+    Auto,
+    /// The CPU.
+    Cpu,
+    /// The best graphics device there is, software drivers included.
+    Gpu,
+}
+
+/// What the numbers of a picture mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Space {
+    /// Gamma-encoded sRGB.
+    Srgb,
+    /// Linear light, Rec.709 primaries.
+    Linear,
+    /// ACEScg: linear light, AP1 primaries.
+    Acescg,
+}
+
+/// Options of `nodes`.
+#[derive(Args, Debug)]
+pub struct NodesArgs {
+    /// A node, to be shown with its parameters.
+    pub node: Option<String>,
+    /// Everything, as JSON.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Most pixels of a picture that is rendered at once.

@@ -1,8 +1,13 @@
 //! The sample host as a library: scenes, their rendering, and the verbs of the program `isophote`.
 
+pub mod apply;
 pub mod cli;
 pub mod error;
+pub mod loader;
+pub mod nodes_verb;
 pub mod output;
+pub mod pixels;
 pub mod render;
 pub mod render_verb;
 pub mod scene;
+pub mod stylize;

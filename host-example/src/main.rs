@@ -1,15 +1,21 @@
-//! The sample host: renders glTF and OBJ scenes with wgpu.
+//! The sample host: renders scenes, stylizes what it renders, and stylizes pictures.
 
 use std::process::ExitCode;
 
 use clap::Parser;
+use clap::error::ErrorKind;
 use isophote_host::cli::{Cli, Command};
-use isophote_host::render_verb;
+use isophote_host::{apply, nodes_verb, render_verb};
 
 fn main() -> ExitCode {
-    // The parser itself ends the program with 2 for bad usage.
-    let result = match Cli::parse().command {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return usage(&error),
+    };
+    let result = match cli.command {
         Command::Render(args) => render_verb::run(&args),
+        Command::Apply(args) => apply::run(&args),
+        Command::Nodes(args) => nodes_verb::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -18,4 +24,23 @@ fn main() -> ExitCode {
             ExitCode::from(error.exit_code())
         }
     }
+}
+
+/// Help and version as the parser prints them; what is wrong with the command line on one line, like every
+/// other error.
+fn usage(error: &clap::Error) -> ExitCode {
+    if matches!(
+        error.kind(),
+        ErrorKind::DisplayHelp
+            | ErrorKind::DisplayVersion
+            | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
+    ) {
+        error.exit();
+    }
+    let text = error.render().to_string();
+    let wrong = text.lines().take_while(|line| !line.trim().is_empty());
+    let tips = text.lines().filter(|line| line.trim_start().starts_with("tip:"));
+    let words: Vec<&str> = wrong.chain(tips).flat_map(str::split_whitespace).collect();
+    eprintln!("{}; see --help", words.join(" "));
+    ExitCode::from(2)
 }

@@ -39,14 +39,16 @@ pub fn srgb_encode(linear: f32) -> f32 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// Saves a linear picture of 4 channels (red, green, blue, premultiplied alpha) as its extension says: 8-bit
-/// sRGB-encoded PNG, or linear EXR in half precision.
+/// Saves a picture as its extension says. One of 4 channels is linear red, green and blue with premultiplied
+/// alpha: 8-bit sRGB-encoded PNG, or linear EXR in half precision. One of 1 channel is a number, kept as it is:
+/// grey PNG from 0 to 1, or EXR in single precision.
 ///
 /// # Errors
 /// [`Error::Input`] for other extensions and for folders that are missing or cannot be written.
 pub fn save(path: &Path, picture: &Picture) -> Result<()> {
     match extension(path).as_str() {
         "png" => save_png(path, picture),
+        "exr" if picture.channels == 1 => save_exr(path, picture, &["Y"], Precision::Float),
         "exr" => save_exr(path, picture, &["R", "G", "B", "A"], Precision::Half),
         _ => Err(unknown_extension(path)),
     }
@@ -76,20 +78,23 @@ fn save_png(path: &Path, picture: &Picture) -> Result<()> {
     let mut bytes = Vec::with_capacity(picture.data.len());
     let mut opaque = true;
     for pixel in picture.data.chunks_exact(picture.channels) {
-        let [r, g, b, a] = match pixel {
-            [r, g, b, a, ..] => [*r, *g, *b, *a],
-            [r, g, b] => [*r, *g, *b, 1.0],
-            [y, ..] => [*y, *y, *y, 1.0],
-            [] => [0.0, 0.0, 0.0, 1.0],
-        };
-        // PNG keeps colour and coverage apart.
-        let unpremultiply = if a > 0.0 && a < 1.0 { 1.0 / a } else { 1.0 };
-        bytes.extend([r, g, b].map(|v| byte(srgb_encode(v * unpremultiply))));
-        bytes.push(byte(a));
-        opaque &= a >= 1.0;
+        match pixel {
+            [r, g, b, a] => {
+                // PNG keeps colour and coverage apart.
+                let unpremultiply = if *a > 0.0 && *a < 1.0 { 1.0 / a } else { 1.0 };
+                bytes.extend([r, g, b].map(|v| byte(srgb_encode(v * unpremultiply))));
+                bytes.push(byte(*a));
+                opaque &= *a >= 1.0;
+            }
+            _ => bytes.extend(pixel.first().map(|v| byte(*v))),
+        }
     }
-    let color = if opaque { image::ExtendedColorType::Rgb8 } else { image::ExtendedColorType::Rgba8 };
-    if opaque {
+    let color = match (picture.channels, opaque) {
+        (4, true) => image::ExtendedColorType::Rgb8,
+        (4, false) => image::ExtendedColorType::Rgba8,
+        _ => image::ExtendedColorType::L8,
+    };
+    if color == image::ExtendedColorType::Rgb8 {
         bytes = bytes.as_chunks::<4>().0.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
     }
     write_beside(path, |file| {
@@ -123,20 +128,22 @@ pub fn save_exr(path: &Path, picture: &Picture, names: &[&str], precision: Preci
     write_beside(path, |file| image.write().to_buffered(file).map_err(|e| e.to_string()))
 }
 
-/// Writes a file under another name in its folder and renames it when `write` has succeeded.
+/// Whether a file could be written at this place; asked before any work is done.
 ///
 /// # Errors
-/// [`Error::Input`] when the folder is missing or cannot be written.
-pub fn write_beside(
-    path: &Path,
-    write: impl FnOnce(&mut BufWriter<&mut fs::File>) -> std::result::Result<(), String>,
-) -> Result<()> {
+/// [`Error::Input`] when the folder is missing or cannot be written, or the place is a folder itself.
+pub fn check_writable(path: &Path) -> Result<()> {
+    if path.is_dir() {
+        return Err(Error::file(path, "is a folder", "name a file"));
+    }
+    beside(path).map(drop)
+}
+
+/// A temporary file in the folder of `path`, deleted unless it is renamed.
+fn beside(path: &Path) -> Result<tempfile::NamedTempFile> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
-    };
-    let fail = |problem: String| {
-        Error::file(path, format!("cannot be written: {problem}"), "name a writable folder")
     };
     let mut builder = tempfile::Builder::new();
     builder.prefix(".isophote-");
@@ -146,7 +153,23 @@ pub fn write_beside(
         // Temporary files are private by default; pictures are as public as the umask lets them be.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder).map_err(|e| fail(e.to_string()))?;
+    builder.tempfile_in(folder).map_err(|e| unwritable(path, e))
+}
+
+fn unwritable(path: &Path, problem: impl std::fmt::Display) -> Error {
+    Error::file(path, format!("cannot be written: {problem}"), "name a writable folder")
+}
+
+/// Writes a file under another name in its folder and renames it when `write` has succeeded.
+///
+/// # Errors
+/// [`Error::Input`] when the folder is missing or cannot be written.
+pub fn write_beside(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<&mut fs::File>) -> std::result::Result<(), String>,
+) -> Result<()> {
+    let fail = |problem: String| unwritable(path, problem);
+    let mut file = beside(path)?;
     let mut writer = BufWriter::new(file.as_file_mut());
     write(&mut writer).map_err(fail)?;
     writer.flush().map_err(|e| fail(e.to_string()))?;

@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cli::RenderArgs;
 use crate::error::{Error, Result};
+use crate::loader::Library;
 use crate::output::{self, Precision};
 use crate::render::Renderer;
 use crate::render::gpu::Gpu;
@@ -17,6 +18,8 @@ use crate::render::targets::Target;
 use crate::scene::Scene;
 use crate::scene::camera::{self, Direction, Orbit, View};
 use crate::scene::pose::Pose;
+use crate::stylize::Stylizer;
+use crate::stylize::style::Style;
 
 /// Runs the verb.
 ///
@@ -24,8 +27,15 @@ use crate::scene::pose::Pose;
 /// [`Error::Input`] for bad input before anything is rendered, [`Error::Failure`] when the device fails.
 pub fn run(args: &RenderArgs) -> Result<()> {
     output::check_extension(&args.out)?;
-    if args.style != "none" {
-        return Err(Error::input("--style", format!("'{}' is not known", args.style), "use none"));
+    output::check_writable(&args.out)?;
+    let library = (args.style != "none").then(Library::open).transpose()?;
+    let style = library.as_ref().map(|l| Style::load(l, &args.style, &args.set)).transpose()?;
+    if let (None, Some(setting)) = (&style, args.set.first()) {
+        return Err(Error::input(
+            format!("--set {setting}"),
+            "the style none has no parameters",
+            "choose a style with --style",
+        ));
     }
     if !args.fps.is_finite() || args.fps <= 0.0 || !args.start.is_finite() {
         return Err(Error::input(
@@ -45,6 +55,16 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     let gpu = Gpu::open()?;
     let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &scene, args.size)?;
     gpu.check()?;
+    let mut stylizer = match (&library, style) {
+        (Some(library), Some(style)) => {
+            let device = isophote_engine::gpu::Device::wrap(gpu.device.clone(), gpu.queue.clone());
+            Some(Stylizer::new(&device, library, style, args.size)?)
+        }
+        _ => None,
+    };
+    if let Some(stylizer) = &mut stylizer {
+        stylizer.bind(renderer.targets())?;
+    }
     if let Some(folder) = &args.aov {
         fs::create_dir_all(folder)
             .map_err(|e| Error::file(folder, format!("cannot be made: {e}"), "name a writable folder"))?;
@@ -60,8 +80,12 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         let view = camera.view(&scene, &pose, frame as f32 / count as f32);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         renderer.encode(&mut encoder, &scene, &pose, &view, &look);
+        if let Some(stylizer) = &stylizer {
+            stylizer.encode(&mut encoder)?;
+        }
         gpu.queue.submit([encoder.finish()]);
-        let picture = readback.read(&gpu, &renderer.targets().color.texture)?;
+        let result = stylizer.as_ref().map_or(&renderer.targets().color.view, Stylizer::output);
+        let picture = readback.read(&gpu, result.texture())?;
         output::save(&output::frame_path(&args.out, frame + 1, count), &picture)?;
         if let Some(folder) = &args.aov {
             save_aovs(&gpu, &mut readback, &renderer, folder, frame + 1)?;

@@ -1,0 +1,135 @@
+//! Results to files, as the extension says.
+
+use std::path::Path;
+
+use image::{ExtendedColorType, ImageEncoder, ImageResult};
+
+use super::exr_file;
+use super::read::{Family, Source};
+use crate::error::{Error, Result};
+use crate::output;
+use crate::pixels::{Pixels, Precision, Samples};
+
+/// Quality of JPEG files, 1 to 100.
+const JPEG_QUALITY: u8 = 95;
+
+/// A kind of file that can be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// 8 or 16 bit, with alpha.
+    Png,
+    /// 8 bit, without alpha.
+    Jpeg,
+    /// Half or float.
+    Exr,
+}
+
+impl Format {
+    /// The format that the extension names.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for others.
+    pub fn of(path: &Path) -> Result<Self> {
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+        match extension.to_ascii_lowercase().as_str() {
+            "png" => Ok(Self::Png),
+            "jpg" | "jpeg" => Ok(Self::Jpeg),
+            "exr" => Ok(Self::Exr),
+            _ => Err(Error::file(
+                path,
+                "is not a kind of picture that is written",
+                "name a .png, .jpg or .exr file",
+            )),
+        }
+    }
+
+    /// What its numbers mean.
+    pub fn family(self) -> Family {
+        match self {
+            Self::Png | Self::Jpeg => Family::Display,
+            Self::Exr => Family::Light,
+        }
+    }
+}
+
+/// Writes `pixels`, the result of what `source` held, in the meaning of `format`'s family.
+///
+/// # Errors
+/// [`Error::Input`] when the folder is missing or cannot be written.
+pub fn write(path: &Path, format: Format, pixels: Pixels, source: Source) -> Result<()> {
+    match format {
+        Format::Exr => exr_file::write(path, &as_precise(pixels, &source), source.layers),
+        Format::Png => {
+            // A float result has more to tell than 8 bits hold.
+            let precision = match source.pixels.precision() {
+                Precision::U8 => Precision::U8,
+                _ => Precision::U16,
+            };
+            let pixels = pixels.converted(precision);
+            let color = color_type(&pixels);
+            // PNG wants the larger byte first; the encoder takes the machine's order.
+            output::write_beside(path, |file| {
+                let mut encoder = image::codecs::png::PngEncoder::new(file);
+                keep_profile(&mut encoder, source.profile);
+                told(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
+            })
+        }
+        Format::Jpeg => {
+            let pixels = opaque(path, pixels.converted(Precision::U8));
+            let color = color_type(&pixels);
+            output::write_beside(path, |file| {
+                let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(file, JPEG_QUALITY);
+                keep_profile(&mut encoder, source.profile);
+                told(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
+            })
+        }
+    }
+}
+
+/// EXR in the precision that the source deserves: 8 bits fit into halves, 16 do not.
+fn as_precise(pixels: Pixels, source: &Source) -> Pixels {
+    let precision = match source.pixels.precision() {
+        Precision::U8 | Precision::F16 => Precision::F16,
+        Precision::U16 | Precision::F32 => Precision::F32,
+    };
+    pixels.converted(precision)
+}
+
+fn keep_profile(encoder: &mut impl ImageEncoder, profile: Option<Vec<u8>>) {
+    if let Some(profile) = profile {
+        // An encoder that cannot keep it leaves a picture that is taken for sRGB, as most are.
+        let _ = encoder.set_icc_profile(profile);
+    }
+}
+
+fn told(result: ImageResult<()>) -> std::result::Result<(), String> {
+    result.map_err(|e| e.to_string())
+}
+
+fn color_type(pixels: &Pixels) -> ExtendedColorType {
+    match (pixels.precision(), pixels.channels()) {
+        (Precision::U8, 1) => ExtendedColorType::L8,
+        (Precision::U8, 3) => ExtendedColorType::Rgb8,
+        (Precision::U8, _) => ExtendedColorType::Rgba8,
+        (_, 1) => ExtendedColorType::L16,
+        (_, 3) => ExtendedColorType::Rgb16,
+        (..) => ExtendedColorType::Rgba16,
+    }
+}
+
+/// Without alpha, over white: JPEG has none.
+fn opaque(path: &Path, pixels: Pixels) -> Pixels {
+    let (Samples::U8(samples), 4) = (pixels.samples(), pixels.channels()) else { return pixels };
+    if samples.iter().skip(3).step_by(4).any(|a| *a < 255) {
+        eprintln!("warning: {}: JPEG keeps no transparency; the picture is put on white", path.display());
+    }
+    let over = |v: u8, a: u8| {
+        let (v, a) = (u32::from(v), u32::from(a));
+        ((v * a + 255 * (255 - a) + 127) / 255) as u8
+    };
+    let flat =
+        samples.as_chunks::<4>().0.iter().flat_map(|[r, g, b, a]| [*r, *g, *b].map(|v| over(v, *a))).collect();
+    let (width, height) = (pixels.width(), pixels.height());
+    // Three of four samples of every pixel are left.
+    Pixels::new(width, height, 3, Samples::U8(flat)).unwrap_or(pixels)
+}

@@ -1,0 +1,63 @@
+//! Graphics devices of the library's own, for verbs that have none themselves.
+
+use std::cell::Cell;
+use std::marker::PhantomData;
+
+use super::contract::{IsophoteApi, IsophoteDevice, IsophoteStatus};
+use super::{Answer, Library, check, text};
+
+/// A graphics device of the library's own. One thread at a time may use it.
+#[derive(Debug)]
+pub struct Device {
+    api: &'static IsophoteApi,
+    pub(super) handle: IsophoteDevice,
+    one_thread: PhantomData<Cell<()>>,
+}
+
+impl Library {
+    /// Opens a device: `gpu` for hardware only, `software` for a driver on the CPU, or a part of an adapter's
+    /// name; the best there is without.
+    ///
+    /// # Errors
+    /// [`super::Refusal`] when there is none.
+    pub fn device(&self, adapter: Option<&str>) -> Answer<Device> {
+        let adapter = adapter.map(text::argument).transpose()?;
+        let mut handle = 0;
+        let (status, message) = text::message(|error| {
+            let adapter = adapter.as_ref().map_or(std::ptr::null(), |a| a.as_ptr());
+            // SAFETY: the name is null or ends with a zero; the other two may be written during the call.
+            unsafe { (self.api.device_create)(adapter, error, &raw mut handle) }
+        });
+        check(status, || message)?;
+        Ok(Device { api: self.api, handle, one_thread: PhantomData })
+    }
+}
+
+impl Device {
+    /// Name of the adapter.
+    ///
+    /// # Errors
+    /// [`super::Refusal`] when the device is gone.
+    pub fn name(&self) -> Answer<String> {
+        let null = std::ptr::null_mut();
+        // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
+        let (status, name) = text::whole(|out| unsafe { (self.api.device_name)(self.handle, out, null) });
+        self.check(status)?;
+        Ok(name)
+    }
+
+    pub(super) fn check(&self, status: IsophoteStatus) -> Answer<()> {
+        check(status, || {
+            // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
+            text::message(|out| unsafe { (self.api.device_error)(self.handle, out) }).1
+        })
+    }
+}
+
+impl Drop for Device {
+    fn drop(&mut self) {
+        // Nobody is left who could do anything about a failure.
+        // SAFETY: the handle is this object's and not used again.
+        let _ = unsafe { (self.api.device_destroy)(self.handle) };
+    }
+}

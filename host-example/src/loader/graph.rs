@@ -1,0 +1,139 @@
+//! Graphs of nodes.
+
+use std::cell::Cell;
+use std::marker::PhantomData;
+
+use super::catalogue::{self, Kind, Node};
+use super::contract::{IsophoteApi, IsophoteGraph, IsophoteStatus, IsophoteText};
+use super::{Answer, Library, check, text};
+
+/// A graph of nodes with their parameters.
+///
+/// One thread at a time may use it, as the contract asks of every object: it is `Send` and not `Sync`.
+#[derive(Debug)]
+pub struct Graph {
+    pub(super) api: &'static IsophoteApi,
+    pub(super) handle: IsophoteGraph,
+    one_thread: PhantomData<Cell<()>>,
+}
+
+impl Library {
+    /// A graph of one node whose inputs are the pictures of the same name.
+    ///
+    /// # Errors
+    /// [`super::Refusal`] when there is no such node, naming the nearest.
+    pub fn single(&self, node: &str) -> Answer<Graph> {
+        let node = text::argument(node)?;
+        self.graph(|error, graph| {
+            // SAFETY: the id ends with a zero; the other two may be written during the call.
+            unsafe { (self.api.graph_create_single)(node.as_ptr(), error, graph) }
+        })
+    }
+
+    /// The graph that a JSON text describes.
+    ///
+    /// # Errors
+    /// [`super::Refusal`] saying what is wrong with it and where.
+    pub fn graph_from_json(&self, json: &str) -> Answer<Graph> {
+        let json = text::argument(json)?;
+        self.graph(|error, graph| {
+            // SAFETY: the text ends with a zero; the other two may be written during the call.
+            unsafe { (self.api.graph_create_from_json)(json.as_ptr(), error, graph) }
+        })
+    }
+
+    fn graph(
+        &self,
+        create: impl FnOnce(*mut IsophoteText, *mut IsophoteGraph) -> IsophoteStatus,
+    ) -> Answer<Graph> {
+        let mut handle = 0;
+        let (status, message) = text::message(|error| create(error, &raw mut handle));
+        check(status, || message)?;
+        Ok(Graph { api: self.api, handle, one_thread: PhantomData })
+    }
+}
+
+impl Graph {
+    /// Number of nodes, whose indices count from 0.
+    pub fn count(&self) -> u32 {
+        let mut count = 0;
+        // SAFETY: the handle is this object's; `count` may be written during the call.
+        let status = unsafe { (self.api.graph_count)(self.handle, &raw mut count) };
+        if self.check(status).is_ok() { count } else { 0 }
+    }
+
+    /// Name of a node within the graph.
+    ///
+    /// # Errors
+    /// [`super::Refusal`] when there is no such index.
+    pub fn name(&self, node: u32) -> Answer<String> {
+        // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
+        let (status, name) =
+            text::whole(|out| unsafe { (self.api.graph_name)(self.handle, node, out) });
+        self.check(status)?;
+        Ok(name)
+    }
+
+    /// What a node says about itself.
+    ///
+    /// # Errors
+    /// [`super::Refusal`] when there is no such index.
+    pub fn spec(&self, node: u32) -> Answer<Node> {
+        let mut spec = std::ptr::null();
+        // SAFETY: the handle is this object's; `spec` may be written during the call.
+        let status = unsafe { (self.api.graph_spec)(self.handle, node, &raw mut spec) };
+        self.check(status)?;
+        // SAFETY: success means that `spec` points to a node of the library, which is never unloaded.
+        Ok(unsafe { catalogue::node(&*spec) })
+    }
+
+    /// Sets a parameter from text as a person writes it: `2.5`, `true`, `scharr3`, `#12407b`.
+    ///
+    /// # Errors
+    /// [`super::Refusal`] when there is no such parameter, or it cannot have this value.
+    pub fn set(&self, node: u32, param: &str, value: &str) -> Answer<()> {
+        let (param, value) = (text::argument(param)?, text::argument(value)?);
+        // SAFETY: the handle is this object's; both texts end with a zero.
+        let status =
+            unsafe { (self.api.graph_set_text)(self.handle, node, param.as_ptr(), value.as_ptr()) };
+        self.check(status)
+    }
+
+    /// What leaves the graph.
+    ///
+    /// # Errors
+    /// [`super::Refusal`] when it has no output.
+    pub fn output_kind(&self) -> Answer<Kind> {
+        let mut kind = 0;
+        // SAFETY: the handle is this object's; `kind` may be written during the call.
+        let status = unsafe { (self.api.graph_output_kind)(self.handle, &raw mut kind) };
+        self.check(status)?;
+        Ok(Kind::new(kind))
+    }
+
+    /// The graph as JSON.
+    ///
+    /// # Errors
+    /// [`super::Refusal`] when the library fails.
+    pub fn to_json(&self) -> Answer<String> {
+        // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
+        let (status, json) = text::whole(|out| unsafe { (self.api.graph_to_json)(self.handle, out) });
+        self.check(status)?;
+        Ok(json)
+    }
+
+    pub(super) fn check(&self, status: IsophoteStatus) -> Answer<()> {
+        check(status, || {
+            // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
+            text::message(|out| unsafe { (self.api.graph_error)(self.handle, out) }).1
+        })
+    }
+}
+
+impl Drop for Graph {
+    fn drop(&mut self) {
+        // Nobody is left who could do anything about a failure.
+        // SAFETY: the handle is this object's and not used again.
+        let _ = unsafe { (self.api.graph_destroy)(self.handle) };
+    }
+}

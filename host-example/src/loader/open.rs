@@ -1,0 +1,96 @@
+//! Where the library is, and whether it is what it should be.
+
+use std::env;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+use super::contract::{ISOPHOTE_ABI_VERSION, IsophoteApi, IsophoteEntry};
+use crate::error::{Error, Result};
+
+/// Environment variable that names the library's file.
+const VARIABLE: &str = "ISOPHOTE_LIBRARY";
+
+/// How to mend most of what can be wrong.
+const MEND: &str = "build the library (cargo build -p isophote-plugin) or set ISOPHOTE_LIBRARY to its file";
+
+/// The table of the library, and the file it came from.
+pub fn find() -> Result<(&'static IsophoteApi, PathBuf)> {
+    if let Some(path) = env::var_os(VARIABLE).filter(|v| !v.is_empty()).map(PathBuf::from) {
+        if !path.is_file() {
+            return Err(Error::failure(
+                format!("the library '{}' named by {VARIABLE} does not exist", path.display()),
+                MEND,
+            ));
+        }
+        return Ok((open(&path)?, path));
+    }
+    let name = libloading::library_filename("isophote");
+    let beside = env::current_exe().ok().and_then(|exe| exe.parent().map(Path::to_owned));
+    let near = beside.iter().flat_map(|folder| [folder.join(&name), folder.join("../lib").join(&name)]);
+    if let Some(path) = near.into_iter().find(|path| path.is_file()) {
+        return Ok((open(&path)?, path));
+    }
+    let library = load(name.as_ref()).map_err(|_| {
+        let places = beside.map_or_else(String::new, |f| format!("in '{}', ", f.display()));
+        Error::failure(
+            format!("the library {} was not found {places}in ../lib or among the system's", Path::new(&name).display()),
+            MEND,
+        )
+    })?;
+    let path = PathBuf::from(name);
+    Ok((table(library, &path)?, path))
+}
+
+fn open(path: &Path) -> Result<&'static IsophoteApi> {
+    // A bare name would be looked for among the system's libraries instead.
+    let absolute = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let library = load(absolute.as_os_str()).map_err(|e| {
+        Error::failure(format!("'{}' cannot be loaded as a dynamic library: {}", path.display(), reason(&e)), MEND)
+    })?;
+    table(library, path)
+}
+
+fn load(name: &OsStr) -> std::result::Result<libloading::Library, libloading::Error> {
+    // SAFETY: loading runs the library's initialisers. The file is the one that the user or the installation
+    // names as Isophote, whose initialisers do nothing; there is no way to tell beforehand.
+    unsafe { libloading::Library::new(name) }
+}
+
+/// Libloading wraps what the system says.
+fn reason(error: &libloading::Error) -> String {
+    use std::error::Error as _;
+    error.source().map_or_else(|| error.to_string(), ToString::to_string)
+}
+
+fn table(library: libloading::Library, path: &Path) -> Result<&'static IsophoteApi> {
+    // SAFETY: the contract gives the symbol this type; no other library has a reason to bear it.
+    let entry = unsafe { library.get::<IsophoteEntry>(b"isophote_api\0") };
+    let Some(entry) = entry.ok().and_then(|symbol| *symbol) else {
+        return Err(Error::failure(
+            format!("'{}' is a dynamic library, but not Isophote: it has no function isophote_api", path.display()),
+            MEND,
+        ));
+    };
+    // SAFETY: the symbol is the library's entry, which takes any number.
+    let api = unsafe { entry(ISOPHOTE_ABI_VERSION) };
+    let other = |found: String| {
+        Error::failure(
+            format!("'{}' {found}; this program needs version {ISOPHOTE_ABI_VERSION}", path.display()),
+            "use the library and the program of one release",
+        )
+    };
+    if api.is_null() {
+        return Err(other(format!("has no ABI version {ISOPHOTE_ABI_VERSION}")));
+    }
+    // SAFETY: every version's table begins with these two numbers; what follows is looked at only when they
+    // are as they should be.
+    let (version, size) =
+        unsafe { ((&raw const (*api).abi_version).read(), (&raw const (*api).struct_size).read()) };
+    if version != ISOPHOTE_ABI_VERSION || size as usize != size_of::<IsophoteApi>() {
+        return Err(other(format!("offers ABI version {version} with a table of {size} bytes")));
+    }
+    // The table and all that it leads to are valid as long as the library is loaded: until the process ends.
+    std::mem::forget(library);
+    // SAFETY: version and size say that this is the table declared in the contract; it is constant.
+    Ok(unsafe { &*api })
+}
