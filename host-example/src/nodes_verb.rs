@@ -29,7 +29,9 @@ pub fn run(args: &NodesArgs) -> Result<()> {
     match io::stdout().write_all(text.as_bytes()) {
         // Whoever reads has read enough.
         Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        Err(e) => Err(Error::failure(format!("cannot write to standard output: {e}"), "redirect it elsewhere")),
+        Err(e) => {
+            Err(Error::failure(format!("cannot write to standard output: {e}"), "redirect it elsewhere"))
+        }
         Ok(()) => Ok(()),
     }
 }

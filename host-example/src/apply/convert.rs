@@ -65,7 +65,8 @@ mod tests {
 
     #[test]
     fn there_and_back_is_where_it_was() {
-        let numbers: Vec<f32> = (0..8 * 4).map(|i| [0.0, 0.02, 0.5, 1.0][i % 4].max(0.01 * i as f32)).collect();
+        let numbers: Vec<f32> =
+            (0..8 * 4).map(|i| [0.0f32, 0.02, 0.5, 1.0][i % 4].max(0.01 * i as f32)).collect();
         let picture = Pixels::new(8, 1, 4, Samples::F32(numbers.clone())).unwrap();
         let light = between(picture.clone(), Family::Display, Space::Srgb, Family::Light);
         assert_ne!(light, picture);

@@ -4,8 +4,8 @@ use std::io::Cursor;
 use std::path::Path;
 
 use exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatImage, FlatSamples, Layer, LayerAttributes, ReadChannels, ReadLayers,
-    SmallVec, WritableImage,
+    AnyChannel, AnyChannels, Encoding, FlatImage, FlatSamples, Layer, LayerAttributes, ReadChannels,
+    ReadLayers, SmallVec, WritableImage,
 };
 use half::f16;
 
@@ -145,7 +145,10 @@ pub fn write(path: &Path, pixels: &Pixels, layers: Option<Layers>) -> Result<()>
         return save(path, &layers.image);
     }
     let single = exr::prelude::Image::from_layer(plain(pixels));
-    save(path, &FlatImage { attributes: single.attributes, layer_data: SmallVec::from_iter([single.layer_data]) })
+    save(
+        path,
+        &FlatImage { attributes: single.attributes, layer_data: SmallVec::from_iter([single.layer_data]) },
+    )
 }
 
 fn plain(pixels: &Pixels) -> FlatLayer {

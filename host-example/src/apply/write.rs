@@ -127,8 +127,12 @@ fn opaque(path: &Path, pixels: Pixels) -> Pixels {
         let (v, a) = (u32::from(v), u32::from(a));
         ((v * a + 255 * (255 - a) + 127) / 255) as u8
     };
-    let flat =
-        samples.as_chunks::<4>().0.iter().flat_map(|[r, g, b, a]| [*r, *g, *b].map(|v| over(v, *a))).collect();
+    let flat = samples
+        .as_chunks::<4>()
+        .0
+        .iter()
+        .flat_map(|[r, g, b, a]| [*r, *g, *b].map(|v| over(v, *a)))
+        .collect();
     let (width, height) = (pixels.width(), pixels.height());
     // Three of four samples of every pixel are left.
     Pixels::new(width, height, 3, Samples::U8(flat)).unwrap_or(pixels)

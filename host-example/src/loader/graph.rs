@@ -68,8 +68,7 @@ impl Graph {
     /// [`super::Refusal`] when there is no such index.
     pub fn name(&self, node: u32) -> Answer<String> {
         // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
-        let (status, name) =
-            text::whole(|out| unsafe { (self.api.graph_name)(self.handle, node, out) });
+        let (status, name) = text::whole(|out| unsafe { (self.api.graph_name)(self.handle, node, out) });
         self.check(status)?;
         Ok(name)
     }
@@ -94,8 +93,7 @@ impl Graph {
     pub fn set(&self, node: u32, param: &str, value: &str) -> Answer<()> {
         let (param, value) = (text::argument(param)?, text::argument(value)?);
         // SAFETY: the handle is this object's; both texts end with a zero.
-        let status =
-            unsafe { (self.api.graph_set_text)(self.handle, node, param.as_ptr(), value.as_ptr()) };
+        let status = unsafe { (self.api.graph_set_text)(self.handle, node, param.as_ptr(), value.as_ptr()) };
         self.check(status)
     }
 

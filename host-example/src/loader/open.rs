@@ -33,7 +33,10 @@ pub fn find() -> Result<(&'static IsophoteApi, PathBuf)> {
     let library = load(name.as_ref()).map_err(|_| {
         let places = beside.map_or_else(String::new, |f| format!("in '{}', ", f.display()));
         Error::failure(
-            format!("the library {} was not found {places}in ../lib or among the system's", Path::new(&name).display()),
+            format!(
+                "the library {} was not found {places}in ../lib or among the system's",
+                Path::new(&name).display()
+            ),
             MEND,
         )
     })?;
@@ -45,7 +48,10 @@ fn open(path: &Path) -> Result<&'static IsophoteApi> {
     // A bare name would be looked for among the system's libraries instead.
     let absolute = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let library = load(absolute.as_os_str()).map_err(|e| {
-        Error::failure(format!("'{}' cannot be loaded as a dynamic library: {}", path.display(), reason(&e)), MEND)
+        Error::failure(
+            format!("'{}' cannot be loaded as a dynamic library: {}", path.display(), reason(&e)),
+            MEND,
+        )
     })?;
     table(library, path)
 }
@@ -67,7 +73,10 @@ fn table(library: libloading::Library, path: &Path) -> Result<&'static IsophoteA
     let entry = unsafe { library.get::<IsophoteEntry>(b"isophote_api\0") };
     let Some(entry) = entry.ok().and_then(|symbol| *symbol) else {
         return Err(Error::failure(
-            format!("'{}' is a dynamic library, but not Isophote: it has no function isophote_api", path.display()),
+            format!(
+                "'{}' is a dynamic library, but not Isophote: it has no function isophote_api",
+                path.display()
+            ),
             MEND,
         ));
     };

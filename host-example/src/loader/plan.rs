@@ -146,17 +146,15 @@ impl Plan {
     fn grid(&self, pass: &IsophotePass) -> Answer<Grid> {
         // SAFETY: the bytes are the plan's, which is borrowed.
         let bytes = unsafe { text::slice(pass.grid.cast::<u8>(), pass.grid_size) };
-        bytemuck::try_pod_read_unaligned(bytes).map_err(|_| {
-            mistaken(format!("a grid has {} bytes, not {}", bytes.len(), size_of::<Grid>()))
-        })
+        bytemuck::try_pod_read_unaligned(bytes)
+            .map_err(|_| mistaken(format!("a grid has {} bytes, not {}", bytes.len(), size_of::<Grid>())))
     }
 
     fn wgsl(&self, pass: u32) -> Answer<&'static str> {
         let mut shader = std::ptr::null();
         // SAFETY: the handle is this object's; `shader` may be written during the call.
-        let status = unsafe {
-            (self.api.plan_shader)(self.handle, pass, c::ISOPHOTE_LANGUAGE_WGSL, &raw mut shader)
-        };
+        let status =
+            unsafe { (self.api.plan_shader)(self.handle, pass, c::ISOPHOTE_LANGUAGE_WGSL, &raw mut shader) };
         self.check(status)?;
         // SAFETY: success means that `shader` and its text live until the process ends.
         Ok(unsafe { text::constant((*shader).code.cast()) })

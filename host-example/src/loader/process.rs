@@ -3,8 +3,8 @@
 use std::ffi::c_void;
 
 use super::contract::{
-    self as c, IsophoteControl, IsophoteImage, IsophoteInput, IsophoteReport, IsophoteRequest, IsophoteSample,
-    IsophoteTarget,
+    self as c, IsophoteControl, IsophoteImage, IsophoteInput, IsophoteReport, IsophoteRequest,
+    IsophoteSample, IsophoteTarget,
 };
 use super::{Answer, Device, Graph, text};
 use crate::pixels::{Pixels, Precision};

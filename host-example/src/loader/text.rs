@@ -2,7 +2,9 @@
 
 use std::ffi::{CStr, CString, c_char};
 
-use super::contract::{ISOPHOTE_INVALID_ARGUMENT, ISOPHOTE_OK, ISOPHOTE_TRUNCATED, IsophoteStatus, IsophoteText};
+use super::contract::{
+    ISOPHOTE_INVALID_ARGUMENT, ISOPHOTE_OK, ISOPHOTE_TRUNCATED, IsophoteStatus, IsophoteText,
+};
 use super::{Answer, Refusal};
 
 /// Room for a message; longer ones are cut.

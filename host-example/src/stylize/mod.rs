@@ -44,12 +44,7 @@ impl Stylizer {
     ///
     /// # Errors
     /// [`Error::Input`] when an input that the style needs is open, [`Error::Failure`] when the device refuses.
-    pub fn new(
-        device: &Arc<gpu::Device>,
-        library: &Library,
-        style: Style,
-        size: (u32, u32),
-    ) -> Result<Self> {
+    pub fn new(device: &Arc<gpu::Device>, library: &Library, style: Style, size: (u32, u32)) -> Result<Self> {
         let request = request(library, size)?;
         let plan = style.plan(&request)?;
         let program = plan.program().map_err(|e| e.at(&style.name, "choose another style"))?;
@@ -154,7 +149,10 @@ impl Stylizer {
 impl Style {
     fn plan(&self, request: &IsophoteRequest) -> Result<Plan> {
         self.graph.plan(request).map_err(|e| {
-            e.at(&self.name, "choose a style whose inputs are color, normal, depth or object_id, or another size")
+            e.at(
+                &self.name,
+                "choose a style whose inputs are color, normal, depth or object_id, or another size",
+            )
         })
     }
 }

@@ -26,7 +26,8 @@ impl FromStr for Setting {
     type Err = String;
 
     fn from_str(text: &str) -> std::result::Result<Self, String> {
-        let (name, value) = text.split_once('=').ok_or("write id=value, or node.id=value for a node of a graph")?;
+        let (name, value) =
+            text.split_once('=').ok_or("write id=value, or node.id=value for a node of a graph")?;
         let (node, param) = match name.trim().rsplit_once('.') {
             Some((node, param)) => (Some(node.to_owned()), param),
             None => (None, name.trim()),
@@ -70,7 +71,8 @@ impl Style {
         for setting in settings {
             set(&graph, setting)?;
         }
-        let kind = graph.output_kind().map_err(|e| e.at(name, "name the node whose output is the graph's"))?;
+        let kind =
+            graph.output_kind().map_err(|e| e.at(name, "name the node whose output is the graph's"))?;
         if !matches!(kind, Kind::Color | Kind::Scalar) {
             return Err(Error::input(
                 name,
