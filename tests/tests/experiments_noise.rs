@@ -1,0 +1,157 @@
+//! Experiments on the anisotropy of noise, § 2.6.3: distribution 2.152, significance 2.154, and the
+//! number of samples that a Gaussian window is worth (Figure 2.23).
+
+use isophote::kernels::smoothing::gaussian_blur;
+use isophote::kernels::tensor_algebra::scalar;
+use isophote_engine::{Class, Image, PlanBuilder};
+use isophote_tests::pictures::from_fn;
+use isophote_tests::random::Random;
+use isophote_tests::run;
+
+/// Pr(A <= a) for tensors of m random gradients (2.153).
+fn distribution(a: f64, m: f64) -> f64 {
+    1.0 - (1.0 - a * a).powf(0.5 * (m - 1.0))
+}
+
+/// Anisotropy above which noise is rejected at significance alpha (2.154).
+fn threshold(alpha: f64, m: f64) -> f64 {
+    (1.0 - alpha.powf(2.0 / (m - 1.0))).sqrt()
+}
+
+/// Independent unsmoothed tensors: those of white noise by central differences, three pixels apart,
+/// share no pixel.
+fn independent_tensors() -> Vec<[f32; 3]> {
+    let mut random = Random::new(263);
+    let picture = from_fn(1200, 1200, |_, _| {
+        let v = (0.5 + 0.1 * random.normal()) as f32;
+        [v, v, v, 1.0]
+    });
+    let params = [("derivative", "central"), ("rho", "0"), ("space", "luminance")];
+    let tensor = run::node("structure_tensor", &params, &picture);
+    let mut found = Vec::new();
+    for y in (2..1198).step_by(3) {
+        for x in (2..1198).step_by(3) {
+            let t = tensor.pixel(x, y);
+            found.push([t[0], t[1], t[2]]);
+        }
+    }
+    found
+}
+
+/// Anisotropies of the tensors of box windows of m gradients each.
+fn of_windows(tensors: &[[f32; 3]], m: usize) -> Vec<f64> {
+    let mut found: Vec<f64> = tensors
+        .chunks_exact(m)
+        .map(|window| {
+            let sum = window.iter().fold([0.0; 3], |s, t| [s[0] + t[0], s[1] + t[1], s[2] + t[2]]);
+            f64::from(scalar::anisotropy(sum[0], sum[1], sum[2]))
+        })
+        .collect();
+    found.sort_by(f64::total_cmp);
+    found
+}
+
+#[test]
+fn the_anisotropy_of_noise_follows_its_distribution() {
+    let tensors = independent_tensors();
+    println!("   m  windows  Kolmogorov-Smirnov  limit at 1 %");
+    for m in [5, 9, 25, 49, 81, 169] {
+        let found = of_windows(&tensors, m);
+        let n = found.len() as f64;
+        let distance = found
+            .iter()
+            .enumerate()
+            .map(|(i, a)| {
+                let p = distribution(*a, m as f64);
+                (p - i as f64 / n).abs().max(((i + 1) as f64 / n - p).abs())
+            })
+            .fold(0.0, f64::max);
+        let limit = 1.628 / n.sqrt();
+        println!("{m:4}  {n:7}  {distance:18.4}  {limit:.4}");
+        assert!(distance < limit, "m = {m}");
+        // The test has teeth: other window sizes are rejected.
+        let other = (1.5 * m as f64).max(m as f64 + 3.0);
+        let wrong = found
+            .iter()
+            .enumerate()
+            .map(|(i, a)| (distribution(*a, other) - i as f64 / n).abs())
+            .fold(0.0, f64::max);
+        assert!(wrong > limit, "m = {m} would pass for {other}");
+    }
+}
+
+#[test]
+fn five_percent_of_noise_is_above_the_threshold() {
+    let limit = threshold(0.05, 169.0);
+    assert!((limit - 0.1872).abs() < 5e-5, "{limit}");
+    let found = of_windows(&independent_tensors(), 169);
+    let share = found.iter().filter(|a| **a > limit).count() as f64 / found.len() as f64;
+    println!("threshold {limit:.4}: {:.2} % of {} windows of noise lie above it", 100.0 * share, found.len());
+    // Three standard deviations of a share of so many.
+    let deviation = (0.05 * 0.95 / found.len() as f64).sqrt();
+    assert!((share - 0.05).abs() < 3.0 * deviation, "{share}");
+}
+
+/// Anisotropies of random gradients under the library's own Gaussian window.
+fn under_gaussian(sigma: f32, seed: u64) -> Vec<f64> {
+    let mut random = Random::new(seed);
+    let gradients: Image = from_fn(400, 400, |_, _| {
+        let (x, y) = (random.normal() as f32, random.normal() as f32);
+        [x * x, x * y, y * y, 1.0]
+    });
+    let mut plan = PlanBuilder::new(400, 400).unwrap();
+    let input = plan.input("tensor", 4, Class::Field);
+    let smoothed = gaussian_blur::smooth(&mut plan, input, sigma, Class::Field);
+    plan.output("output", smoothed);
+    let smoothed = run::whole(&plan.finish().unwrap(), &[("tensor", gradients)]);
+    let margin = (3.0 * sigma).ceil() as i32;
+    let mut found = Vec::new();
+    for y in margin..400 - margin {
+        for x in margin..400 - margin {
+            let t = smoothed.pixel(x, y);
+            found.push(f64::from(scalar::anisotropy(t[0], t[1], t[2])));
+        }
+    }
+    found
+}
+
+/// The m whose density (2.152) comes nearest to the histogram of `found`, by least squares.
+fn fitted(found: &[f64]) -> f64 {
+    const BINS: usize = 200;
+    let mut histogram = [0.0; BINS];
+    for a in found {
+        histogram[((a * BINS as f64) as usize).min(BINS - 1)] += BINS as f64 / found.len() as f64;
+    }
+    let squares = |m: f64| -> f64 {
+        histogram
+            .iter()
+            .enumerate()
+            .map(|(i, h)| {
+                let a = (i as f64 + 0.5) / BINS as f64;
+                (h - (m - 1.0) * a * (1.0 - a * a).powf(0.5 * (m - 3.0))).powi(2)
+            })
+            .sum()
+    };
+    // The sum of squares has one minimum: close in on it.
+    let (mut low, mut high) = (4.0, 1000.0);
+    while high - low > 1e-3 {
+        let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+        if squares(a) < squares(b) { high = b } else { low = a }
+    }
+    low
+}
+
+#[test]
+fn a_gaussian_window_is_worth_four_pi_sigma_squared_samples() {
+    println!("sigma  fitted m  4 pi sigma^2   ratio");
+    for sigma in 1..=5 {
+        let seeds = 1..=(sigma * sigma).min(8) as u64;
+        let found: Vec<f64> = seeds.flat_map(|seed| under_gaussian(sigma as f32, seed)).collect();
+        let fitted = fitted(&found);
+        let expected = 4.0 * std::f64::consts::PI * f64::from(sigma * sigma);
+        println!("{sigma:5}  {fitted:8.2}  {expected:12.2}  {:6.3}", fitted / expected);
+        // Under a window of few pixels the distribution is not quite of the family that is fitted.
+        let bound = 0.02 + 0.07 / f64::from(sigma);
+        assert!((fitted / expected - 1.0).abs() < bound, "sigma {sigma}: {fitted} for {expected}");
+    }
+}
