@@ -145,6 +145,103 @@ fn every_declaration_is_complete_and_its_defaults_lie_in_range() {
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
 
+/// Ids that users' graphs, presets and scripts refer to. They are for ever: a node may gain parameters,
+/// and never lose or rename one.
+const PROMISED: [(&str, &[&str]); 12] = [
+    (
+        "structure_tensor",
+        &[
+            "derivative",
+            "sigma_g",
+            "rho",
+            "space",
+            "normalize",
+            "relax_threshold",
+            "relax_steps",
+            "guide_weight",
+        ],
+    ),
+    ("tensor_view", &["show", "sigma", "mix"]),
+    ("gaussian", &["sigma", "mix"]),
+    (
+        "oriented_bilateral",
+        &["sigma_dg", "sigma_dt", "sigma_rg", "sigma_rt", "iterations", "sampling", "anisotropy", "mix"],
+    ),
+    (
+        "flow_bilateral",
+        &[
+            "sigma_dg",
+            "sigma_dt",
+            "sigma_rg",
+            "sigma_rt",
+            "iterations",
+            "sampling",
+            "integrator",
+            "placement",
+            "mix",
+        ],
+    ),
+    ("line_integral_convolution", &["sigma", "integrator", "adapt", "max_angle", "step", "mix"]),
+    (
+        "difference_of_gaussians",
+        &["sigma_e", "k", "form", "tau", "epsilon", "phi", "p", "epsilon_p", "phi_p", "threshold"],
+    ),
+    (
+        "flow_dog",
+        &[
+            "sigma_e",
+            "k",
+            "form",
+            "tau",
+            "epsilon",
+            "phi",
+            "p",
+            "epsilon_p",
+            "phi_p",
+            "threshold",
+            "sigma_m",
+            "iterations",
+            "integrator",
+            "guide_weight",
+        ],
+    ),
+    (
+        "quantize_luminance",
+        &["bins", "phi_q", "adaptive", "lambda_delta", "omega_delta", "lambda_phi", "omega_phi", "mix"],
+    ),
+    ("composite_lines", &["color", "opacity", "paper", "mix"]),
+    (
+        "cartoon",
+        &[
+            "line_width",
+            "line_amount",
+            "suppress_small",
+            "line_color",
+            "detail",
+            "posterize",
+            "posterize_smooth",
+            "saturation",
+            "mix",
+        ],
+    ),
+    ("blueprint", &["line_width", "line_color", "paper_color", "grid", "paper_texture", "fill", "mix"]),
+];
+
+#[test]
+fn promised_ids_are_there() {
+    let mut missing = Vec::new();
+    for (node, params) in PROMISED {
+        match registry::find(node) {
+            Ok(spec) => {
+                let lost = params.iter().filter(|p| spec.param(p).is_none());
+                missing.extend(lost.map(|p| format!("{node}.{p}")));
+            }
+            Err(_) => missing.push(node.to_owned()),
+        }
+    }
+    assert!(missing.is_empty(), "missing: {}", missing.join(", "));
+}
+
 #[test]
 fn every_tolerance_has_a_reason_and_is_small() {
     for kernel in KERNELS {

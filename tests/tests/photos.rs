@@ -1,0 +1,124 @@
+//! The cartoon style on photographs, where they lie beside the checkout: flatter, with dark coherent
+//! lines, without speckles or halos (compare Figure 4.8).
+
+use isophote::Request;
+use isophote_engine::Image;
+use isophote_tests::pictures::from_fn;
+use isophote_tests::{png, run};
+use std::collections::BTreeSet;
+
+/// A photograph at half its size.
+fn photo(name: &str) -> Option<Image> {
+    let Some(assets) = png::assets() else {
+        eprintln!("\n*** SKIPPED: no photographs beside the checkout ***\n");
+        return None;
+    };
+    let full = png::read(&assets.join("photo").join(name)).unwrap();
+    Some(from_fn(full.width() / 2, full.height() / 2, |x, y| {
+        let at = |dx, dy| full.pixel(2 * x + dx, 2 * y + dy);
+        [0, 1, 2, 3].map(|c| 0.25 * (at(0, 0)[c] + at(1, 0)[c] + at(0, 1)[c] + at(1, 1)[c]))
+    }))
+}
+
+fn luma(p: &[f32]) -> f32 {
+    0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2]
+}
+
+/// Median size of the luma's gradient.
+fn median_gradient(image: &Image) -> f32 {
+    let (w, h) = (image.width() as i32, image.height() as i32);
+    let mut all = Vec::new();
+    for y in 1..h - 1 {
+        for x in 1..w - 1 {
+            let at = |dx: i32, dy: i32| luma(image.pixel(x + dx, y + dy));
+            all.push((at(1, 0) - at(-1, 0)).hypot(at(0, 1) - at(0, -1)) / 2.0);
+        }
+    }
+    all.sort_by(f32::total_cmp);
+    all[all.len() / 2]
+}
+
+/// Colours that differ in their upper six bits.
+fn distinct_colours(image: &Image) -> usize {
+    let rounded = |p: &[f32]| [0, 1, 2].map(|c| (p[c].clamp(0.0, 1.0) * 63.0).round() as u8);
+    image.data().chunks_exact(4).map(rounded).collect::<BTreeSet<_>>().len()
+}
+
+/// Greatest (`most`) or least luma around a pixel.
+fn around(image: &Image, x: i32, y: i32, radius: i32, most: bool) -> f32 {
+    let mut found = luma(image.pixel(x, y));
+    for ny in (y - radius).max(0)..=(y + radius).min(image.height() as i32 - 1) {
+        for nx in (x - radius).max(0)..=(x + radius).min(image.width() as i32 - 1) {
+            let v = luma(image.pixel(nx, ny));
+            found = if most { found.max(v) } else { found.min(v) };
+        }
+    }
+    found
+}
+
+fn check(name: &str) {
+    let Some(photo) = photo(name) else { return };
+    let (w, h) = (photo.width() as i32, photo.height() as i32);
+    let pixels = (w * h) as f32;
+    let graph = run::single("cartoon", &[]);
+    let request = Request { scale: 0.5, ..Request::new(photo.width(), photo.height()) };
+    let cartoon = run::graph(&graph, request, &photo);
+    png::write(&png::results().join(format!("cartoon-{name}")), &cartoon);
+
+    let change =
+        photo.data().iter().zip(cartoon.data()).map(|(a, b)| (a - b).abs()).sum::<f32>() / (4.0 * pixels);
+    let (before, after) = (median_gradient(&photo), median_gradient(&cartoon));
+    let (many, few) = (distinct_colours(&photo), distinct_colours(&cartoon));
+
+    // Lines: clearly darker than anything nearby was.
+    let is_line = |x: i32, y: i32| luma(cartoon.pixel(x, y)) < 0.6 * around(&photo, x, y, 1, false) - 0.02;
+    let mut lines = vec![false; (w * h) as usize];
+    let mut halos = 0;
+    for y in 0..h {
+        for x in 0..w {
+            lines[(y * w + x) as usize] = is_line(x, y);
+            halos += usize::from(luma(cartoon.pixel(x, y)) > around(&photo, x, y, 4, true) + 0.1);
+        }
+    }
+    let line_at = |x: i32, y: i32| x >= 0 && y >= 0 && x < w && y < h && lines[(y * w + x) as usize];
+    let (mut drawn, mut lone, mut neighbours) = (0, 0, 0);
+    for y in 0..h {
+        for x in 0..w {
+            if line_at(x, y) {
+                let near = (-1..=1)
+                    .flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)))
+                    .filter(|d| *d != (0, 0) && line_at(x + d.0, y + d.1))
+                    .count();
+                drawn += 1;
+                lone += usize::from(near == 0);
+                neighbours += near;
+            }
+        }
+    }
+    let share = |n: usize| n as f32 / pixels;
+    println!(
+        "{name}: mean change {change:.3}, median gradient {before:.4} -> {after:.4}, colours {many} -> {few}, \
+         lines {:.2} % with {:.1} neighbours each, lone {:.3} %, halos {:.3} %",
+        100.0 * share(drawn),
+        neighbours as f32 / drawn.max(1) as f32,
+        100.0 * share(lone),
+        100.0 * share(halos)
+    );
+    assert!(change > 0.01, "the picture changed");
+    assert!(after < 0.6 * before, "flat parts became flatter");
+    assert!(few < many * 3 / 4, "there are fewer colours");
+    assert!(share(drawn) > 0.005 && share(drawn) < 0.25, "there are lines, and not only lines");
+    assert!(neighbours as f32 / drawn as f32 > 1.9, "lines hang together");
+    assert!(share(lone) < 0.001, "no speckles");
+    assert!(share(halos) < 0.005, "no halos");
+}
+
+#[test]
+fn the_astronaut_becomes_a_cartoon() {
+    check("astronaut.png");
+}
+
+#[test]
+fn the_cat_becomes_a_cartoon() {
+    check("chelsea.png");
+}
