@@ -179,7 +179,7 @@ fn name_of(param: &Param, value: Value) -> String {
 pub fn request(kind: Kind, width: u32, height: u32, guides: bool) -> Request {
     let space = match kind {
         Kind::Hdr if width < 10 => ColourSpace::AcesCg,
-        Kind::Hdr => ColourSpace::Linear,
+        Kind::Hdr | Kind::Broken => ColourSpace::Linear,
         _ => ColourSpace::Srgb,
     };
     Request {

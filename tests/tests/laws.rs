@@ -124,7 +124,7 @@ fn faults_of(spec: &NodeSpec) -> Vec<String> {
             ParamKind::Bool { .. } => {}
             ParamKind::Choice { default, options } => {
                 let distinct: BTreeSet<&str> = options.iter().map(|o| o.id).collect();
-                check(options.len() > 1 && distinct.len() == options.len(), format!("{id}: its options"));
+                check(!options.is_empty() && distinct.len() == options.len(), format!("{id}: its options"));
                 check(default < options.len(), format!("{id}: its default"));
                 check(
                     options.iter().all(|o| is_identifier(o.id) && !o.label.is_empty()),
@@ -161,7 +161,7 @@ const PROMISED: [(&str, &[&str]); 12] = [
             "guide_weight",
         ],
     ),
-    ("tensor_view", &["show", "sigma", "mix"]),
+    ("tensor_view", &["show", "sigma"]),
     ("gaussian", &["sigma", "mix"]),
     (
         "oriented_bilateral",
