@@ -247,7 +247,7 @@ fn every_tolerance_has_a_reason_and_is_small() {
     for kernel in KERNELS {
         let t = kernel.tolerance;
         assert!(t.reason.len() > 10, "{}: why this tolerance?", kernel.name);
-        assert!(t.absolute > 0.0 && t.absolute <= 0.1, "{}: absolute {}", kernel.name, t.absolute);
+        assert!((0.0..=0.1).contains(&t.absolute), "{}: absolute {}", kernel.name, t.absolute);
         assert!((0.0..=0.01).contains(&t.relative), "{}: relative {}", kernel.name, t.relative);
         assert!((0.0..=0.03).contains(&t.outliers), "{}: outliers {}", kernel.name, t.outliers);
     }
