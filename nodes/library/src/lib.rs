@@ -10,6 +10,7 @@ pub mod error;
 pub mod graph;
 mod json;
 pub mod kernels;
+mod look;
 pub mod nodes;
 pub mod registry;
 pub mod request;

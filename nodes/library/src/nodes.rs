@@ -15,6 +15,10 @@ macro_rules! nodes {
 }
 
 nodes! {
+    styles {
+        blueprint,
+        cartoon,
+    }
     structure {
         structure_tensor,
         tensor_view,

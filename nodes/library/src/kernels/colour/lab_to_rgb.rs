@@ -21,8 +21,9 @@ crate::kernel!(lab_to_rgb {
     tolerance: Tolerance {
         absolute: 1e-4,
         relative: 2e-4,
-        outliers: 0.0,
-        reason: "the slope of the sRGB curve near black is 13, and cubes of f magnify relative errors three times",
+        outliers: 2e-3,
+        reason: "the slope of the sRGB curve near black is 13, and cubes of f magnify relative errors three \
+                 times; a channel that cancels among others near the largest half keeps no digit",
     },
 });
 

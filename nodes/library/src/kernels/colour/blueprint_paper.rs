@@ -1,0 +1,189 @@
+//! The sheet of a blueprint: tinted paper with texture and grid, a hint of the picture's tones and the
+//! lines. All lengths and the texture's cells are those of the full-size picture, so that tiles and
+//! proxies show the same sheet.
+//!
+//! Cost: twelve hashes and about 100 multiply-adds per pixel.
+
+use crate::kernels::blocks::{for_blocks, write4};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*, u32x8};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for blueprint_paper {
+        /// RGB and opacity of the lines.
+        pub line: [f32; 4],
+        /// RGB of the paper.
+        pub paper: [f32; 4],
+        /// Pixels between grid lines; 0 for none.
+        pub spacing: f32,
+        /// Rendered size over full size.
+        pub scale: f32,
+        /// 1 / scale.
+        pub inverse_scale: f32,
+        /// Strength of the paper's texture, 0..=1.
+        pub texture_amount: f32,
+        /// How much of the picture's tones shows, 0..=1.
+        pub fill: f32,
+        /// Nonzero: the sheet is opaque also where the picture is not.
+        pub cover: u32,
+        /// Not used.
+        pub reserved: [i32; 2],
+    }
+}
+
+crate::kernel!(blueprint_paper {
+    cpu: run,
+    cost: |_| 200.0,
+    tolerance: Tolerance {
+        absolute: 1e-4,
+        relative: 1e-5,
+        outliers: 1e-3,
+        reason: "cells and grid lines are placed by divisions exact to a few units in the last place",
+    },
+});
+
+/// What a sheet looks like; lengths in pixels of the picture that is rendered.
+#[derive(Clone, Copy, Debug)]
+pub struct Sheet {
+    /// RGB and opacity of the lines.
+    pub line: [f32; 4],
+    /// RGB of the paper; its alpha is not used.
+    pub paper: [f32; 4],
+    /// Pixels between grid lines, every fifth of them strong; 0 for none.
+    pub spacing: f32,
+    /// Rendered size over full size.
+    pub scale: f32,
+    /// Strength of the paper's texture, 0..=1.
+    pub texture: f32,
+    /// How much of the picture's tones shows, 0..=1.
+    pub fill: f32,
+    /// Opaque also where the picture is not.
+    pub cover: bool,
+}
+
+/// Draws `edges` (1 = paper, 0 = line) on a sheet shaded after (L alpha, alpha).
+pub fn draw(plan: &mut PlanBuilder, lightness: ImageId, edges: ImageId, sheet: &Sheet) -> ImageId {
+    let params = Params {
+        line: sheet.line,
+        paper: sheet.paper,
+        spacing: sheet.spacing,
+        scale: sheet.scale,
+        inverse_scale: 1.0 / sheet.scale,
+        texture_amount: sheet.texture,
+        fill: sheet.fill,
+        cover: sheet.cover.into(),
+        reserved: [0; 2],
+    };
+    plan.pass(&KERNEL, &[lightness, edges], &params, Class::Colour, Support::Pixels(0))
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    dispatch!(pass.level, simd => sheet(simd, pass, &params, band));
+}
+
+#[inline(always)]
+fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
+    let (lightness, edges) = (&pass.inputs[0], &pass.inputs[1]);
+    let one = f32x8::splat(simd, 1.0);
+    for_blocks::<4>(
+        band,
+        #[inline(always)]
+        |block, target| {
+            let columns: f32x8<S> = block.columns(simd).to_float();
+            let (x, y) = (columns + 0.5, f32x8::splat(simd, block.y as f32 + 0.5));
+            let (qx, qy) = (x * params.inverse_scale, y * params.inverse_scale);
+            let grain = noise(simd, qx * 0.4, qy * 0.4, 0) * 0.45
+                + noise(simd, qx * 0.13, qy * 0.13, 1013) * 0.3
+                + noise(simd, qx * 0.037, qy * 0.037, 2027) * 0.25;
+            let [l, alpha] = block.read2(simd, lightness);
+            let tone = (l / alpha.max(1e-6) * 0.01).max(0.0).min(1.0);
+            let fill = alpha.max(0.0).min(1.0) * params.fill;
+            let shade = ((grain - 0.5) * params.texture_amount + 1.0) * (one - fill * 0.5 * (one - tone));
+            let light = fill * 0.35 * tone;
+            let mut rule = one * 0.0;
+            if params.spacing > 0.0 {
+                let fine = ruled(x, y, params.spacing, params.scale) * 0.16;
+                let strong = ruled(x, y, 5.0 * params.spacing, 1.5 * params.scale) * 0.32;
+                rule = fine.max(strong) * params.line[3];
+            }
+            let ink = (one - block.read1(simd, edges).max(0.0).min(1.0)) * params.line[3];
+            let drawn = Drawn { shade, light, rule, ink };
+            let [r, g, b] = [drawn.over(params, 0), drawn.over(params, 1), drawn.over(params, 2)];
+            write4([r, g, b, if params.cover != 0 { one } else { alpha }], target);
+        },
+    );
+}
+
+/// What lies on the paper, by share.
+#[derive(Clone, Copy)]
+struct Drawn<S: Simd> {
+    shade: f32x8<S>,
+    light: f32x8<S>,
+    rule: f32x8<S>,
+    ink: f32x8<S>,
+}
+
+impl<S: Simd> Drawn<S> {
+    /// One channel of the sheet.
+    #[inline(always)]
+    fn over(&self, params: &Params, channel: usize) -> f32x8<S> {
+        let line = f32x8::splat(self.ink.simd, params.line[channel]);
+        let sheet = self.shade * params.paper[channel];
+        let sheet = sheet + self.light * (line - sheet);
+        let sheet = sheet + self.rule * (line - sheet);
+        sheet + self.ink * (line - sheet)
+    }
+}
+
+/// How much of the pixels at (x, y) is covered by lines `width` wide, `spacing` apart.
+#[inline(always)]
+fn ruled<S: Simd>(x: f32x8<S>, y: f32x8<S>, spacing: f32, width: f32) -> f32x8<S> {
+    ruled_along(x, spacing, width).max(ruled_along(y, spacing, width))
+}
+
+#[inline(always)]
+fn ruled_along<S: Simd>(x: f32x8<S>, spacing: f32, width: f32) -> f32x8<S> {
+    let offset = x - ((x / spacing).floor() + 0.5) * spacing;
+    let reach = f32x8::splat(x.simd, 0.5 + 0.5 * width);
+    (reach - offset.abs()).max(0.0).min(width.min(1.0))
+}
+
+/// Smooth noise in 0..=1 with cells of one unit.
+#[inline(always)]
+fn noise<S: Simd>(simd: S, x: f32x8<S>, y: f32x8<S>, seed: u32) -> f32x8<S> {
+    let (cx, cy) = (x.floor(), y.floor());
+    let (sx, sy) = (smooth(x - cx), smooth(y - cy));
+    let (ix, iy): (i32x8<S>, i32x8<S>) = (cx.to_int(), cy.to_int());
+    let ix = ix.bitcast::<u32x8<S>>() + u32x8::splat(simd, seed);
+    let iy = iy.bitcast::<u32x8<S>>();
+    let one = u32x8::splat(simd, 1);
+    let top = mix(hash(ix, iy), hash(ix + one, iy), sx);
+    let bottom = mix(hash(ix, iy + one), hash(ix + one, iy + one), sx);
+    mix(top, bottom, sy)
+}
+
+#[inline(always)]
+fn smooth<S: Simd>(f: f32x8<S>) -> f32x8<S> {
+    f * f * (f * -2.0 + 3.0)
+}
+
+#[inline(always)]
+fn mix<S: Simd>(a: f32x8<S>, b: f32x8<S>, t: f32x8<S>) -> f32x8<S> {
+    let rest = f32x8::splat(t.simd, 1.0) - t;
+    a * rest + b * t
+}
+
+/// A number in 0..1 that belongs to a cell.
+#[inline(always)]
+fn hash<S: Simd>(x: u32x8<S>, y: u32x8<S>) -> f32x8<S> {
+    let (a, b) = (u32x8::splat(x.simd, 0x9e37_79b1), u32x8::splat(x.simd, 0x85eb_ca77));
+    let (c, d) = (u32x8::splat(x.simd, 0x2c1b_3c6d), u32x8::splat(x.simd, 0x297a_2d39));
+    let h = (x * a) ^ (y * b);
+    let h = (h ^ (h >> 15)) * c;
+    let h = (h ^ (h >> 12)) * d;
+    let h = h ^ (h >> 15);
+    let kept: i32x8<S> = (h >> 8).bitcast();
+    kept.to_float::<f32x8<S>>() * 5.960_464_5e-8
+}

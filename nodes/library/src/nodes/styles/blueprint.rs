@@ -1,0 +1,98 @@
+//! A blueprint: light lines on tinted paper (§ 1.2, 4.5).
+
+use crate::kernels::colour::blueprint_paper::{Sheet, draw};
+use crate::kernels::colour::{lightness, rgb_to_lab};
+use crate::look::{self, ADVANCED, LOOK, Lines};
+use crate::nodes::lines::difference_of_gaussians as dog;
+use crate::nodes::lines::flow_dog::{self, FlowDog};
+use crate::nodes::styles::cartoon::{self, Abstraction};
+use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
+use isophote_engine::ImageId;
+
+/// The node.
+pub static NODE: NodeSpec = NodeSpec {
+    id: "blueprint",
+    label: "Blueprint",
+    group: "styles",
+    doc: "Light lines on blue paper with a grid: the flow-based difference of Gaussians of lightness and, \
+          where given, of the breaks of normals, depth and object ids.",
+    section: "1.2, 4.5",
+    inputs: &[
+        Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The picture." },
+        flow_dog::NORMAL,
+        flow_dog::DEPTH,
+        flow_dog::OBJECT_ID,
+    ],
+    output: Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The blueprint." },
+    own_params: &[
+        look::LINE_WIDTH,
+        look::LINE_AMOUNT,
+        look::SUPPRESS_SMALL,
+        Param::color("line_color", "Line colour", [0.92, 0.96, 1.0, 1.0])
+            .group(LOOK)
+            .doc("Colour of lines and grid; its alpha is their opacity."),
+        Param::color("paper_color", "Paper colour", [0.0706, 0.251, 0.4824, 1.0])
+            .group(LOOK)
+            .doc("Colour of the paper."),
+        Param::float("grid", "Grid", 32.0, [0.0, 4096.0])
+            .slider(0.0, 128.0)
+            .pixels()
+            .group(LOOK)
+            .doc("Spacing of the grid, every fifth line stronger; 0 for none."),
+        Param::float("paper_texture", "Paper texture", 0.3, [0.0, 1.0])
+            .group(LOOK)
+            .doc("Strength of the paper's texture."),
+        Param::float("fill", "Fill", 0.25, [0.0, 1.0])
+            .group(LOOK)
+            .doc("How much of the picture's tones shows on the paper."),
+        look::DETAIL,
+        Param::bool("cover", "Cover", false)
+            .group(LOOK)
+            .doc("Paper also where the picture is transparent; the result is then opaque."),
+        cartoon::N_E,
+        cartoon::SIGMA_D,
+        cartoon::SIGMA_R,
+        dog::SIGMA_E.group(ADVANCED),
+        dog::K.group(ADVANCED),
+        flow_dog::SIGMA_M.group(ADVANCED),
+        dog::TAU.group(ADVANCED),
+        dog::EPSILON.group(ADVANCED),
+        dog::PHI.group(ADVANCED),
+        cartoon::LINE_ITERATIONS,
+        cartoon::GUIDE_WEIGHT,
+    ],
+    build,
+};
+
+fn build(scope: &mut Scope<'_>) -> ImageId {
+    let color = scope.required("color");
+    let guide_weight = scope.float("guide_weight");
+    let guides = flow_dog::guides(scope, guide_weight);
+    let tensor = flow_dog::tensor(scope, color, &guides);
+    let abstraction = Abstraction::of(scope);
+    let n_e = scope.int("n_e");
+    let lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
+    let smooth = abstraction.apply(scope.plan, lab, tensor, n_e);
+    let lines = Lines::of(scope);
+    let flow = FlowDog {
+        sigma_e: lines.sigma_e,
+        k: scope.float("k"),
+        sigma_m: lines.sigma_m,
+        xdog: lines.xdog(),
+        iterations: scope.int("line_iterations"),
+        midpoint: true,
+        guide_weight,
+    };
+    let lightness = lightness::of_lab(scope.plan, smooth);
+    let edges = flow.edges(scope.plan, lightness, tensor, &guides);
+    let sheet = Sheet {
+        line: scope.color("line_color"),
+        paper: scope.color("paper_color"),
+        spacing: scope.float("grid"),
+        scale: scope.scale(),
+        texture: scope.float("paper_texture"),
+        fill: scope.float("fill"),
+        cover: scope.bool("cover"),
+    };
+    draw(scope.plan, lightness, edges, &sheet)
+}
