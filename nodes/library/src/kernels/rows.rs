@@ -66,8 +66,9 @@ impl Rows {
                 padded[..block.len()].copy_from_slice(block);
                 load4(simd, &padded)
             };
-            for (channel, values) in map(values).into_iter().enumerate() {
-                values.store_slice(&mut target[channel * self.len + 8 * i..][..8]);
+            let values = map(values);
+            for channel in 0..4 {
+                values[channel].store_slice(&mut target[channel * self.len + 8 * i..][..8]);
             }
         }
     }

@@ -158,11 +158,20 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     }
 }
 
+/// The two tables, flat.
+struct Weights {
+    smoothing: [f32; TAPS],
+    derivative: [f32; TAPS],
+}
+
 #[inline(always)]
 fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, band: &mut Band<'_>) {
     let window = band.window;
     let view = &pass.inputs[0];
     let r = radius as usize;
+    let flat = |table: &Table| std::array::from_fn(|i| table[i / 4][i % 4]);
+    let weights = Weights { smoothing: flat(&params.smoothing), derivative: flat(&params.derivative) };
+    let zero = f32x8::splat(simd, 0.0);
     let mut rows = Rows::default();
     // Column sums of one row: smoothed and derived, four channels each.
     let mut columns: Vec<f32> = Vec::new();
@@ -176,78 +185,79 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
         }
         for y in window.y0..window.y1 {
             rows.load4(simd, view, y + radius, premultiply);
-            for channel in 0..4 {
-                sum_columns(simd, &rows, params, r, y, channel, &mut columns);
+            for (channel, sums) in columns.chunks_exact_mut(2 * len).enumerate() {
+                sum_columns(simd, &rows, &weights, r, y, channel, sums);
             }
             let start = 4 * (x0 - window.x0) as usize;
             let target = &mut band.row_mut(0, y)[start..start + 4 * (x1 - x0) as usize];
+            let centres: [&[f32]; 4] = std::array::from_fn(|c| rows.row(y, c));
+            let sums: [[&[f32]; 2]; 4] = std::array::from_fn(|c| {
+                let (smoothed, derived) = columns[2 * c * len..][..2 * len].split_at(len);
+                [smoothed, derived]
+            });
             for (i, pixels) in target.chunks_mut(32).enumerate() {
                 let at = r + 8 * i;
-                let centre: [f32x8<S>; 4] =
-                    std::array::from_fn(|c| f32x8::from_slice(simd, &rows.row(y, c)[at..at + 8]));
-                let (gx, gy) = gradient(simd, params, r, &columns, len, at);
-                put_pixels4(outer(simd, params, centre, gx, gy), pixels);
+                // Loops, not closures given to arrays: those stay calls, and every operation in them one.
+                let (mut centre, mut gradients) = ([zero; 4], [[zero; 2]; 4]);
+                for c in 0..4 {
+                    centre[c] = f32x8::from_slice(simd, &centres[c][at..at + 8]);
+                    gradients[c] = gradient(simd, &weights, r, sums[c], at);
+                }
+                put_pixels4(outer(simd, params, centre, gradients), pixels);
             }
         }
     }
 }
 
-#[inline(always)]
-fn weights(params: &Params, i: usize) -> (f32, f32) {
-    (params.smoothing[i / 4][i % 4], params.derivative[i / 4][i % 4])
-}
-
+/// Smooths and derives along the columns: one channel of row `y`, first all smoothed, then all derived.
 #[inline(always)]
 fn sum_columns<S: Simd>(
     simd: S,
     rows: &Rows,
-    params: &Params,
+    weights: &Weights,
     radius: usize,
     y: i32,
     channel: usize,
-    columns: &mut [f32],
+    sums: &mut [f32],
 ) {
-    let len = rows.stride();
-    let (smoothed, derived) = columns[2 * channel * len..][..2 * len].split_at_mut(len);
-    let tap = |offset: i32, at: usize| f32x8::from_slice(simd, &rows.row(y + offset, channel)[at..at + 8]);
-    for at in (0..len).step_by(8) {
-        let mut s = tap(0, at) * weights(params, 0).0;
+    let (smoothed, derived) = sums.split_at_mut(rows.stride());
+    let mut taps: [&[f32]; 2 * TAPS] = [&[]; 2 * TAPS];
+    for (k, tap) in taps[..=2 * radius].iter_mut().enumerate() {
+        *tap = rows.row(y - radius as i32 + k as i32, channel);
+    }
+    let blocks = smoothed.chunks_exact_mut(8).zip(derived.chunks_exact_mut(8));
+    for (i, (smoothed, derived)) in blocks.enumerate() {
+        let tap = |k: usize| f32x8::from_slice(simd, &taps[k][8 * i..8 * i + 8]);
+        let mut s = tap(radius) * weights.smoothing[0];
         let mut d = f32x8::splat(simd, 0.0);
         for j in 1..=radius {
-            let (above, below) = (tap(-(j as i32), at), tap(j as i32, at));
-            let (smoothing, derivative) = weights(params, j);
-            s = (above + below).mul_add(f32x8::splat(simd, smoothing), s);
-            d = (below - above).mul_add(f32x8::splat(simd, derivative), d);
+            let (above, below) = (tap(radius - j), tap(radius + j));
+            s = (above + below).mul_add(f32x8::splat(simd, weights.smoothing[j]), s);
+            d = (below - above).mul_add(f32x8::splat(simd, weights.derivative[j]), d);
         }
-        s.store_slice(&mut smoothed[at..at + 8]);
-        d.store_slice(&mut derived[at..at + 8]);
+        s.store_slice(smoothed);
+        d.store_slice(derived);
     }
 }
 
+/// The gradient of one channel from its column sums.
 #[inline(always)]
 fn gradient<S: Simd>(
     simd: S,
-    params: &Params,
+    weights: &Weights,
     radius: usize,
-    columns: &[f32],
-    len: usize,
+    [smoothed, derived]: [&[f32]; 2],
     at: usize,
-) -> ([f32x8<S>; 4], [f32x8<S>; 4]) {
-    let (mut gx, mut gy) = ([f32x8::splat(simd, 0.0); 4], [f32x8::splat(simd, 0.0); 4]);
-    for c in 0..4 {
-        let (smoothed, derived) = columns[2 * c * len..][..2 * len].split_at(len);
-        let load = |row: &[f32], at: usize| f32x8::from_slice(simd, &row[at..at + 8]);
-        let (mut x, mut y) = (f32x8::splat(simd, 0.0), load(derived, at) * weights(params, 0).0);
-        for i in 1..=radius {
-            let (smoothing, derivative) = weights(params, i);
-            let difference = load(smoothed, at + i) - load(smoothed, at - i);
-            let sum = load(derived, at - i) + load(derived, at + i);
-            x = difference.mul_add(f32x8::splat(simd, derivative), x);
-            y = sum.mul_add(f32x8::splat(simd, smoothing), y);
-        }
-        (gx[c], gy[c]) = (x, y);
+) -> [f32x8<S>; 2] {
+    let load = |row: &[f32], at: usize| f32x8::from_slice(simd, &row[at..at + 8]);
+    let (mut x, mut y) = (f32x8::splat(simd, 0.0), load(derived, at) * weights.smoothing[0]);
+    for i in 1..=radius {
+        let difference = load(smoothed, at + i) - load(smoothed, at - i);
+        let sum = load(derived, at - i) + load(derived, at + i);
+        x = difference.mul_add(f32x8::splat(simd, weights.derivative[i]), x);
+        y = sum.mul_add(f32x8::splat(simd, weights.smoothing[i]), y);
     }
-    (gx, gy)
+    [x, y]
 }
 
 /// The tensor (2.34) and its validity.
@@ -256,19 +266,19 @@ fn outer<S: Simd>(
     simd: S,
     params: &Params,
     centre: [f32x8<S>; 4],
-    gx: [f32x8<S>; 4],
-    gy: [f32x8<S>; 4],
+    gradients: [[f32x8<S>; 2]; 4],
 ) -> [f32x8<S>; 4] {
     let splat = |v: f32| f32x8::splat(simd, v);
     let [.., alpha] = centre;
     // The quotient rule without its division: coverage squared times the gradient of the colour.
-    let quotient = |g: [f32x8<S>; 4], c: usize| (alpha * g[c] - centre[c] * g[3]) * params.scale;
-    let mut x: [f32x8<S>; 3] = std::array::from_fn(|c| quotient(gx, c));
-    let mut y: [f32x8<S>; 3] = std::array::from_fn(|c| quotient(gy, c));
+    let (mut x, mut y) = ([splat(0.0); 3], [splat(0.0); 3]);
+    for c in 0..3 {
+        x[c] = (alpha * gradients[c][0] - centre[c] * gradients[3][0]) * params.scale;
+        y[c] = (alpha * gradients[c][1] - centre[c] * gradients[3][1]) * params.scale;
+    }
     if params.flags & 1 != 0 {
-        let luma = |v: [f32x8<S>; 3]| v[0] * 0.2126 + v[1] * 0.7152 + v[2] * 0.0722;
-        x = [luma(x), splat(0.0), splat(0.0)];
-        y = [luma(y), splat(0.0), splat(0.0)];
+        x = [x[0] * 0.2126 + x[1] * 0.7152 + x[2] * 0.0722, splat(0.0), splat(0.0)];
+        y = [y[0] * 0.2126 + y[1] * 0.7152 + y[2] * 0.0722, splat(0.0), splat(0.0)];
     }
     let (mut e, mut f, mut g) = (splat(0.0), splat(0.0), splat(0.0));
     for c in 0..3 {

@@ -76,9 +76,13 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 #[inline(always)]
 fn clean_normal<S: Simd>(v: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
     let c = |x: f32| f32x8::splat(v[0].simd, x);
-    let good = v.map(|v| v.is_finite());
+    let good = [v[0].is_finite(), v[1].is_finite(), v[2].is_finite(), v[3].is_finite()];
     let valid = (good[0] & good[1] & good[2] & good[3]).select(v[3].max(c(0.0)).min(c(1.0)), c(0.0));
-    let [x, y, z] = std::array::from_fn(|i| good[i].select(v[i].max(c(-1.0)).min(c(1.0)), c(0.0)) * valid);
+    let mut normal = [c(0.0); 3];
+    for i in 0..3 {
+        normal[i] = good[i].select(v[i].max(c(-1.0)).min(c(1.0)), c(0.0)) * valid;
+    }
+    let [x, y, z] = normal;
     [x, y, z, valid]
 }
 
@@ -108,35 +112,28 @@ fn other<S: Simd>(v: f32x8<S>, centre: f32x8<S>) -> f32x8<S> {
 
 /// The optimized 3x3 operator (2.26, 2.27) on the eight neighbours, given by column and row offset.
 #[inline(always)]
-fn gradient<S: Simd>(simd: S, tap: impl Fn(i32, i32) -> f32x8<S>) -> [f32x8<S>; 2] {
+fn gradient<S: Simd>(simd: S, tap: impl Fn(usize, usize) -> f32x8<S>) -> [f32x8<S>; 2] {
     let c = |x: f32| f32x8::splat(simd, x);
-    let (nw, n, ne) = (tap(-1, -1), tap(0, -1), tap(1, -1));
-    let (w, e) = (tap(-1, 0), tap(1, 0));
-    let (sw, s, se) = (tap(-1, 1), tap(0, 1), tap(1, 1));
+    let (nw, n, ne) = (tap(0, 0), tap(1, 0), tap(2, 0));
+    let (w, e) = (tap(0, 1), tap(2, 1));
+    let (sw, s, se) = (tap(0, 2), tap(1, 2), tap(2, 2));
     let corner = c(0.091_484_375);
     let x = ((ne - nw) + (se - sw)) * corner + (e - w) * 0.317_031_25;
     let y = ((sw - nw) + (se - ne)) * corner + (s - n) * 0.317_031_25;
     [x, y]
 }
 
-/// Eight values of `row` at column offset `dx` from vector `i`.
-#[inline(always)]
-fn shifted<S: Simd>(simd: S, row: &[f32], i: usize, dx: i32) -> f32x8<S> {
-    let at = 8 * i + (1 + dx) as usize;
-    f32x8::from_slice(simd, &row[at..at + 8])
-}
-
 #[inline(always)]
 fn normals<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let load = |rows: &mut Rows, y: i32| rows.load4(simd, &pass.inputs[1], y, clean_normal);
-    over_blocks(simd, pass, params, band, 4, load, |rows, y, i| {
-        let channel = |c: usize| gradient(simd, |dx, dy| shifted(simd, rows.row(y + dy, c), i, dx));
-        let valid = channel(3);
-        let centre = |c: usize| shifted(simd, rows.row(y, c), i, 0);
-        let (mut sums, validity) = ([f32x8::splat(simd, 0.0); 3], centre(3));
+    over_blocks::<S, 4>(simd, pass, params, band, load, |rows, i| {
+        let tap = |c: usize, x: usize, y: usize| f32x8::from_slice(simd, &rows[c][y][8 * i + x..][..8]);
+        let channel = |c: usize| gradient(simd, |x, y| tap(c, x, y));
+        let (valid, validity) = (channel(3), tap(3, 1, 1));
+        let mut sums = [f32x8::splat(simd, 0.0); 3];
         for c in 0..3 {
-            let g = channel(c);
-            let [x, y] = std::array::from_fn(|k| validity * g[k] - centre(c) * valid[k]);
+            let ([gx, gy], centre) = (channel(c), tap(c, 1, 1));
+            let (x, y) = (validity * gx - centre * valid[0], validity * gy - centre * valid[1]);
             sums = [sums[0] + x * x, sums[1] + x * y, sums[2] + y * y];
         }
         sums
@@ -153,45 +150,51 @@ fn scalars<S: Simd>(
     difference: impl Fn(f32x8<S>, f32x8<S>) -> f32x8<S>,
 ) {
     let load = |rows: &mut Rows, y: i32| rows.load1(simd, &pass.inputs[1], y, &clean);
-    over_blocks(simd, pass, params, band, 1, load, |rows, y, i| {
-        let centre = shifted(simd, rows.row(y, 0), i, 0);
-        let tap = |dx: i32, dy: i32| difference(shifted(simd, rows.row(y + dy, 0), i, dx), centre);
-        let [x, y] = gradient(simd, tap);
+    over_blocks::<S, 1>(simd, pass, params, band, load, |rows, i| {
+        let tap = |x: usize, y: usize| f32x8::from_slice(simd, &rows[0][y][8 * i + x..][..8]);
+        let centre = tap(1, 1);
+        let [x, y] = gradient(simd, |x, y| difference(tap(x, y), centre));
         [x * x, x * y, y * y]
     });
 }
 
-/// Adds the guide's tensor, which `guide` gives for eight pixels, to the first input.
+/// Adds the guide's tensor to the first input. `guide` gives it for vector `i` of a row, from the rows
+/// above, at and below, channel by channel; they begin one pixel before the first vector.
 #[inline(always)]
-fn over_blocks<S: Simd>(
+fn over_blocks<S: Simd, const CHANNELS: usize>(
     simd: S,
     pass: &CpuPass<'_>,
     params: &Params,
     band: &mut Band<'_>,
-    channels: usize,
     load: impl Fn(&mut Rows, i32),
-    guide: impl Fn(&Rows, i32, usize) -> [f32x8<S>; 3],
+    guide: impl Fn(&[[&[f32]; 3]; CHANNELS], usize) -> [f32x8<S>; 3],
 ) {
     let window = band.window;
     let tensor = &pass.inputs[0];
     let mut rows = Rows::default();
     for (x0, x1) in strips(window.x0, window.x1) {
-        rows.start(x0, x1, 1, channels);
+        rows.start(x0, x1, 1, CHANNELS);
         load(&mut rows, window.y0 - 1);
         load(&mut rows, window.y0);
         for y in window.y0..window.y1 {
             load(&mut rows, y + 1);
+            let around: [[&[f32]; 3]; CHANNELS] =
+                std::array::from_fn(|c| [rows.row(y - 1, c), rows.row(y, c), rows.row(y + 1, c)]);
             let len = 4 * (x1 - x0) as usize;
             let at = tensor.offset(x0, y);
             let source = &tensor.data()[at..at + len];
             let start = 4 * (x0 - window.x0) as usize;
             let target = &mut band.row_mut(0, y)[start..start + len];
             for (i, (source, target)) in source.chunks(32).zip(target.chunks_mut(32)).enumerate() {
-                let mut block = [0.0; 32];
-                block[..source.len()].copy_from_slice(source);
-                let [e, f, g, _]: [f32x8<S>; 4] = load4(simd, &block);
-                let sums = guide(&rows, y, i);
-                let [e, f, g] = [e + sums[0] * params.weight, f + sums[1] * params.weight, g + sums[2] * params.weight];
+                let [e, f, g, _]: [f32x8<S>; 4] = if source.len() == 32 {
+                    load4(simd, source)
+                } else {
+                    let mut block = [0.0; 32];
+                    block[..source.len()].copy_from_slice(source);
+                    load4(simd, &block)
+                };
+                let [x, y, z] = guide(&around, i);
+                let (e, f, g) = (e + x * params.weight, f + y * params.weight, g + z * params.weight);
                 put_pixels4([e, f, g, validity(simd, params.threshold, e, f, g)], target);
             }
         }
