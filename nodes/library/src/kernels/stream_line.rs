@@ -111,12 +111,11 @@ pub fn centres<S: Simd>(simd: S, x: i32, y: i32, last: i32) -> [f32x8<S>; 2] {
 /// Angle of a cosine in 0..=1, error below 7e-5 (Abramowitz and Stegun 4.4.45).
 #[inline(always)]
 pub fn acos<S: Simd>(cosine: f32x8<S>) -> f32x8<S> {
-    let c = |v: f32| f32x8::splat(cosine.simd, v);
-    let x = cosine.min(c(1.0));
-    let p = c(-0.018_729_3).mul_add(x, c(0.074_261_0));
-    let p = p.mul_add(x, c(-0.212_114_4));
-    let p = p.mul_add(x, c(1.570_728_8));
-    (c(1.0) - x).sqrt() * p
+    let x = cosine.min(f32x8::splat(cosine.simd, 1.0));
+    let p = f32x8::splat(cosine.simd, -0.018_729_3).mul_add(x, f32x8::splat(cosine.simd, 0.074_261_0));
+    let p = p.mul_add(x, f32x8::splat(cosine.simd, -0.212_114_4));
+    let p = p.mul_add(x, f32x8::splat(cosine.simd, 1.570_728_8));
+    (f32x8::splat(cosine.simd, 1.0) - x).sqrt() * p
 }
 
 #[cfg(test)]

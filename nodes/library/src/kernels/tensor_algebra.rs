@@ -21,47 +21,47 @@ pub struct Eigen<S: Simd> {
 /// 2^-n for 2^n <= v < 2^(n+1), and 2^n.
 #[inline(always)]
 fn scales<S: Simd>(v: f32x8<S>) -> (f32x8<S>, f32x8<S>) {
-    let splat = |bits: u32| u32x8::splat(v.simd, bits);
-    let bits = v.bitcast::<u32x8<S>>() & splat(0x7f80_0000);
-    ((splat(0x7f00_0000) - bits).bitcast(), bits.bitcast())
+    let bits = v.bitcast::<u32x8<S>>() & u32x8::splat(v.simd, 0x7f80_0000);
+    ((u32x8::splat(v.simd, 0x7f00_0000) - bits).bitcast(), bits.bitcast())
 }
 
 /// sqrt(d^2 + f^2) (2.80) and the major eigenvector (2.82) of tensors with d = (E - G) / 2 and f = F.
 #[inline(always)]
 pub fn axis<S: Simd>(d: f32x8<S>, f: f32x8<S>) -> (f32x8<S>, [f32x8<S>; 2]) {
-    let c = |v: f32| f32x8::splat(d.simd, v);
     let size = d.abs().max(f.abs());
-    let zero = size.simd_lt(c(f32::MIN_POSITIVE));
+    let zero = size.simd_lt(f32x8::splat(d.simd, f32::MIN_POSITIVE));
     let (scale, unscale) = scales(size);
     let (ds, fs) = (d * scale, f * scale);
     let ff = fs * fs;
     let r = (ds * ds + ff).sqrt();
     // The sum of two positive numbers: nothing cancels, and it is at least 1.
     let n = ds.abs() + r;
-    let inverse = c(1.0) / (n * n + ff).sqrt();
-    let along = d.simd_ge(c(0.0));
+    let inverse = f32x8::splat(d.simd, 1.0) / (n * n + ff).sqrt();
+    let along = d.simd_ge(f32x8::splat(d.simd, 0.0));
     let x = along.select(n, fs) * inverse;
     let y = along.select(fs, n) * inverse;
-    (zero.select(c(0.0), r * unscale), [zero.select(c(1.0), x), zero.select(c(0.0), y)])
+    (
+        zero.select(f32x8::splat(d.simd, 0.0), r * unscale),
+        [zero.select(f32x8::splat(d.simd, 1.0), x), zero.select(f32x8::splat(d.simd, 0.0), y)],
+    )
 }
 
 /// Eigenvalues (2.80, 2.81) and major eigenvector; zero tensor: (1, 0). Values must be finite and
 /// below 2^127.
 #[inline(always)]
 pub fn eigen<S: Simd>(e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> Eigen<S> {
-    let c = |v: f32| f32x8::splat(e.simd, v);
     let size = e.max(g).max(f.abs());
-    let zero = size.simd_lt(c(f32::MIN_POSITIVE));
+    let zero = size.simd_lt(f32x8::splat(e.simd, f32::MIN_POSITIVE));
     let (scale, unscale) = scales(size);
     let (e, f, g) = (e * scale, f * scale, g * scale);
     let (radius, [x, y]) = axis((e - g) * 0.5, f);
     let lambda1 = (e + g) * 0.5 + radius;
     // Only tensors that are not semidefinite have lambda1 < 1/2 here; the bound keeps them finite.
-    let lambda2 = (e * g - f * f).max(c(0.0)) / lambda1.max(c(0.25));
+    let lambda2 = (e * g - f * f).max(f32x8::splat(e.simd, 0.0)) / lambda1.max(f32x8::splat(e.simd, 0.25));
     Eigen {
-        lambda1: zero.select(c(0.0), lambda1 * unscale),
-        lambda2: zero.select(c(0.0), lambda2 * unscale),
-        major: [zero.select(c(1.0), x), zero.select(c(0.0), y)],
+        lambda1: zero.select(f32x8::splat(e.simd, 0.0), lambda1 * unscale),
+        lambda2: zero.select(f32x8::splat(e.simd, 0.0), lambda2 * unscale),
+        major: [zero.select(f32x8::splat(e.simd, 1.0), x), zero.select(f32x8::splat(e.simd, 0.0), y)],
     }
 }
 
@@ -75,11 +75,10 @@ pub fn tangent<S: Simd>(e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> [f32x8<S>; 2] 
 /// (lambda1 - lambda2) / (lambda1 + lambda2), 0..=1 (2.137); zero tensor: 0.
 #[inline(always)]
 pub fn anisotropy<S: Simd>(e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> f32x8<S> {
-    let c = |v: f32| f32x8::splat(e.simd, v);
     let half_trace = (e + g) * 0.5;
-    let zero = half_trace.simd_lt(c(f32::MIN_POSITIVE));
+    let zero = half_trace.simd_lt(f32x8::splat(e.simd, f32::MIN_POSITIVE));
     let (radius, _) = axis((e - g) * 0.5, f);
-    zero.select(c(0.0), (radius / half_trace).min(c(1.0)))
+    zero.select(f32x8::splat(e.simd, 0.0), (radius / half_trace).min(f32x8::splat(e.simd, 1.0)))
 }
 
 /// One tensor at a time, by the same operations.

@@ -129,24 +129,23 @@ fn convolved<S: Simd>(
     field: &StreamField<'_>,
     [x, y]: [f32x8<S>; 2],
 ) -> [f32x8<S>; 4] {
-    let c = |v: f32| f32x8::splat(simd, v);
     let [e, f, g, _] = sample_linear4(simd, &field.tensors, x, y);
-    let mut sigma = c(params.sigma);
+    let mut sigma = f32x8::splat(simd, params.sigma);
     if params.adapt == Adapt::Anisotropy as u32 {
         let a = anisotropy(e, f, g) + 1.0;
         sigma *= a * a * 0.25;
     }
     let radius = (sigma * 2.0 + 1e-3).floor();
     let limit = radius + 1e-3;
-    let falloff = c(-0.721_347_52) / (sigma * sigma).max(c(1e-6));
-    let step = c(params.step);
+    let falloff = f32x8::splat(simd, -0.721_347_52) / (sigma * sigma).max(f32x8::splat(simd, 1e-6));
+    let step = f32x8::splat(simd, params.step);
 
     let [tx, ty] = tangent(e, f, g);
     let mut sum = sample_linear4(simd, source, x, y);
-    let mut norm = c(1.0);
+    let mut norm = f32x8::splat(simd, 1.0);
     for side in [-1.0, 1.0] {
         let mut line = Stream::begin(x, y, [tx * side, ty * side]);
-        let mut u = c(0.0);
+        let mut u = f32x8::splat(simd, 0.0);
         let mut active = (u + step).simd_le(limit);
         while active.any_true() {
             field.advance(simd, &mut line, active);
@@ -155,9 +154,9 @@ fn convolved<S: Simd>(
                 du = du.max(acos(line.turn) * radius / std::f32::consts::PI);
             }
             u += du;
-            active &= u.simd_le(limit) & line.turn.simd_ge(c(params.least_turn));
+            active &= u.simd_le(limit) & line.turn.simd_ge(f32x8::splat(simd, params.least_turn));
             active &= field.inside(simd, &line);
-            let weight = active.select((falloff * u * u).exp2(), c(0.0));
+            let weight = active.select((falloff * u * u).exp2(), f32x8::splat(simd, 0.0));
             let tap = sample_linear4(simd, source, line.x, line.y);
             for (sum, tap) in sum.iter_mut().zip(tap) {
                 *sum = weight.mul_add(tap, *sum);
@@ -167,7 +166,7 @@ fn convolved<S: Simd>(
         }
     }
     let [r, g, b, alpha] = sum;
-    let seen = alpha.simd_gt(c(1e-6));
-    let zero = c(0.0);
+    let seen = alpha.simd_gt(f32x8::splat(simd, 1e-6));
+    let zero = f32x8::splat(simd, 0.0);
     [seen.select(r / alpha, zero), seen.select(g / alpha, zero), seen.select(b / alpha, zero), alpha / norm]
 }

@@ -148,25 +148,24 @@ struct Lines<S: Simd> {
 impl Blocks<'_> {
     #[inline(always)]
     fn filtered<S: Simd>(&self, simd: S, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
-        let c = |v: f32| f32x8::splat(simd, v);
         let params = &self.params;
         let [e, f, g, _] = get_pixels4(simd, &self.tensors, x, y, last);
         let [tx, ty] = tangent(e, f, g);
         let stretch = if params.elongation > 0.0 {
             anisotropy(e, f, g) * params.elongation + 1.0
         } else {
-            c(1.0)
+            f32x8::splat(simd, 1.0)
         };
         let tangential = params.tangential != 0;
         let [tx, ty] = if tangential { [tx, ty] } else { [ty, -tx] };
-        let scale = if tangential { stretch } else { c(1.0) / stretch };
+        let scale = if tangential { stretch } else { f32x8::splat(simd, 1.0) / stretch };
 
         let along_x = tx.abs().simd_gt(ty.abs());
         let major = along_x.select(tx, ty);
         let slope = along_x.select(ty, tx) / major;
         let steps = ((scale * params.cutoff + 1e-3) * major.abs()).floor();
         let sigma_d = scale * params.sigma_d * major.abs();
-        let domain = c(-0.721_347_52) / (sigma_d * sigma_d).max(c(1e-6));
+        let domain = f32x8::splat(simd, -0.721_347_52) / (sigma_d * sigma_d).max(f32x8::splat(simd, 1e-6));
         let range = -0.721_347_52 / (params.sigma_r * params.sigma_r).max(1e-6);
 
         let origin = get_pixels4(simd, &self.origins, x, y, last);
@@ -180,20 +179,20 @@ impl Blocks<'_> {
         let inner = x >= reach && y >= reach && x + 7 + reach < w && y + reach < h;
         let mut k = 1.0;
         loop {
-            let active = steps.simd_ge(c(k));
+            let active = steps.simd_ge(f32x8::splat(simd, k));
             if !active.any_true() {
                 break;
             }
             let domain = domain * (k * k);
             // Lines that have ended stay within the support.
-            let reached = steps.min(c(k));
+            let reached = steps.min(f32x8::splat(simd, k));
             for side in [-reached, reached] {
                 let (at, f) = if inner { self.inner(lines, side) } else { self.clamped(lines, side) };
                 if params.manual != 0 {
                     let (a, b) = (self.pixels(simd, at[0]), self.pixels(simd, at[1]));
-                    for (tap, share) in [(a, c(1.0) - f), (b, f)] {
+                    for (tap, share) in [(a, f32x8::splat(simd, 1.0) - f), (b, f)] {
                         let weight = (distance2(&tap, &origin) * range + domain).exp2();
-                        let weight = active.select(weight * share * tap[3], c(0.0));
+                        let weight = active.select(weight * share * tap[3], f32x8::splat(simd, 0.0));
                         for (sum, tap) in sum.iter_mut().zip(tap).take(3) {
                             *sum = weight.mul_add(tap, *sum);
                         }
@@ -201,10 +200,10 @@ impl Blocks<'_> {
                     }
                 } else {
                     let [r, g, b, a] = self.between(simd, at, f);
-                    let seen = c(1.0) / a.max(c(1e-6));
+                    let seen = f32x8::splat(simd, 1.0) / a.max(f32x8::splat(simd, 1e-6));
                     let colour = [r * seen, g * seen, b * seen, a];
                     let weight = (distance2(&colour, &origin) * range + domain).exp2();
-                    let weight = active.select(weight, c(0.0));
+                    let weight = active.select(weight, f32x8::splat(simd, 0.0));
                     for (sum, tap) in sum.iter_mut().zip([r, g, b, a]) {
                         *sum = weight.mul_add(tap, *sum);
                     }
@@ -212,7 +211,7 @@ impl Blocks<'_> {
             }
             k += 1.0;
         }
-        let seen = sum[3].simd_gt(c(1e-6));
+        let seen = sum[3].simd_gt(f32x8::splat(simd, 1e-6));
         [
             seen.select(sum[0] / sum[3], origin[0]),
             seen.select(sum[1] / sum[3], origin[1]),
@@ -225,14 +224,13 @@ impl Blocks<'_> {
     #[inline(always)]
     fn inner<S: Simd>(&self, lines: Lines<S>, k: f32x8<S>) -> ([[i32; 8]; 2], f32x8<S>) {
         let simd = lines.slope.simd;
-        let c = |v: i32| i32x8::splat(simd, v);
         let o = lines.slope * k;
         let i = o.floor();
         let held = self.source.window();
         let stride = self.source.stride() as i32;
-        let start = (lines.y - c(held.y0)) * c(stride) + (lines.x - c(held.x0)) * c(4);
-        let major = lines.along_x.select(c(4), c(stride));
-        let minor = lines.along_x.select(c(stride), c(4));
+        let start = (lines.y - i32x8::splat(simd, held.y0)) * i32x8::splat(simd, stride) + (lines.x - i32x8::splat(simd, held.x0)) * i32x8::splat(simd, 4);
+        let major = lines.along_x.select(i32x8::splat(simd, 4), i32x8::splat(simd, stride));
+        let minor = lines.along_x.select(i32x8::splat(simd, stride), i32x8::splat(simd, 4));
         let at = start + major * k.to_int::<i32x8<S>>() + minor * i.to_int::<i32x8<S>>();
         ([at.to_array(), (at + minor).to_array()], o - i)
     }
@@ -241,16 +239,15 @@ impl Blocks<'_> {
     #[inline(always)]
     fn clamped<S: Simd>(&self, lines: Lines<S>, k: f32x8<S>) -> ([[i32; 8]; 2], f32x8<S>) {
         let simd = lines.slope.simd;
-        let c = |v: i32| i32x8::splat(simd, v);
         let o = lines.slope * k;
         let i = o.floor();
         let (k, i): (i32x8<S>, i32x8<S>) = (k.to_int(), i.to_int());
         let [w, h] = self.source.full();
         let (x, y) = (lines.along_x.select(k, i), lines.along_x.select(i, k));
-        let next = lines.along_x.select(c(0), c(1));
+        let next = lines.along_x.select(i32x8::splat(simd, 0), i32x8::splat(simd, 1));
         let (x, y) = (lines.x + x, lines.y + y);
         let a = self.offset(simd, x, y, [w, h]);
-        let b = self.offset(simd, x + next, y + (c(1) - next), [w, h]);
+        let b = self.offset(simd, x + next, y + (i32x8::splat(simd, 1) - next), [w, h]);
         ([a, b], o - o.floor())
     }
 
