@@ -35,5 +35,6 @@ nodes! {
         gaussian,
         line_integral_convolution,
         oriented_bilateral,
+        flow_bilateral,
     }
 }

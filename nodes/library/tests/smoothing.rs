@@ -6,7 +6,7 @@ use isophote::engine::{Image, Rect};
 use isophote::spec::ParamKind;
 use isophote::{Graph, Planned, Request, Value, registry};
 
-const NODES: &[&str] = &["line_integral_convolution", "oriented_bilateral"];
+const NODES: &[&str] = &["line_integral_convolution", "oriented_bilateral", "flow_bilateral"];
 
 /// Numbers in 0..1 that look random and never change.
 fn noise(i: usize) -> f32 {

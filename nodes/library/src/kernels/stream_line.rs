@@ -78,13 +78,19 @@ impl StreamField<'_> {
         line.begins = false;
     }
 
-    /// Lanes that lie inside the picture.
+    /// Lanes whose line lies inside the picture.
     #[inline(always)]
     pub fn inside<S: Simd>(&self, simd: S, line: &Stream<S>) -> mask32x8<S> {
+        self.holds(simd, line.x, line.y)
+    }
+
+    /// Lanes whose position lies inside the picture.
+    #[inline(always)]
+    pub fn holds<S: Simd>(&self, simd: S, x: f32x8<S>, y: f32x8<S>) -> mask32x8<S> {
         let [w, h] = self.tensors.full();
         let (w, h) = (f32x8::splat(simd, w as f32), f32x8::splat(simd, h as f32));
         let zero = f32x8::splat(simd, 0.0);
-        line.x.simd_ge(zero) & line.x.simd_lt(w) & line.y.simd_ge(zero) & line.y.simd_lt(h)
+        x.simd_ge(zero) & x.simd_lt(w) & y.simd_ge(zero) & y.simd_lt(h)
     }
 }
 

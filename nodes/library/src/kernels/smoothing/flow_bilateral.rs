@@ -1,0 +1,270 @@
+//! Second pass of the flow-based bilateral filter (3.10): a bilateral filter along the stream lines of
+//! a tensor field, sampled at equal distances or where lines cross the centres of rows or columns
+//! (Listings 3.2, 3.3). The first pass is that of `oriented_bilateral`.
+//!
+//! At such a crossing a bilinear sample lies between two pixels only and blurs less. Taps count by their
+//! coverage, and coverage itself passes. Manual sampling weights each pixel of the bilinear sample by
+//! its own range; at a crossing that is (3.9).
+//!
+//! Cost: 4 sigma steps per pixel, each one bilinear colour sample with one exponential (manual: four)
+//! and one (Euler) or two tensor samples with their tangents.
+
+use crate::kernels::coverage::Covered;
+use crate::kernels::smoothing::oriented_bilateral::Sampling;
+use crate::kernels::stream_line::{Stream, StreamField, centres};
+use crate::kernels::support::{get_pixels4, put_pixels4};
+use crate::kernels::tensor_algebra::tangent;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
+use isophote_engine::math::{Elementary, channels, load_pixel, sample_linear4};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for flow_bilateral {
+        /// Standard deviation along the line, pixels.
+        pub sigma_d: f32,
+        /// Standard deviation of the range, in the unit of the colour.
+        pub sigma_r: f32,
+        /// Length of a side of the line, whole pixels.
+        pub radius: f32,
+        /// 1: second-order Runge-Kutta; 0: Euler.
+        pub midpoint: u32,
+        /// 1: range weights before the interpolation (3.9); 0: after it.
+        pub manual: u32,
+        /// 1: samples where lines cross the centres of rows or columns; 0: at equal distances.
+        pub centres: u32,
+    }
+}
+
+crate::kernel!(flow_bilateral {
+    cpu: run,
+    cost: |params| {
+        let p: Params = bytemuck::pod_read_unaligned(params);
+        let field = if p.midpoint != 0 { 100.0 } else { 50.0 };
+        2.0 * f64::from(p.radius) * (field + if p.manual != 0 { 120.0 } else { 50.0 })
+    },
+    tolerance: Tolerance {
+        absolute: 5e-3,
+        relative: 1e-3,
+        outliers: 0.02,
+        reason: "stream lines add up roundings; where the field is undetermined, or a line leaves the \
+                 picture, the last bit decides where it goes",
+    },
+});
+
+/// What a pass is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Standard deviation along the line, pixels.
+    pub sigma_d: f32,
+    /// Standard deviation of the range, in the unit of the colour.
+    pub sigma_r: f32,
+    /// Second-order Runge-Kutta instead of Euler.
+    pub midpoint: bool,
+    /// Where range weights are applied.
+    pub sampling: Sampling,
+    /// Samples where lines cross the centres of rows or columns, instead of at equal distances.
+    pub centres: bool,
+}
+
+/// Filters a colour, usually CIELAB, along the stream lines of `tensors`.
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: &Options) -> ImageId {
+    let params = Params {
+        sigma_d: options.sigma_d,
+        sigma_r: options.sigma_r,
+        // Stream lines are cut early because they grow less accurate with length (§ 2.9.3).
+        radius: (2.0 * options.sigma_d + 1e-3).floor(),
+        midpoint: u32::from(options.midpoint),
+        manual: options.sampling as u32,
+        centres: u32::from(options.centres),
+    };
+    // No sample lies further away than the line is long, and a bilinear one reads a pixel more.
+    let support = Support::Pixels(reach(&params) as u32);
+    plan.pass(&KERNEL, &[color, tensors], &params, Class::Colour, support)
+}
+
+fn reach(params: &Params) -> i32 {
+    params.radius as i32 + 1
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    let covered = (params.manual == 0).then(|| Covered::new(&pass.inputs[0], band, reach(&params)));
+    let filter = Filter {
+        params,
+        origins: pass.inputs[0],
+        source: covered.as_ref().map_or(pass.inputs[0], |c| c.view(&pass.inputs[0])),
+        field: StreamField { tensors: pass.inputs[1], step: 1.0, midpoint: params.midpoint != 0 },
+    };
+    dispatch!(pass.level, simd => {
+        let window = band.window;
+        for y in window.y0..window.y1 {
+            for x in (window.x0..window.x1).step_by(8) {
+                let values = filter.block(simd, x, y, window.x1 - 1);
+                put_pixels4(values, &mut band.row_mut(0, y)[4 * (x - window.x0) as usize..]);
+            }
+        }
+    });
+}
+
+/// What all blocks of a band share.
+struct Filter<'a> {
+    params: Params,
+    origins: View<'a>,
+    /// Colours times coverage for linear sampling, as they are for manual.
+    source: View<'a>,
+    field: StreamField<'a>,
+}
+
+/// What all samples of eight lines share.
+#[derive(Clone, Copy)]
+struct Origin<S: Simd> {
+    colour: [f32x8<S>; 4],
+    /// Factor on the squared distance of colours.
+    range: f32,
+}
+
+impl Filter<'_> {
+    #[inline(always)]
+    fn block<S: Simd>(&self, simd: S, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
+        let params = &self.params;
+        let zero = f32x8::splat(simd, 0.0);
+        let [e, f, g, _] = get_pixels4(simd, &self.field.tensors, x, y, last);
+        let [tx, ty] = tangent(e, f, g);
+        let colour = get_pixels4(simd, &self.origins, x, y, last);
+        let range = -0.721_347_52 / (params.sigma_r * params.sigma_r).max(1e-6);
+        let domain = f32x8::splat(simd, -0.721_347_52 / (params.sigma_d * params.sigma_d).max(1e-6));
+        let origin = Origin { colour, range };
+        let at_crossings = params.centres != 0;
+
+        let [px, py] = centres(simd, x, y, last);
+        let alpha = colour[3];
+        let first = [colour[0] * alpha, colour[1] * alpha, colour[2] * alpha, alpha];
+        let mut sum = if at_crossings { [zero; 4] } else { first };
+        for side in [-1.0, 1.0] {
+            let mut line = Stream::begin(px, py, [tx * side, ty * side]);
+            let mut active = mask32x8::splat(simd, true);
+            let (mut before, mut before_u) = (first, zero);
+            let mut u = 1.0;
+            while u <= params.radius && active.any_true() {
+                self.field.advance(simd, &mut line, active);
+                let mut sampled = active;
+                let mut back = zero;
+                if at_crossings {
+                    back = distance_back(&line);
+                    sampled &= back.simd_lt(1.0);
+                    back = sampled.select(back, zero);
+                }
+                let sx = line.x - back * line.direction[0];
+                let sy = line.y - back * line.direction[1];
+                let inside = self.field.holds(simd, sx, sy);
+                active &= inside | !sampled;
+                sampled &= inside;
+                let at = f32x8::splat(simd, u) - back;
+                let value = self.weighted(simd, [sx, sy], &origin, domain * at * at);
+                if at_crossings {
+                    let width = sampled.select((at - before_u) * 0.5, zero);
+                    for i in 0..4 {
+                        sum[i] = width.mul_add(before[i] + value[i], sum[i]);
+                        before[i] = sampled.select(value[i], before[i]);
+                    }
+                    before_u = sampled.select(at, before_u);
+                } else {
+                    for i in 0..4 {
+                        sum[i] += sampled.select(value[i], zero);
+                    }
+                }
+                u += 1.0;
+            }
+        }
+        let seen = sum[3].simd_gt(f32x8::splat(simd, 1e-6));
+        [
+            seen.select(sum[0] / sum[3], colour[0]),
+            seen.select(sum[1] / sum[3], colour[1]),
+            seen.select(sum[2] / sum[3], colour[2]),
+            alpha,
+        ]
+    }
+
+    /// Samples times their domain and range weights and their coverage.
+    #[inline(always)]
+    fn weighted<S: Simd>(
+        &self,
+        simd: S,
+        [x, y]: [f32x8<S>; 2],
+        origin: &Origin<S>,
+        domain: f32x8<S>,
+    ) -> [f32x8<S>; 4] {
+        if self.params.manual == 0 {
+            let [r, g, b, a] = sample_linear4(simd, &self.source, x, y);
+            let seen = f32x8::splat(simd, 1.0) / a.max(f32x8::splat(simd, 1e-6));
+            let weight = weight([r * seen, g * seen, b * seen], origin, domain);
+            return [r * weight, g * weight, b * weight, a * weight];
+        }
+        let (x, y) = (x - 0.5, y - 0.5);
+        let (left, top) = (x.floor(), y.floor());
+        let (fx, fy) = (x - left, y - top);
+        let (left, top): (i32x8<S>, i32x8<S>) = (left.to_int(), top.to_int());
+        let mut sum = [f32x8::splat(simd, 0.0); 4];
+        for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            let share = if dx == 0 { f32x8::splat(simd, 1.0) - fx } else { fx };
+            let share = share * if dy == 0 { f32x8::splat(simd, 1.0) - fy } else { fy };
+            let [r, g, b, a] = self.pixels(simd, left + dx, top + dy);
+            let weight = weight([r, g, b], origin, domain) * share * a;
+            sum[0] = weight.mul_add(r, sum[0]);
+            sum[1] = weight.mul_add(g, sum[1]);
+            sum[2] = weight.mul_add(b, sum[2]);
+            sum[3] += weight;
+        }
+        sum
+    }
+
+    /// The pixels at eight positions, clamped to the picture.
+    #[inline(always)]
+    fn pixels<S: Simd>(&self, simd: S, x: i32x8<S>, y: i32x8<S>) -> [f32x8<S>; 4] {
+        let ([w, h], held) = (self.source.full(), self.source.window());
+        let zero = i32x8::splat(simd, 0);
+        let x = x.max(zero).min(i32x8::splat(simd, w - 1)) - held.x0;
+        let y = y.max(zero).min(i32x8::splat(simd, h - 1)) - held.y0;
+        let at = (y * self.source.stride() as i32 + x * 4).to_array();
+        let data = self.source.data();
+        channels([
+            load_pixel(simd, data, at[0]),
+            load_pixel(simd, data, at[1]),
+            load_pixel(simd, data, at[2]),
+            load_pixel(simd, data, at[3]),
+            load_pixel(simd, data, at[4]),
+            load_pixel(simd, data, at[5]),
+            load_pixel(simd, data, at[6]),
+            load_pixel(simd, data, at[7]),
+        ])
+    }
+}
+
+#[inline(always)]
+fn weight<S: Simd>(colour: [f32x8<S>; 3], origin: &Origin<S>, domain: f32x8<S>) -> f32x8<S> {
+    let d0 = colour[0] - origin.colour[0];
+    let d1 = colour[1] - origin.colour[1];
+    let d2 = colour[2] - origin.colour[2];
+    (d2.mul_add(d2, d1.mul_add(d1, d0 * d0)) * origin.range + domain).exp2()
+}
+
+/// How far back lines last crossed the centre of a row or column (3.11).
+#[inline(always)]
+fn distance_back<S: Simd>(line: &Stream<S>) -> f32x8<S> {
+    let (x, near_x) = back_along(line.x, line.direction[0]);
+    let (y, near_y) = back_along(line.y, line.direction[1]);
+    (near_x | near_y).select(f32x8::splat(x.simd, 0.0), x.min(y))
+}
+
+/// The same along one axis, and whether a crossing lies within rounding of the position.
+#[inline(always)]
+fn back_along<S: Simd>(p: f32x8<S>, t: f32x8<S>) -> (f32x8<S>, mask32x8<S>) {
+    let simd = p.simd;
+    let p = p + 0.5;
+    let f = p - p.floor();
+    let near = f.min(f32x8::splat(simd, 1.0) - f).simd_lt(f32x8::splat(simd, 1e-4));
+    let ahead = t.simd_lt(f32x8::splat(simd, 0.0)).select(f - 1.0, f);
+    let still = t.abs().simd_lt(f32x8::splat(simd, 1e-6));
+    (still.select(f32x8::splat(simd, 1e3), ahead / t), near)
+}
