@@ -7,6 +7,7 @@
 pub mod cases;
 pub mod compare;
 pub mod device;
+pub mod library;
 pub mod pictures;
 pub mod png;
 pub mod random;

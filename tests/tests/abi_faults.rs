@@ -1,0 +1,448 @@
+//! Every function of the C table, called wrongly: a status and a message, never a crash.
+
+#![allow(unsafe_code, reason = "calls through the C table")]
+
+use isophote_tests::library::{Loaded, contract::*, text};
+use std::ffi::{CStr, CString, c_char};
+use std::ptr::{null, null_mut};
+
+fn c(text: &str) -> CString {
+    CString::new(text).unwrap()
+}
+
+/// A graph of one node, by handle.
+fn single(api: &IsophoteApi, node: &str) -> IsophoteGraph {
+    let mut graph = 0;
+    // SAFETY: the pointers lead to what the table asks for.
+    let status = unsafe { (api.graph_create_single)(c(node).as_ptr(), null_mut(), &raw mut graph) };
+    assert_eq!(status, ISOPHOTE_OK);
+    graph
+}
+
+fn message(api: &IsophoteApi, graph: IsophoteGraph) -> String {
+    // SAFETY: the text is writable.
+    text(|t| unsafe { assert_eq!((api.graph_error)(graph, t), ISOPHOTE_OK) })
+}
+
+type Call = (&'static str, unsafe fn(&IsophoteApi, u64) -> IsophoteStatus);
+
+/// Functions that are not called on a graph, a plan or a device: everything null.
+const FREE: [Call; 8] = [
+    ("catalogue", |a, _| unsafe { (a.catalogue)(null_mut()) }),
+    ("find_node", |a, _| unsafe { (a.find_node)(null(), null_mut(), null_mut()) }),
+    ("graph_create", |a, _| unsafe { (a.graph_create)(null_mut(), null_mut()) }),
+    ("graph_create_single", |a, _| unsafe { (a.graph_create_single)(null(), null_mut(), null_mut()) }),
+    ("graph_create_from_json", |a, _| unsafe { (a.graph_create_from_json)(null(), null_mut(), null_mut()) }),
+    ("request_init", |a, _| unsafe { (a.request_init)(4, 4, null_mut()) }),
+    ("plan_create", |a, h| unsafe { (a.plan_create)(h, null(), null(), null_mut(), null_mut()) }),
+    ("device_create", |a, _| unsafe { (a.device_create)(null(), null_mut(), null_mut()) }),
+];
+
+/// Functions on a graph, every pointer null.
+const GRAPH: [Call; 22] = [
+    ("graph_error", |a, h| unsafe { (a.graph_error)(h, null_mut()) }),
+    ("graph_to_json", |a, h| unsafe { (a.graph_to_json)(h, null_mut()) }),
+    ("graph_add", |a, h| unsafe { (a.graph_add)(h, null(), null(), null_mut()) }),
+    ("graph_count", |a, h| unsafe { (a.graph_count)(h, null_mut()) }),
+    ("graph_find", |a, h| unsafe { (a.graph_find)(h, null(), null_mut()) }),
+    ("graph_name", |a, h| unsafe { (a.graph_name)(h, 0, null_mut()) }),
+    ("graph_spec", |a, h| unsafe { (a.graph_spec)(h, 0, null_mut()) }),
+    ("graph_set_float", |a, h| unsafe { (a.graph_set_float)(h, 0, null(), 1.0) }),
+    ("graph_set_int", |a, h| unsafe { (a.graph_set_int)(h, 0, null(), 1) }),
+    ("graph_set_bool", |a, h| unsafe { (a.graph_set_bool)(h, 0, null(), 1) }),
+    ("graph_set_choice", |a, h| unsafe { (a.graph_set_choice)(h, 0, null(), null()) }),
+    ("graph_set_color", |a, h| unsafe { (a.graph_set_color)(h, 0, null(), null()) }),
+    ("graph_set_text", |a, h| unsafe { (a.graph_set_text)(h, 0, null(), null()) }),
+    ("graph_get", |a, h| unsafe { (a.graph_get)(h, 0, null(), null_mut()) }),
+    ("graph_connect", |a, h| unsafe { (a.graph_connect)(h, 0, 0, null()) }),
+    ("graph_connect_input", |a, h| unsafe { (a.graph_connect_input)(h, null(), 0, null()) }),
+    ("graph_disconnect", |a, h| unsafe { (a.graph_disconnect)(h, 0, null()) }),
+    ("graph_output_kind", |a, h| unsafe { (a.graph_output_kind)(h, null_mut()) }),
+    ("graph_support", |a, h| unsafe { (a.graph_support)(h, null(), null(), null(), null_mut()) }),
+    ("process", |a, h| unsafe { (a.process)(h, 0, null(), null(), 0, null(), null(), null(), null_mut()) }),
+    // These two have no pointer to be null; they come last, since they succeed.
+    ("graph_set_output", |a, h| unsafe { (a.graph_set_output)(h, 0) }),
+    ("graph_destroy", |a, h| unsafe { (a.graph_destroy)(h) }),
+];
+
+/// Functions on a plan, every pointer null.
+const PLAN: [Call; 6] = [
+    ("plan_error", |a, h| unsafe { (a.plan_error)(h, null_mut()) }),
+    ("plan_update", |a, h| unsafe { (a.plan_update)(h, 0, null_mut()) }),
+    ("plan_textures", |a, h| unsafe { (a.plan_textures)(h, null_mut(), null_mut()) }),
+    ("plan_passes", |a, h| unsafe { (a.plan_passes)(h, null_mut(), null_mut()) }),
+    ("plan_shader", |a, h| unsafe { (a.plan_shader)(h, 0, 0, null_mut()) }),
+    ("plan_destroy", |a, h| unsafe { (a.plan_destroy)(h) }),
+];
+
+/// Functions on a device, every pointer null.
+const DEVICE: [Call; 3] = [
+    ("device_error", |a, h| unsafe { (a.device_error)(h, null_mut()) }),
+    ("device_name", |a, h| unsafe { (a.device_name)(h, null_mut(), null_mut()) }),
+    ("device_destroy", |a, h| unsafe { (a.device_destroy)(h) }),
+];
+
+#[test]
+fn every_function_is_in_these_lists() {
+    // Two functions cannot be called wrongly: status_name and trim.
+    let listed = FREE.len() + GRAPH.len() + PLAN.len() + DEVICE.len() + 2;
+    let header = std::mem::offset_of!(IsophoteApi, status_name);
+    assert_eq!((size_of::<IsophoteApi>() - header) / size_of::<fn()>(), listed);
+    let library = Loaded::new();
+    for status in [0, 5, 16, 17, u32::MAX] {
+        // SAFETY: the name is text with a closing zero.
+        let name = unsafe { CStr::from_ptr((library.api.status_name)(status)) };
+        assert!(!name.to_bytes().is_empty());
+        assert_eq!(name == c"unknown status", status > 16);
+    }
+    // SAFETY: it takes nothing.
+    assert_eq!(unsafe { (library.api.trim)() }, ISOPHOTE_OK);
+}
+
+#[test]
+fn stale_foreign_and_invented_handles_are_noticed() {
+    let library = Loaded::new();
+    let api = library.api;
+    let graph = single(api, "gaussian");
+    let stale = single(api, "gaussian");
+    let request = request(api, 8, 8);
+    let mut plan = 0;
+    // SAFETY: the pointers lead to what the table asks for.
+    unsafe {
+        assert_eq!((api.graph_destroy)(stale), ISOPHOTE_OK);
+        let status = (api.plan_create)(graph, &raw const request, null(), null_mut(), &raw mut plan);
+        assert_eq!(status, ISOPHOTE_OK);
+    }
+    let invented = [0, 1, 0xdead_beef, u64::MAX, stale, graph ^ (1 << 24), graph + 1000];
+    for (calls, foreign) in
+        [(&GRAPH[..], &[plan][..]), (&PLAN[..], &[graph][..]), (&DEVICE[..], &[graph, plan][..])]
+    {
+        for handle in invented.iter().chain(foreign) {
+            for (name, call) in calls {
+                // SAFETY: that a handle is wrong must not matter.
+                assert_eq!(unsafe { call(api, *handle) }, ISOPHOTE_INVALID_HANDLE, "{name}({handle:#x})");
+            }
+        }
+    }
+    // SAFETY: as before; here the place for the handle is there, and must become 0.
+    unsafe {
+        for handle in invented {
+            let mut made = 77;
+            let mut status = 0;
+            let said = text(|t| {
+                status = (api.plan_create)(handle, &raw const request, null(), t, &raw mut made);
+            });
+            assert_eq!((status, made), (ISOPHOTE_INVALID_HANDLE, 0));
+            assert!(said.contains("graph"), "{said}");
+            status = (api.plan_update)(plan, handle, &raw mut status);
+            assert_eq!(status, ISOPHOTE_INVALID_HANDLE);
+        }
+        assert_eq!((api.plan_destroy)(plan), ISOPHOTE_OK);
+        assert_eq!((api.plan_destroy)(plan), ISOPHOTE_INVALID_HANDLE);
+        assert_eq!((api.graph_destroy)(graph), ISOPHOTE_OK);
+    }
+}
+
+#[test]
+fn null_pointers_are_named() {
+    let library = Loaded::new();
+    let api = library.api;
+    for (name, call) in FREE {
+        // SAFETY: that everything is null must not matter.
+        assert_eq!(unsafe { call(api, single(api, "gaussian")) }, ISOPHOTE_INVALID_ARGUMENT, "{name}");
+    }
+    let graph = single(api, "gaussian");
+    for (name, call) in &GRAPH[..GRAPH.len() - 2] {
+        // SAFETY: as before.
+        assert_eq!(unsafe { call(api, graph) }, ISOPHOTE_INVALID_ARGUMENT, "{name}");
+        if *name != "graph_error" {
+            assert!(message(api, graph).ends_with(" is null"), "{name}: {}", message(api, graph));
+        }
+    }
+    let request = request(api, 8, 8);
+    let mut plan = 0;
+    // SAFETY: the pointers lead to what the table asks for.
+    unsafe {
+        (api.plan_create)(graph, &raw const request, null(), null_mut(), &raw mut plan);
+        for (name, call) in &PLAN[..PLAN.len() - 1] {
+            assert_eq!(call(api, plan), ISOPHOTE_INVALID_ARGUMENT, "{name}");
+        }
+        let mut shader = null();
+        assert_eq!((api.plan_shader)(plan, 99, 0, &raw mut shader), ISOPHOTE_UNKNOWN);
+        assert_eq!((api.plan_shader)(plan, 0, 99, &raw mut shader), ISOPHOTE_INVALID_ARGUMENT);
+        let said = text(|t| assert_eq!((api.plan_error)(plan, t), ISOPHOTE_OK));
+        assert_eq!(said, "99 is no shader language");
+        assert_eq!((api.plan_destroy)(plan), ISOPHOTE_OK);
+        assert_eq!((api.graph_destroy)(graph), ISOPHOTE_OK);
+    }
+}
+
+#[test]
+fn unknown_names_and_wrong_values_leave_the_graph_as_it_was() {
+    let library = Loaded::new();
+    let api = library.api;
+    let graph = single(api, "structure_tensor");
+    let json = |graph| {
+        // SAFETY: the text is writable.
+        text(|t| unsafe { assert_eq!((api.graph_to_json)(graph, t), ISOPHOTE_OK) })
+    };
+    let before = json(graph);
+    let check = |status: IsophoteStatus, expected: IsophoteStatus, part: &str| {
+        let said = message(api, graph);
+        assert_eq!(status, expected, "{said}");
+        assert!(said.contains(part), "'{said}' lacks '{part}'");
+    };
+    let (rho, derivative) = (c("rho"), c("derivative"));
+    let mut index = 0;
+    // SAFETY: the texts end with zeros, the places are writable.
+    unsafe {
+        for value in [f64::NAN, f64::INFINITY, -1.0, 1e300, -1e-300 - 1.0] {
+            check((api.graph_set_float)(graph, 0, rho.as_ptr(), value), ISOPHOTE_OUT_OF_RANGE, "'rho'");
+        }
+        let float = c("rhoo");
+        check((api.graph_set_float)(graph, 0, float.as_ptr(), 1.0), ISOPHOTE_UNKNOWN, "did you mean 'rho'?");
+        check((api.graph_set_float)(graph, 7, rho.as_ptr(), 1.0), ISOPHOTE_UNKNOWN, "no node 7");
+        check(
+            (api.graph_set_float)(graph, u32::MAX, rho.as_ptr(), 1.0),
+            ISOPHOTE_UNKNOWN,
+            "no node 4294967295",
+        );
+        check((api.graph_set_bool)(graph, 0, rho.as_ptr(), 1), ISOPHOTE_WRONG_TYPE, "graph_set_float");
+        check(
+            (api.graph_set_color)(graph, 0, rho.as_ptr(), [0.5_f32; 4].as_ptr()),
+            ISOPHOTE_WRONG_TYPE,
+            "is a number",
+        );
+        check(
+            (api.graph_set_float)(graph, 0, derivative.as_ptr(), 1.0),
+            ISOPHOTE_WRONG_TYPE,
+            "graph_set_choice",
+        );
+        check(
+            (api.graph_set_choice)(graph, 0, derivative.as_ptr(), c("sobal").as_ptr()),
+            ISOPHOTE_UNKNOWN,
+            "did you mean 'sobel'?",
+        );
+        check(
+            (api.graph_set_text)(graph, 0, rho.as_ptr(), c("wide").as_ptr()),
+            ISOPHOTE_OUT_OF_RANGE,
+            "not 'wide'",
+        );
+        check(
+            (api.graph_set_float)(graph, 0, c"\xff\xfe".as_ptr(), 1.0),
+            ISOPHOTE_INVALID_ARGUMENT,
+            "not UTF-8",
+        );
+        check((api.graph_connect)(graph, 0, 0, c("color").as_ptr()), ISOPHOTE_CONNECTION, "takes color");
+        check((api.graph_connect)(graph, 0, 0, c("colour").as_ptr()), ISOPHOTE_UNKNOWN, "'color'");
+        check(
+            (api.graph_connect_input)(graph, c("depth").as_ptr(), 0, c("color").as_ptr()),
+            ISOPHOTE_CONNECTION,
+            "not depth",
+        );
+        check(
+            (api.graph_connect_input)(graph, c("dept").as_ptr(), 0, c("depth").as_ptr()),
+            ISOPHOTE_UNKNOWN,
+            "object_id",
+        );
+        check(
+            (api.graph_add)(graph, c("structure_tensor").as_ptr(), c("gaussian").as_ptr(), &raw mut index),
+            ISOPHOTE_INVALID_ARGUMENT,
+            "two nodes",
+        );
+        check(
+            (api.graph_add)(graph, c("").as_ptr(), c("gaussian").as_ptr(), &raw mut index),
+            ISOPHOTE_INVALID_ARGUMENT,
+            "cannot name",
+        );
+        check(
+            (api.graph_add)(graph, c("new").as_ptr(), c("gausian").as_ptr(), &raw mut index),
+            ISOPHOTE_UNKNOWN,
+            "did you mean 'gaussian'?",
+        );
+        check((api.graph_set_output)(graph, 1), ISOPHOTE_UNKNOWN, "no node 1");
+        assert_eq!(json(graph), before);
+
+        // What is right still works, and can be read back.
+        assert_eq!((api.graph_set_float)(graph, 0, rho.as_ptr(), 0.1), ISOPHOTE_OK);
+        assert_eq!((api.graph_set_choice)(graph, 0, derivative.as_ptr(), c("sobel").as_ptr()), ISOPHOTE_OK);
+        let mut value = IsophoteValue { kind: 9, choice_index: 9, choice: null(), number: [9.0; 4] };
+        assert_eq!((api.graph_get)(graph, 0, rho.as_ptr(), &raw mut value), ISOPHOTE_OK);
+        assert_eq!((value.kind, value.number[0]), (ISOPHOTE_PARAM_FLOAT, 0.1));
+        assert_eq!((api.graph_get)(graph, 0, derivative.as_ptr(), &raw mut value), ISOPHOTE_OK);
+        assert_eq!((value.kind, value.choice_index), (ISOPHOTE_PARAM_CHOICE, 1));
+        assert_eq!(CStr::from_ptr(value.choice), c"sobel");
+        assert_ne!(json(graph), before);
+        (api.graph_destroy)(graph);
+    }
+}
+
+#[test]
+fn broken_graph_files_are_refused_with_a_reason() {
+    let api = Loaded::new();
+    let api = api.api;
+    let cases = [
+        ("", ISOPHOTE_MALFORMED, "not a graph file"),
+        ("{", ISOPHOTE_MALFORMED, "line 1"),
+        ("[]", ISOPHOTE_MALFORMED, "not a graph file"),
+        (r#"{"format":"x","version":1,"nodes":[],"output":"a"}"#, ISOPHOTE_MALFORMED, "'x'"),
+        (r#"{"format":"isophote-graph","version":1,"nodes":[],"output":"a"}"#, ISOPHOTE_UNKNOWN, "'a'"),
+        (
+            r#"{"format":"isophote-graph","version":1,"nodes":[{"name":"a","node":"blur"}],"output":"a"}"#,
+            ISOPHOTE_UNKNOWN,
+            "'blur'",
+        ),
+        (
+            r#"{"format":"isophote-graph","version":1,"nodes":[{"name":"a","node":"gaussian","params":{"sigma":-3}}],"output":"a"}"#,
+            ISOPHOTE_OUT_OF_RANGE,
+            "'sigma'",
+        ),
+        (
+            r#"{"format":"isophote-graph","version":1,"nodes":[{"name":"a","node":"gaussian","inputs":{"color":"a"}}],"output":"a"}"#,
+            ISOPHOTE_CONNECTION,
+            "cycle",
+        ),
+    ];
+    for (json, expected, part) in cases {
+        let (mut graph, mut status) = (77, 0);
+        // SAFETY: the text ends with a zero, the places are writable.
+        let said = text(|t| unsafe {
+            status = (api.graph_create_from_json)(c(json).as_ptr(), t, &raw mut graph);
+        });
+        assert_eq!((status, graph), (expected, 0), "{json}: {said}");
+        assert!(said.contains(part) && said.lines().count() == 1, "{json}: {said}");
+    }
+    // And a good one comes back as it went in.
+    let graph = single(api, "gaussian");
+    // SAFETY: as before.
+    unsafe {
+        (api.graph_set_float)(graph, 0, c("sigma").as_ptr(), 3.25);
+        let json = text(|t| assert_eq!((api.graph_to_json)(graph, t), ISOPHOTE_OK));
+        let mut again = 0;
+        let status = (api.graph_create_from_json)(c(&json).as_ptr(), null_mut(), &raw mut again);
+        assert_eq!(status, ISOPHOTE_OK);
+        assert_eq!(text(|t| assert_eq!((api.graph_to_json)(again, t), ISOPHOTE_OK)), json);
+        // Too small a buffer says how much is needed.
+        let mut bytes = [1 as c_char; 8];
+        let mut small = IsophoteText { data: bytes.as_mut_ptr(), capacity: 8, length: 0 };
+        assert_eq!((api.graph_to_json)(graph, &raw mut small), ISOPHOTE_TRUNCATED);
+        assert_eq!((small.length, bytes[7]), (json.len(), 0));
+        small = IsophoteText { data: null_mut(), capacity: 0, length: 0 };
+        assert_eq!((api.graph_to_json)(graph, &raw mut small), ISOPHOTE_OK);
+        assert_eq!(small.length, json.len());
+        small.capacity = 8;
+        assert_eq!((api.graph_to_json)(graph, &raw mut small), ISOPHOTE_INVALID_ARGUMENT);
+    }
+}
+
+fn request(api: &IsophoteApi, width: u32, height: u32) -> IsophoteRequest {
+    let mut request = IsophoteRequest { width: 0, height: 0, scale: 0.0, space: 9, alpha: 9, guides: 9 };
+    // SAFETY: the place is writable.
+    assert_eq!(unsafe { (api.request_init)(width, height, &raw mut request) }, ISOPHOTE_OK);
+    request
+}
+
+#[test]
+fn impossible_requests_are_refused() {
+    let library = Loaded::new();
+    let api = library.api;
+    let graph = single(api, "gaussian");
+    let good = request(api, 64, 48);
+    let make = |request: IsophoteRequest, region: Option<IsophoteRect>| {
+        let (mut plan, mut status) = (0, 0);
+        let region = region.as_ref().map_or(null(), |r| &raw const *r);
+        // SAFETY: the pointers lead to what the table asks for.
+        let said = text(|t| unsafe {
+            status = (api.plan_create)(graph, &raw const request, region, t, &raw mut plan);
+        });
+        // SAFETY: a handle of a plan, or 0.
+        unsafe { (api.plan_destroy)(plan) };
+        (status, said)
+    };
+    assert_eq!(make(good, None).0, ISOPHOTE_OK);
+    for (width, height) in [(0, 48), (64, 0), (0, 0), (65537, 1), (u32::MAX, u32::MAX), (1 << 31, 1 << 31)] {
+        let (status, said) = make(IsophoteRequest { width, height, ..good }, None);
+        assert_eq!(status, ISOPHOTE_GEOMETRY, "{width}x{height}: {said}");
+    }
+    for scale in [0.0, -1.0, f32::NAN, f32::INFINITY, 65.0] {
+        let (status, said) = make(IsophoteRequest { scale, ..good }, None);
+        assert_eq!(status, ISOPHOTE_OUT_OF_RANGE, "{scale}: {said}");
+    }
+    let bad = [
+        IsophoteRequest { space: 3, ..good },
+        IsophoteRequest { alpha: 2, ..good },
+        IsophoteRequest { guides: 8, ..good },
+    ];
+    for request in bad {
+        assert_eq!(make(request, None).0, ISOPHOTE_INVALID_ARGUMENT, "{request:?}");
+    }
+    let rect = |x0, y0, x1, y1| IsophoteRect { x0, y0, x1, y1 };
+    let (least, most) = (i32::MIN, i32::MAX);
+    for region in [
+        rect(0, 0, 0, 0),
+        rect(5, 5, 5, 9),
+        rect(9, 5, 5, 9),
+        rect(-1, 0, 4, 4),
+        rect(0, 0, 65, 48),
+        rect(0, 0, 64, 49),
+        rect(least, least, most, most),
+        rect(most, most, least, least),
+        rect(64, 48, 65, 49),
+    ] {
+        let (status, said) = make(good, Some(region));
+        assert_eq!(status, ISOPHOTE_GEOMETRY, "{region:?}");
+        assert!(said.contains("64x48"), "{said}");
+    }
+    assert_eq!(make(good, Some(rect(63, 47, 64, 48))).0, ISOPHOTE_OK);
+    // A graph that cannot be planned.
+    // SAFETY: the texts end with zeros.
+    unsafe { assert_eq!((api.graph_disconnect)(graph, 0, c("color").as_ptr()), ISOPHOTE_OK) };
+    let (status, said) = make(good, None);
+    assert_eq!(status, ISOPHOTE_CONNECTION);
+    assert!(said.contains("'color'") && said.contains("not connected"), "{said}");
+}
+
+#[test]
+fn a_failed_update_leaves_the_plan_as_it_was() {
+    let library = Loaded::new();
+    let api = library.api;
+    let graph = single(api, "gaussian");
+    let request = request(api, 64, 48);
+    let (mut plan, mut change) = (0, 9);
+    // SAFETY: the pointers lead to what the table asks for; plan data is read while it is valid.
+    unsafe {
+        (api.plan_create)(graph, &raw const request, null(), null_mut(), &raw mut plan);
+        let passes = || {
+            let (mut passes, mut count) = (null(), 0);
+            assert_eq!((api.plan_passes)(plan, &raw mut passes, &raw mut count), ISOPHOTE_OK);
+            std::slice::from_raw_parts(passes, count as usize)
+        };
+        let bytes = |passes: &[IsophotePass]| -> Vec<Vec<u8>> {
+            let of = |p: &IsophotePass| std::slice::from_raw_parts(p.params.cast(), p.params_size as usize);
+            passes.iter().map(|p| of(p).to_vec()).collect()
+        };
+        let shown = passes();
+        let before = bytes(shown);
+        let sigma = c("sigma");
+        assert_eq!((api.graph_set_float)(graph, 0, sigma.as_ptr(), 5.5), ISOPHOTE_OK);
+        assert_eq!((api.plan_update)(plan, graph, &raw mut change), ISOPHOTE_OK);
+        assert_eq!(change, ISOPHOTE_CHANGE_UNIFORMS);
+        assert_eq!(passes().as_ptr(), shown.as_ptr(), "a slider moved the passes");
+        let edited = bytes(shown);
+        assert_ne!(before, edited);
+
+        let other = single(api, "gaussian");
+        assert_eq!((api.graph_disconnect)(other, 0, c("color").as_ptr()), ISOPHOTE_OK);
+        assert_eq!((api.plan_update)(plan, other, &raw mut change), ISOPHOTE_CONNECTION);
+        assert_eq!(bytes(passes()), edited);
+
+        assert_eq!((api.graph_set_float)(graph, 0, c("mix").as_ptr(), 0.5), ISOPHOTE_OK);
+        assert_eq!((api.plan_update)(plan, graph, &raw mut change), ISOPHOTE_OK);
+        assert_eq!(change, ISOPHOTE_CHANGE_STRUCTURE);
+        assert_eq!(passes().len(), before.len() + 1);
+        // The plan does not need its graph.
+        assert_eq!((api.graph_destroy)(graph), ISOPHOTE_OK);
+        assert_eq!(bytes(passes()).len(), before.len() + 1);
+        (api.plan_destroy)(plan);
+    }
+}

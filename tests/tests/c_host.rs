@@ -1,0 +1,264 @@
+//! Hosts in C: compiled with the system's compiler, run on a picture, and run again under valgrind.
+
+use isophote_tests::library::{self, contract::*};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+use tempfile::TempDir;
+
+const WARNINGS: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-g"];
+
+/// Whether a tool that the tests need is there; where it must be, its absence fails.
+fn has(tool: &str) -> bool {
+    if Command::new(tool).arg("--version").output().is_ok_and(|o| o.status.success()) {
+        return true;
+    }
+    assert!(std::env::var("CI").is_err(), "{tool} is missing; install it");
+    eprintln!("\n*** SKIPPED: a test of the C header needs {tool} ***\n");
+    false
+}
+
+fn folder() -> &'static Path {
+    static FOLDER: OnceLock<TempDir> = OnceLock::new();
+    FOLDER.get_or_init(|| TempDir::new().expect("a folder for the test")).path()
+}
+
+/// Compiles one of the programs beside this file's folder, without a warning.
+fn compiled(source: &str) -> Option<PathBuf> {
+    let (compiler, standard) =
+        if source.ends_with(".cpp") { ("c++", "-std=c++17") } else { ("cc", "-std=c11") };
+    if !has(compiler) {
+        return None;
+    }
+    let program = folder().join(format!("{source}.{:?}", std::thread::current().id()));
+    let output = Command::new(compiler)
+        .arg(standard)
+        .args(WARNINGS)
+        .arg("-I")
+        .arg(library::root().join("include"))
+        .arg(library::root().join("tests/c").join(source))
+        .arg("-o")
+        .arg(&program)
+        .arg("-ldl")
+        .output()
+        .expect("the compiler can be started");
+    assert!(output.status.success(), "{source}:\n{}", String::from_utf8_lossy(&output.stderr));
+    Some(program)
+}
+
+/// What a run printed; its failure fails the test.
+fn printed(output: &Output, what: &str) -> String {
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{what}: {}\n{errors}", output.status);
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// The arguments as they are, or valgrind's in front of them.
+fn command(program: &Path, under_valgrind: bool) -> Command {
+    if !under_valgrind {
+        return Command::new(program);
+    }
+    let mut command = Command::new("valgrind");
+    command.args(["--quiet", "--error-exitcode=99", "--leak-check=full", "--errors-for-leak-kinds=definite"]);
+    command.arg(program);
+    command
+}
+
+/// A PPM of a slanted edge, a disc and grain.
+fn picture(width: u32, height: u32) -> Vec<u8> {
+    let mut ppm = format!("P6\n{width} {height}\n255\n").into_bytes();
+    for y in 0..height {
+        for x in 0..width {
+            let (dx, dy) = (x as f32 - width as f32 * 0.6, y as f32 - height as f32 * 0.5);
+            let disc = dx * dx + dy * dy < (height * height) as f32 * 0.08;
+            let light = if x + y < width / 2 { 40 } else { 150 };
+            let grain = (x * 7919 + y * 104_729) % 31;
+            ppm.extend([light + grain, if disc { 220 } else { light }, 255 - light].map(|v| v as u8));
+        }
+    }
+    ppm
+}
+
+fn pixels(ppm: &[u8], width: u32, height: u32) -> &[u8] {
+    let start = format!("P6\n{width} {height}\n255\n");
+    let pixels = ppm.strip_prefix(start.as_bytes()).expect("a PPM of the same size");
+    assert_eq!(pixels.len() as u32, width * height * 3);
+    pixels
+}
+
+fn stylize(under_valgrind: bool, width: u32, height: u32) {
+    let Some(program) = compiled("stylize.c") else { return };
+    let tag = format!("{under_valgrind}{width}");
+    let (input, output) = (folder().join(format!("in{tag}.ppm")), folder().join(format!("out{tag}.ppm")));
+    let before = picture(width, height);
+    std::fs::write(&input, &before).expect("the folder is writable");
+    let run = command(&program, under_valgrind)
+        .arg(library::path())
+        .args([&input, &output])
+        .args(STYLE)
+        .output()
+        .expect("the program can be started");
+    let text = printed(&run, "stylize");
+    for node in isophote::registry::nodes() {
+        let line = format!("\n{} ({}):", node.id, node.group);
+        let listed = text.split(&line).nth(1).and_then(|rest| rest.lines().next());
+        let listed: Vec<&str> = listed.unwrap_or_default().split_whitespace().collect();
+        assert_eq!(listed, node.params().map(|p| p.id).collect::<Vec<_>>(), "{} in\n{text}", node.id);
+    }
+    assert!(text.contains(&format!("{width}x{height} pixels, 100 % done, 0 samples mended")), "{text}");
+    let after = std::fs::read(&output).expect("the program wrote a picture");
+    let (before, after) = (pixels(&before, width, height), pixels(&after, width, height));
+    let changed = before.iter().zip(after).filter(|(a, b)| a.abs_diff(**b) > 2).count();
+    assert!(changed * 5 > before.len(), "the picture was hardly touched: {changed} of {}", before.len());
+    assert!(after.iter().any(|v| *v != after[0]), "the picture is blank");
+    // What C computed is what the Rust crate computes.
+    let expected = reference(before, width, height);
+    let worst = expected.iter().zip(after).map(|(a, b)| a.abs_diff(*b)).max();
+    assert_eq!(worst, Some(0));
+}
+
+/// What the programs stylize with: a node and a setting.
+const STYLE: [&str; 2] = ["gaussian", "sigma=2.5"];
+
+/// The same graph, through the Rust crate.
+fn reference(rgb: &[u8], width: u32, height: u32) -> Vec<u8> {
+    use isophote::engine::cpu::{CallingThread, Control, CpuExecutor};
+    use isophote::engine::pixels::{Sample, read_row, write_row};
+    use isophote::engine::{Image, Rect};
+    let mut graph = isophote::Graph::single(STYLE[0]).expect("the node exists");
+    let node = graph.node(0).expect("it was added");
+    let (param, value) = STYLE[1].split_once('=').expect("a setting");
+    graph.set_text(node, param, value).expect("the setting fits");
+    let planned = isophote::Planned::new(&graph, isophote::Request::new(width, height)).expect("a plan");
+    let mut image = Image::new(width, height, 4).expect("an image");
+    read_row(rgb, Sample::U8, 3, image.data_mut(), 4);
+    let region = Rect::of_size(width, height);
+    let result = CpuExecutor::new()
+        .run(planned.plan(), &[("color", &image)], region, &CallingThread, Control::default())
+        .expect("it runs")
+        .remove(0);
+    let mut out = vec![0; rgb.len()];
+    write_row(result.data(), 4, &mut out, Sample::U8, 3);
+    out
+}
+
+#[test]
+fn a_c_program_stylizes_a_picture() {
+    stylize(false, 317, 211);
+}
+
+#[test]
+fn a_c_program_stylizes_a_picture_under_valgrind() {
+    if has("valgrind") {
+        stylize(true, 61, 37);
+    }
+}
+
+fn plan(under_valgrind: bool) {
+    let Some(program) = compiled("plan.c") else { return };
+    let run = command(&program, under_valgrind)
+        .arg(library::path())
+        .args(["320", "200"])
+        .args(STYLE)
+        .output()
+        .expect("the program can be started");
+    let text = printed(&run, "plan");
+    assert!(text.contains("input color, 320x200 rgba32float"), "{text}");
+    assert!(text.contains("output output, 320x200 rgba32float"), "{text}");
+    for pass in ["colour_import", "gaussian_blur", "colour_export"] {
+        let line = text.lines().find(|l| l.contains(&format!(": {pass}, ")));
+        let line = line.unwrap_or_else(|| panic!("{pass} is missing in\n{text}"));
+        assert!(line.contains("uniforms of 128 and") && line.contains("40x25x1 workgroups"), "{line}");
+    }
+    let passes = text.lines().filter(|l| l.starts_with("pass ")).count();
+    for language in ["WGSL", "SPIR-V", "HLSL", "MSL", "GLSL"] {
+        let shaders = text.lines().filter(|l| l.starts_with(&format!("  {language}, "))).count();
+        assert_eq!(shaders, passes, "{language} in\n{text}");
+    }
+    assert_eq!(text.matches("    magic 07230203").count(), passes, "{text}");
+    assert_eq!(text.matches("    #version 430 core").count(), passes, "{text}");
+    assert_eq!(text.matches("    // language: metal2.0").count(), passes, "{text}");
+}
+
+#[test]
+fn a_c_program_prints_the_plan_as_data() {
+    plan(false);
+}
+
+#[test]
+fn a_c_program_prints_the_plan_as_data_under_valgrind() {
+    if has("valgrind") {
+        plan(true);
+    }
+}
+
+#[test]
+fn the_header_is_cpp_too() {
+    let Some(program) = compiled("header_cpp.cpp") else { return };
+    printed(&Command::new(program).output().expect("the program can be started"), "header_cpp");
+}
+
+#[test]
+fn the_header_has_the_layout_of_the_declarations() {
+    macro_rules! sizes {
+        ($($name:ident)*) => { [$((stringify!($name), size_of::<$name>())),*] };
+    }
+    let sizes = sizes! {
+        IsophoteText IsophoteRect IsophoteChoice IsophotePort IsophoteParam IsophoteNode IsophoteCatalogue
+        IsophoteValue IsophoteRequest IsophoteImage IsophoteTarget IsophoteInput IsophoteSupport
+        IsophoteControl IsophoteReport IsophoteTexture IsophotePass IsophoteBinding IsophoteShader IsophoteApi
+    };
+    let Some(program) = compiled("layout.c") else { return };
+    let text = printed(&Command::new(program).output().expect("the program can be started"), "layout");
+    let mut expected: String = sizes.iter().map(|(name, size)| format!("{name} {size}\n")).collect();
+    expected += &format!("device_name {}\n", std::mem::offset_of!(IsophoteApi, device_name));
+    assert_eq!(text, expected);
+}
+
+#[test]
+fn bad_arguments_of_the_c_program_are_one_line_each() {
+    let Some(program) = compiled("stylize.c") else { return };
+    let input = folder().join("bad.ppm");
+    std::fs::write(&input, picture(8, 8)).expect("the folder is writable");
+    let cases: [(&[&str], &str); 4] = [
+        (&["gausian"], "gausian: unknown name: there is no node 'gausian'; did you mean 'gaussian'?"),
+        (&["gaussian", "sigma=-1"], "sigma: out of range: parameter 'sigma' of 'gaussian' must be"),
+        (&["gaussian", "sigma=wide"], "sigma: out of range: parameter 'sigma' of 'gaussian' is a number"),
+        (&["gaussian", "sgima=2"], "sgima: unknown name: node 'gaussian' has no parameter 'sgima'"),
+    ];
+    for (args, message) in cases {
+        let run = Command::new(&program)
+            .arg(library::path())
+            .arg(&input)
+            .arg(folder().join("never.ppm"))
+            .args(args)
+            .output()
+            .expect("the program can be started");
+        let errors = String::from_utf8_lossy(&run.stderr);
+        assert!(run.status.code() == Some(1) && errors.starts_with(message), "{args:?}: {errors}");
+        assert_eq!(errors.lines().count(), 1, "{errors}");
+        assert!(!folder().join("never.ppm").exists());
+    }
+}
+
+#[test]
+fn the_library_exports_one_symbol() {
+    if !cfg!(target_os = "linux") || !has("nm") {
+        return;
+    }
+    let run = Command::new("nm").args(["-D", "--defined-only"]).arg(library::path()).output();
+    let text = printed(&run.expect("nm can be started"), "nm");
+    let names: Vec<&str> = text.lines().filter_map(|l| l.split_whitespace().last()).collect();
+    assert!(names.contains(&"isophote_api"), "{text}");
+    assert!(names.iter().all(|n| n.starts_with("isophote_")), "{text}");
+}
+
+#[test]
+fn the_committed_header_is_the_generated_one() {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let run = Command::new(cargo)
+        .args(["run", "--quiet", "--package", "xtask", "--", "header", "--check"])
+        .current_dir(library::root())
+        .output();
+    printed(&run.expect("cargo can be started"), "cargo xtask header --check");
+}
