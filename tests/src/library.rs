@@ -54,6 +54,11 @@ pub struct Loaded {
     _library: libloading::Library,
 }
 
+// SAFETY: the table is constant, and its functions say themselves which threads may call them.
+unsafe impl Send for Loaded {}
+// SAFETY: as above.
+unsafe impl Sync for Loaded {}
+
 impl Loaded {
     /// Loads the library.
     ///

@@ -59,7 +59,10 @@ fn command(program: &Path, under_valgrind: bool) -> Command {
         return Command::new(program);
     }
     let mut command = Command::new("valgrind");
-    command.args(["--quiet", "--error-exitcode=99", "--leak-check=full", "--errors-for-leak-kinds=definite"]);
+    command.args(["--quiet", "--error-exitcode=99", "--leak-check=full"]);
+    command.args(["--show-leak-kinds=definite", "--errors-for-leak-kinds=definite"]);
+    let known = library::root().join("tests/c/valgrind.supp");
+    command.arg(format!("--suppressions={}", known.display()));
     command.arg(program);
     command
 }
