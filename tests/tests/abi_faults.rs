@@ -24,63 +24,73 @@ fn message(api: &IsophoteApi, graph: IsophoteGraph) -> String {
     text(|t| unsafe { assert_eq!((api.graph_error)(graph, t), ISOPHOTE_OK) })
 }
 
-type Call = (&'static str, unsafe fn(&IsophoteApi, u64) -> IsophoteStatus);
+type Call = (&'static str, fn(&IsophoteApi, u64) -> IsophoteStatus);
+
+/// Calls of functions of the table on a handle.
+macro_rules! calls {
+    ($handle:ident: $($name:ident($($argument:expr),*))*) => {
+        [$((stringify!($name), |api, $handle| {
+            let _ = $handle;
+            // SAFETY: that handles are wrong and pointers null is what must not matter.
+            unsafe { (api.$name)($($argument),*) }
+        })),*]
+    };
+}
 
 /// Functions that are not called on a graph, a plan or a device: everything null.
-const FREE: [Call; 8] = [
-    ("catalogue", |a, _| unsafe { (a.catalogue)(null_mut()) }),
-    ("find_node", |a, _| unsafe { (a.find_node)(null(), null_mut(), null_mut()) }),
-    ("graph_create", |a, _| unsafe { (a.graph_create)(null_mut(), null_mut()) }),
-    ("graph_create_single", |a, _| unsafe { (a.graph_create_single)(null(), null_mut(), null_mut()) }),
-    ("graph_create_from_json", |a, _| unsafe { (a.graph_create_from_json)(null(), null_mut(), null_mut()) }),
-    ("request_init", |a, _| unsafe { (a.request_init)(4, 4, null_mut()) }),
-    ("plan_create", |a, h| unsafe { (a.plan_create)(h, null(), null(), null_mut(), null_mut()) }),
-    ("device_create", |a, _| unsafe { (a.device_create)(null(), null_mut(), null_mut()) }),
-];
+const FREE: [Call; 8] = calls! { h:
+    catalogue(null_mut())
+    find_node(null(), null_mut(), null_mut())
+    graph_create(null_mut(), null_mut())
+    graph_create_single(null(), null_mut(), null_mut())
+    graph_create_from_json(null(), null_mut(), null_mut())
+    request_init(4, 4, null_mut())
+    plan_create(h, null(), null(), null_mut(), null_mut())
+    device_create(null(), null_mut(), null_mut())
+};
 
-/// Functions on a graph, every pointer null.
-const GRAPH: [Call; 22] = [
-    ("graph_error", |a, h| unsafe { (a.graph_error)(h, null_mut()) }),
-    ("graph_to_json", |a, h| unsafe { (a.graph_to_json)(h, null_mut()) }),
-    ("graph_add", |a, h| unsafe { (a.graph_add)(h, null(), null(), null_mut()) }),
-    ("graph_count", |a, h| unsafe { (a.graph_count)(h, null_mut()) }),
-    ("graph_find", |a, h| unsafe { (a.graph_find)(h, null(), null_mut()) }),
-    ("graph_name", |a, h| unsafe { (a.graph_name)(h, 0, null_mut()) }),
-    ("graph_spec", |a, h| unsafe { (a.graph_spec)(h, 0, null_mut()) }),
-    ("graph_set_float", |a, h| unsafe { (a.graph_set_float)(h, 0, null(), 1.0) }),
-    ("graph_set_int", |a, h| unsafe { (a.graph_set_int)(h, 0, null(), 1) }),
-    ("graph_set_bool", |a, h| unsafe { (a.graph_set_bool)(h, 0, null(), 1) }),
-    ("graph_set_choice", |a, h| unsafe { (a.graph_set_choice)(h, 0, null(), null()) }),
-    ("graph_set_color", |a, h| unsafe { (a.graph_set_color)(h, 0, null(), null()) }),
-    ("graph_set_text", |a, h| unsafe { (a.graph_set_text)(h, 0, null(), null()) }),
-    ("graph_get", |a, h| unsafe { (a.graph_get)(h, 0, null(), null_mut()) }),
-    ("graph_connect", |a, h| unsafe { (a.graph_connect)(h, 0, 0, null()) }),
-    ("graph_connect_input", |a, h| unsafe { (a.graph_connect_input)(h, null(), 0, null()) }),
-    ("graph_disconnect", |a, h| unsafe { (a.graph_disconnect)(h, 0, null()) }),
-    ("graph_output_kind", |a, h| unsafe { (a.graph_output_kind)(h, null_mut()) }),
-    ("graph_support", |a, h| unsafe { (a.graph_support)(h, null(), null(), null(), null_mut()) }),
-    ("process", |a, h| unsafe { (a.process)(h, 0, null(), null(), 0, null(), null(), null(), null_mut()) }),
-    // These two have no pointer to be null; they come last, since they succeed.
-    ("graph_set_output", |a, h| unsafe { (a.graph_set_output)(h, 0) }),
-    ("graph_destroy", |a, h| unsafe { (a.graph_destroy)(h) }),
-];
+/// Functions on a graph, every pointer null. The last two have no pointer, and succeed.
+const GRAPH: [Call; 22] = calls! { h:
+    graph_error(h, null_mut())
+    graph_to_json(h, null_mut())
+    graph_add(h, null(), null(), null_mut())
+    graph_count(h, null_mut())
+    graph_find(h, null(), null_mut())
+    graph_name(h, 0, null_mut())
+    graph_spec(h, 0, null_mut())
+    graph_set_float(h, 0, null(), 1.0)
+    graph_set_int(h, 0, null(), 1)
+    graph_set_bool(h, 0, null(), 1)
+    graph_set_choice(h, 0, null(), null())
+    graph_set_color(h, 0, null(), null())
+    graph_set_text(h, 0, null(), null())
+    graph_get(h, 0, null(), null_mut())
+    graph_connect(h, 0, 0, null())
+    graph_connect_input(h, null(), 0, null())
+    graph_disconnect(h, 0, null())
+    graph_output_kind(h, null_mut())
+    graph_support(h, null(), null(), null(), null_mut())
+    process(h, 0, null(), null(), 0, null(), null(), null(), null_mut())
+    graph_set_output(h, 0)
+    graph_destroy(h)
+};
 
 /// Functions on a plan, every pointer null.
-const PLAN: [Call; 6] = [
-    ("plan_error", |a, h| unsafe { (a.plan_error)(h, null_mut()) }),
-    ("plan_update", |a, h| unsafe { (a.plan_update)(h, 0, null_mut()) }),
-    ("plan_textures", |a, h| unsafe { (a.plan_textures)(h, null_mut(), null_mut()) }),
-    ("plan_passes", |a, h| unsafe { (a.plan_passes)(h, null_mut(), null_mut()) }),
-    ("plan_shader", |a, h| unsafe { (a.plan_shader)(h, 0, 0, null_mut()) }),
-    ("plan_destroy", |a, h| unsafe { (a.plan_destroy)(h) }),
-];
+const PLAN: [Call; 6] = calls! { h:
+    plan_error(h, null_mut())
+    plan_update(h, 0, null_mut())
+    plan_textures(h, null_mut(), null_mut())
+    plan_passes(h, null_mut(), null_mut())
+    plan_shader(h, 0, 0, null_mut())
+    plan_destroy(h)
+};
 
 /// Functions on a device, every pointer null.
-const DEVICE: [Call; 3] = [
-    ("device_error", |a, h| unsafe { (a.device_error)(h, null_mut()) }),
-    ("device_name", |a, h| unsafe { (a.device_name)(h, null_mut(), null_mut()) }),
-    ("device_destroy", |a, h| unsafe { (a.device_destroy)(h) }),
-];
+const DEVICE: [Call; 3] = calls! { h:
+    device_error(h, null_mut())
+    device_name(h, null_mut(), null_mut())
+    device_destroy(h)
+};
 
 #[test]
 fn every_function_is_in_these_lists() {
@@ -119,8 +129,7 @@ fn stale_foreign_and_invented_handles_are_noticed() {
     {
         for handle in invented.iter().chain(foreign) {
             for (name, call) in calls {
-                // SAFETY: that a handle is wrong must not matter.
-                assert_eq!(unsafe { call(api, *handle) }, ISOPHOTE_INVALID_HANDLE, "{name}({handle:#x})");
+                assert_eq!(call(api, *handle), ISOPHOTE_INVALID_HANDLE, "{name}({handle:#x})");
             }
         }
     }
@@ -148,13 +157,11 @@ fn null_pointers_are_named() {
     let library = Loaded::new();
     let api = library.api;
     for (name, call) in FREE {
-        // SAFETY: that everything is null must not matter.
-        assert_eq!(unsafe { call(api, single(api, "gaussian")) }, ISOPHOTE_INVALID_ARGUMENT, "{name}");
+        assert_eq!(call(api, single(api, "gaussian")), ISOPHOTE_INVALID_ARGUMENT, "{name}");
     }
     let graph = single(api, "gaussian");
     for (name, call) in &GRAPH[..GRAPH.len() - 2] {
-        // SAFETY: as before.
-        assert_eq!(unsafe { call(api, graph) }, ISOPHOTE_INVALID_ARGUMENT, "{name}");
+        assert_eq!(call(api, graph), ISOPHOTE_INVALID_ARGUMENT, "{name}");
         if *name != "graph_error" {
             assert!(message(api, graph).ends_with(" is null"), "{name}: {}", message(api, graph));
         }

@@ -465,6 +465,7 @@ fn a_graph_may_be_destroyed_while_it_runs() {
     run.control =
         Some(IsophoteControl { user, run: None, progress: Some(destroy), cancelled: None, threads: 0 });
     let out = vec![-7.0_f32; data.len()];
+    let whole = target(floats(&out));
     // SAFETY: the pointers lead to what the table asks for.
     let status = unsafe {
         (run.api.process)(
@@ -474,7 +475,7 @@ fn a_graph_may_be_destroyed_while_it_runs() {
             color(floats(&data)).as_ptr(),
             1,
             null(),
-            &raw const *&target(floats(&out)),
+            &raw const whole,
             &raw const *run.control.as_ref().unwrap(),
             null_mut(),
         )

@@ -1,5 +1,12 @@
 //! Hosts in C: compiled with the system's compiler, run on a picture, and run again under valgrind.
 
+use isophote::engine::cpu::{CallingThread, Control, CpuExecutor};
+use isophote::engine::pixels::{Sample, read_row, write_row};
+use isophote::engine::program::Program;
+use isophote::engine::{Image, Rect};
+use isophote::graph::GraphInput;
+use isophote::spec::{ImageKind, NodeSpec};
+use isophote::{Graph, Planned, Request};
 use isophote_tests::library::{self, contract::*};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -89,110 +96,139 @@ fn pixels(ppm: &[u8], width: u32, height: u32) -> &[u8] {
     pixels
 }
 
-fn stylize(under_valgrind: bool, width: u32, height: u32) {
-    let Some(program) = compiled("stylize.c") else { return };
-    let tag = format!("{under_valgrind}{width}");
-    let (input, output) = (folder().join(format!("in{tag}.ppm")), folder().join(format!("out{tag}.ppm")));
+/// Nodes that the programs can be given: all inputs that they need are the colour or a tensor.
+fn nodes() -> impl Iterator<Item = &'static NodeSpec> {
+    let given = |kind: ImageKind| matches!(kind, ImageKind::Color | ImageKind::Tensor);
+    isophote::registry::nodes().iter().copied().filter(move |node| {
+        node.id != "structure_tensor" && node.inputs.iter().all(|p| p.optional || given(p.kind))
+    })
+}
+
+/// The graph that the programs build of a node, through the Rust crate.
+fn planned(node: &str, settings: &[&str], width: u32, height: u32) -> Planned {
+    let mut graph = Graph::new();
+    let tensor = graph.add("structure_tensor", "structure_tensor").unwrap();
+    let styled = graph.add(node, node).unwrap();
+    for id in [tensor, styled] {
+        for port in graph.spec(id).unwrap().inputs {
+            match port.kind {
+                ImageKind::Color => graph.connect_input(GraphInput::Color, id, port.id).unwrap(),
+                ImageKind::Tensor => graph.connect(tensor, id, port.id).unwrap(),
+                _ => {}
+            }
+        }
+    }
+    graph.set_output(styled).unwrap();
+    for setting in settings {
+        let (param, value) = setting.split_once('=').unwrap();
+        graph.set_text(styled, param, value).unwrap();
+    }
+    Planned::new(&graph, Request::new(width, height)).unwrap()
+}
+
+/// What the programs compute, through the Rust crate.
+fn reference(planned: &Planned, rgb: &[u8]) -> Vec<u8> {
+    let [width, height] = planned.plan().size();
+    let mut image = Image::new(width, height, 4).unwrap();
+    read_row(rgb, Sample::U8, 3, image.data_mut(), 4);
+    let region = Rect::of_size(width, height);
+    let result = CpuExecutor::new()
+        .run(planned.plan(), &[("color", &image)], region, &CallingThread, Control::default())
+        .unwrap()
+        .remove(0);
+    let mut out = vec![0; rgb.len()];
+    write_row(result.data(), result.channels() as usize, &mut out, Sample::U8, 3);
+    out
+}
+
+/// Runs the program and compares with the Rust crate; returns what it printed.
+fn stylize(node: &str, settings: &[&str], under_valgrind: bool, width: u32, height: u32) -> Option<String> {
+    let program = compiled("stylize.c")?;
+    let tag = format!("{node}{under_valgrind}");
+    let (input, output) = (folder().join(format!("{tag}.in.ppm")), folder().join(format!("{tag}.out.ppm")));
     let before = picture(width, height);
     std::fs::write(&input, &before).expect("the folder is writable");
     let run = command(&program, under_valgrind)
         .arg(library::path())
         .args([&input, &output])
-        .args(STYLE)
+        .arg(node)
+        .args(settings)
         .output()
         .expect("the program can be started");
-    let text = printed(&run, "stylize");
+    let text = printed(&run, node);
+    assert!(text.contains(&format!("{width}x{height} pixels, 100 % done, 0 samples mended")), "{text}");
+    let after = std::fs::read(&output).expect("the program wrote a picture");
+    let (before, after) = (pixels(&before, width, height), pixels(&after, width, height));
+    let changed = before.iter().zip(after).filter(|(a, b)| a.abs_diff(**b) > 2).count();
+    assert!(changed * 5 > before.len(), "{node} hardly changed it: {changed} of {}", before.len());
+    assert!(after.iter().any(|v| *v != after[0]), "{node}: the picture is blank");
+    let expected = reference(&planned(node, settings, width, height), before);
+    let worst = expected.iter().zip(after).map(|(a, b)| a.abs_diff(*b)).max();
+    assert_eq!(worst, Some(0), "{node} is another through C");
+    Some(text)
+}
+
+#[test]
+fn a_c_program_stylizes_with_every_node() {
+    for node in nodes() {
+        stylize(node.id, &[], false, 157, 101);
+    }
+}
+
+#[test]
+fn a_c_program_lists_the_nodes_and_stylizes_under_valgrind() {
+    let settings = ["sigma_dg=1.5", "sigma_dt=2", "iterations=1"];
+    let Some(text) = stylize("oriented_bilateral", &settings, has("valgrind"), 61, 37) else { return };
     for node in isophote::registry::nodes() {
         let line = format!("\n{} ({}):", node.id, node.group);
         let listed = text.split(&line).nth(1).and_then(|rest| rest.lines().next());
         let listed: Vec<&str> = listed.unwrap_or_default().split_whitespace().collect();
         assert_eq!(listed, node.params().map(|p| p.id).collect::<Vec<_>>(), "{} in\n{text}", node.id);
     }
-    assert!(text.contains(&format!("{width}x{height} pixels, 100 % done, 0 samples mended")), "{text}");
-    let after = std::fs::read(&output).expect("the program wrote a picture");
-    let (before, after) = (pixels(&before, width, height), pixels(&after, width, height));
-    let changed = before.iter().zip(after).filter(|(a, b)| a.abs_diff(**b) > 2).count();
-    assert!(changed * 5 > before.len(), "the picture was hardly touched: {changed} of {}", before.len());
-    assert!(after.iter().any(|v| *v != after[0]), "the picture is blank");
-    // What C computed is what the Rust crate computes.
-    let expected = reference(before, width, height);
-    let worst = expected.iter().zip(after).map(|(a, b)| a.abs_diff(*b)).max();
-    assert_eq!(worst, Some(0));
 }
 
-/// What the programs stylize with: a node and a setting.
-const STYLE: [&str; 2] = ["gaussian", "sigma=2.5"];
-
-/// The same graph, through the Rust crate.
-fn reference(rgb: &[u8], width: u32, height: u32) -> Vec<u8> {
-    use isophote::engine::cpu::{CallingThread, Control, CpuExecutor};
-    use isophote::engine::pixels::{Sample, read_row, write_row};
-    use isophote::engine::{Image, Rect};
-    let mut graph = isophote::Graph::single(STYLE[0]).expect("the node exists");
-    let node = graph.node(0).expect("it was added");
-    let (param, value) = STYLE[1].split_once('=').expect("a setting");
-    graph.set_text(node, param, value).expect("the setting fits");
-    let planned = isophote::Planned::new(&graph, isophote::Request::new(width, height)).expect("a plan");
-    let mut image = Image::new(width, height, 4).expect("an image");
-    read_row(rgb, Sample::U8, 3, image.data_mut(), 4);
-    let region = Rect::of_size(width, height);
-    let result = CpuExecutor::new()
-        .run(planned.plan(), &[("color", &image)], region, &CallingThread, Control::default())
-        .expect("it runs")
-        .remove(0);
-    let mut out = vec![0; rgb.len()];
-    write_row(result.data(), 4, &mut out, Sample::U8, 3);
-    out
-}
-
-#[test]
-fn a_c_program_stylizes_a_picture() {
-    stylize(false, 317, 211);
-}
-
-#[test]
-fn a_c_program_stylizes_a_picture_under_valgrind() {
-    if has("valgrind") {
-        stylize(true, 61, 37);
-    }
-}
-
-fn plan(under_valgrind: bool) {
+/// Runs the program and compares its passes with those of the Rust crate.
+fn plan(node: &str, under_valgrind: bool) {
     let Some(program) = compiled("plan.c") else { return };
     let run = command(&program, under_valgrind)
         .arg(library::path())
-        .args(["320", "200"])
-        .args(STYLE)
+        .args(["320", "200", node])
         .output()
         .expect("the program can be started");
     let text = printed(&run, "plan");
+    let planned = planned(node, &[], 320, 200);
+    let program = Program::lower(planned.plan(), Rect::of_size(320, 200)).unwrap();
     assert!(text.contains("input color, 320x200 rgba32float"), "{text}");
-    assert!(text.contains("output output, 320x200 rgba32float"), "{text}");
-    for pass in ["colour_import", "gaussian_blur", "colour_export"] {
-        let line = text.lines().find(|l| l.contains(&format!(": {pass}, ")));
-        let line = line.unwrap_or_else(|| panic!("{pass} is missing in\n{text}"));
-        assert!(line.contains("uniforms of 128 and") && line.contains("40x25x1 workgroups"), "{line}");
+    assert!(text.contains("output output, 320x200 "), "{text}");
+    let passes: Vec<&str> = text.lines().filter(|l| l.starts_with("pass ")).collect();
+    assert_eq!(passes.len(), program.dispatches.len(), "{text}");
+    for (index, (line, dispatch)) in passes.iter().zip(&program.dispatches).enumerate() {
+        let (params, [x, y, _]) = (dispatch.params.len(), dispatch.workgroups);
+        let start = format!(
+            "pass {index}: {}, uniforms of 128 and {params} bytes, {x}x{y}x1 workgroups, reads",
+            dispatch.shader.name
+        );
+        assert!(line.starts_with(&start), "{line} is not {start}");
     }
-    let passes = text.lines().filter(|l| l.starts_with("pass ")).count();
     for language in ["WGSL", "SPIR-V", "HLSL", "MSL", "GLSL"] {
         let shaders = text.lines().filter(|l| l.starts_with(&format!("  {language}, "))).count();
-        assert_eq!(shaders, passes, "{language} in\n{text}");
+        assert_eq!(shaders, passes.len(), "{language} in\n{text}");
     }
-    assert_eq!(text.matches("    magic 07230203").count(), passes, "{text}");
-    assert_eq!(text.matches("    #version 430 core").count(), passes, "{text}");
-    assert_eq!(text.matches("    // language: metal2.0").count(), passes, "{text}");
+    for head in ["    magic 07230203", "    #version 430 core", "    // language: metal2.0"] {
+        assert_eq!(text.matches(head).count(), passes.len(), "{head} in\n{text}");
+    }
 }
 
 #[test]
-fn a_c_program_prints_the_plan_as_data() {
-    plan(false);
+fn a_c_program_prints_every_plan_as_data() {
+    for node in nodes() {
+        plan(node.id, false);
+    }
 }
 
 #[test]
-fn a_c_program_prints_the_plan_as_data_under_valgrind() {
-    if has("valgrind") {
-        plan(true);
-    }
+fn a_c_program_prints_a_plan_as_data_under_valgrind() {
+    plan("oriented_bilateral", has("valgrind"));
 }
 
 #[test]

@@ -299,8 +299,9 @@ fn unsafe_code_stays_in_its_rooms_and_each_block_has_a_reason() {
     for path in sources(&[".rs"]) {
         let text = std::fs::read_to_string(&path).unwrap();
         let shown = path.display().to_string();
-        let allowed =
-            shown.contains("nodes/plugin") || shown.contains("host-example") || shown.contains("tests/tests");
+        // The tests' loader loads as a host does.
+        let rooms = ["nodes/plugin", "host-example", "tests/tests", "tests/src/library.rs"];
+        let allowed = rooms.iter().any(|room| shown.contains(room));
         let uses = |line: &str| {
             let code = line.split("//").next().unwrap_or("");
             let block = code.contains(&format!("{keyword} {{")) || code.contains(&format!("{keyword} impl"));
