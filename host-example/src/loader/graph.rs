@@ -54,6 +54,43 @@ impl Library {
 }
 
 impl Graph {
+    /// Adds a node under a name of its own, and tells its index.
+    ///
+    /// # Errors
+    /// [`super::Refusal`] when there is no such node, or the name is taken.
+    pub fn add(&mut self, name: &str, node: &str) -> Answer<u32> {
+        let (name, node) = (text::argument(name)?, text::argument(node)?);
+        let mut index = 0;
+        // SAFETY: the handle is this object's, both texts end with a zero, `index` may be written.
+        let status =
+            unsafe { (self.api.graph_add)(self.handle, name.as_ptr(), node.as_ptr(), &raw mut index) };
+        self.check(status)?;
+        Ok(index)
+    }
+
+    /// Connects the output of node `from` to an input of node `to`.
+    ///
+    /// # Errors
+    /// [`super::Refusal`] when there is no such node or input, or the two do not fit.
+    pub fn connect(&mut self, from: u32, to: u32, port: &str) -> Answer<()> {
+        let port = text::argument(port)?;
+        // SAFETY: the handle is this object's, and the text ends with a zero.
+        let status = unsafe { (self.api.graph_connect)(self.handle, from, to, port.as_ptr()) };
+        self.check(status)
+    }
+
+    /// Connects a picture that enters the graph to the input of node `to` that bears its name.
+    ///
+    /// # Errors
+    /// [`super::Refusal`] when there is no such picture, node or input.
+    pub fn connect_input(&mut self, input: &str, to: u32) -> Answer<()> {
+        let input = text::argument(input)?;
+        // SAFETY: the handle is this object's, and the text ends with a zero.
+        let status =
+            unsafe { (self.api.graph_connect_input)(self.handle, input.as_ptr(), to, input.as_ptr()) };
+        self.check(status)
+    }
+
     /// Number of nodes, whose indices count from 0.
     pub fn count(&self) -> u32 {
         let mut count = 0;

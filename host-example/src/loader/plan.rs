@@ -65,15 +65,15 @@ impl Plan {
     pub fn program(&self) -> Answer<Program> {
         let mut program = Program::default();
         for texture in self.textures()? {
-            // SAFETY: the texture is the plan's, which is borrowed; its name lives until the process ends.
+            // SAFETY: the texture and its name are the plan's, which is borrowed.
             program.textures.push(unsafe { engine_texture(texture) }?);
         }
         let mut shaders: HashMap<&str, Arc<Shader>> = HashMap::new();
         for (index, pass) in (0..).zip(self.passes()?) {
-            // SAFETY: the pass is the plan's, which is borrowed; the name lives until the process ends.
+            // SAFETY: the pass and what it points to are the plan's, which is borrowed.
             let (kernel, inputs, outputs, params) = unsafe {
                 (
-                    text::constant(pass.kernel),
+                    text::kept(pass.kernel),
                     text::slice(pass.inputs, pass.input_count),
                     text::slice(pass.outputs, pass.output_count),
                     text::slice(pass.params.cast::<u8>(), pass.params_size),
@@ -88,7 +88,7 @@ impl Plan {
                 Some(shader) => Arc::clone(shader),
                 None => {
                     let shader = Arc::new(Shader {
-                        name: Cow::Borrowed(kernel),
+                        name: Cow::Owned(kernel.to_owned()),
                         source: Cow::Borrowed(self.wgsl(index)?),
                         inputs: inputs.len(),
                         outputs: Cow::Owned(channels[inputs.len()..].to_vec()),
@@ -177,10 +177,10 @@ impl Drop for Plan {
 }
 
 /// # Safety
-/// The texture's name is null or lives until the process ends.
+/// The texture's name is null or text that ends with a zero.
 unsafe fn engine_texture(texture: &IsophoteTexture) -> Answer<Texture> {
     // SAFETY: as the caller promised.
-    let name = unsafe { text::constant(texture.name) }.to_owned();
+    let name = unsafe { text::kept(texture.name) }.to_owned();
     let window = texture.window;
     Ok(Texture {
         role: match texture.role {

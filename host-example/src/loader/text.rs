@@ -15,6 +15,15 @@ const ROOM: usize = 2048;
 /// # Safety
 /// `pointer` is null or points to bytes that end with a zero and stay as they are until the process ends.
 pub unsafe fn constant(pointer: *const c_char) -> &'static str {
+    // SAFETY: as the caller promised.
+    unsafe { kept(pointer) }
+}
+
+/// Text that an object of the library keeps; null is empty.
+///
+/// # Safety
+/// `pointer` is null or points to bytes that end with a zero and stay as they are for `'a`.
+pub unsafe fn kept<'a>(pointer: *const c_char) -> &'a str {
     if pointer.is_null() {
         return "";
     }

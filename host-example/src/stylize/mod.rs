@@ -68,9 +68,9 @@ impl Stylizer {
     /// Sets a parameter; it takes effect with the next [`Stylizer::update`].
     ///
     /// # Errors
-    /// As [`style::set`].
+    /// As [`Style::set`].
     pub fn set(&mut self, setting: &Setting) -> Result<()> {
-        style::set(&self.style.graph, setting)?;
+        self.style.set(setting)?;
         self.edited = true;
         Ok(())
     }

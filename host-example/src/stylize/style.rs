@@ -5,8 +5,8 @@ use std::path::Path;
 use std::str::FromStr;
 
 use crate::error::{Error, Result};
-use crate::loader::catalogue::Kind;
-use crate::loader::{Graph, Library};
+use crate::loader::catalogue::{Kind, Node, Port};
+use crate::loader::{Answer, Graph, Library, Refusal};
 
 /// Most bytes of a graph file; real ones have some thousands.
 const MOST_BYTES: u64 = 16 << 20;
@@ -48,15 +48,17 @@ impl std::fmt::Display for Setting {
     }
 }
 
-/// A graph that yields a picture.
+/// A graph and what it yields.
 #[derive(Debug)]
 pub struct Style {
     /// The id of a node or the path of a graph file.
     pub name: String,
     /// The graph.
     pub graph: Graph,
-    /// Whether it yields a colour or a scalar.
+    /// What it yields.
     pub kind: Kind,
+    /// Whether it is one node, index 0, with what feeds it.
+    single: bool,
 }
 
 impl Style {
@@ -67,27 +69,90 @@ impl Style {
     /// [`Error::Input`] for names that are neither, graph files that cannot be read, graphs that yield something
     /// that is no picture, and parameters that do not exist or cannot have their value.
     pub fn load(library: &Library, name: &str, settings: &[Setting]) -> Result<Self> {
-        let graph = open(library, name)?;
-        for setting in settings {
-            set(&graph, setting)?;
-        }
-        let kind =
-            graph.output_kind().map_err(|e| e.at(name, "name the node whose output is the graph's"))?;
-        if !matches!(kind, Kind::Color | Kind::Scalar) {
+        let style = Self::any(library, name, settings)?;
+        if !matches!(style.kind, Kind::Color | Kind::Scalar) {
             return Err(Error::input(
                 name,
-                format!("yields a {}, which is no picture", kind.name()),
+                format!("yields a {}, which is no picture", style.kind.name()),
                 "choose a node that yields a colour or a scalar; `isophote nodes` lists them",
             ));
         }
-        Ok(Self { name: name.to_owned(), graph, kind })
+        Ok(style)
+    }
+
+    /// As [`Style::load`], but of graphs that yield anything.
+    ///
+    /// # Errors
+    /// As [`Style::load`].
+    pub fn any(library: &Library, name: &str, settings: &[Setting]) -> Result<Self> {
+        let (graph, single) = open(library, name)?;
+        let kind =
+            graph.output_kind().map_err(|e| e.at(name, "name the node whose output is the graph's"))?;
+        let style = Self { name: name.to_owned(), graph, kind, single };
+        for setting in settings {
+            style.set(setting)?;
+        }
+        Ok(style)
+    }
+
+    /// Sets a parameter of the node that is named, or of the only one that has it.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when there is no such node or parameter, several nodes have the parameter, or it cannot
+    /// have the value.
+    pub fn set(&self, setting: &Setting) -> Result<()> {
+        let place = format!("--set {setting}");
+        let fail = |e: Refusal| e.at(&place, "see the graph's nodes");
+        let graph = &self.graph;
+        let mut named = Vec::new();
+        for node in 0..graph.count() {
+            named.push((node, graph.name(node).map_err(fail)?, graph.spec(node).map_err(fail)?));
+        }
+        let put = |(node, _, spec): &(u32, String, Node)| {
+            let mend = format!("`isophote nodes {}` lists its parameters", spec.id);
+            graph.set(*node, &setting.param, &setting.value).map_err(|e| e.at(&place, mend))
+        };
+        if let Some(wanted) = &setting.node {
+            let Some(node) = named.iter().find(|(_, name, _)| name == wanted) else {
+                let names: Vec<&str> = named.iter().map(|(_, name, _)| name.as_str()).collect();
+                return Err(Error::input(
+                    &place,
+                    format!("the graph has no node '{wanted}'"),
+                    format!("choose from {}", names.join(", ")),
+                ));
+            };
+            return put(node);
+        }
+        let mut holders =
+            named.iter().filter(|(_, _, spec)| spec.params.iter().any(|p| p.id == setting.param));
+        match (holders.next(), holders.next(), named.first()) {
+            // The node that was asked for comes before those that only feed it.
+            (Some(node), Some(_), _) if self.single && node.0 == 0 => put(node),
+            (Some(node), None, _) => put(node),
+            // It is asked even when it has no such parameter: its message names the nearest.
+            (None, _, Some(node)) if self.single => put(node),
+            (None, ..) => {
+                let names: Vec<&str> = named.iter().map(|(_, _, spec)| spec.id).collect();
+                Err(Error::input(
+                    &place,
+                    format!("no node of the graph has a parameter '{}'", setting.param),
+                    format!("`isophote nodes NODE` lists the parameters of {}", names.join(", ")),
+                ))
+            }
+            (Some((_, first, _)), Some((_, second, _)), _) => Err(Error::input(
+                &place,
+                format!("several nodes of the graph have a parameter '{}'", setting.param),
+                format!("write {first}.{0}=... or {second}.{0}=...", setting.param),
+            )),
+        }
     }
 }
 
-fn open(library: &Library, style: &str) -> Result<Graph> {
+/// The graph, and whether it is a single node with what feeds it.
+fn open(library: &Library, style: &str) -> Result<(Graph, bool)> {
     let path = Path::new(style);
     let refused = match library.single(style) {
-        Ok(graph) => return Ok(graph),
+        Ok(graph) => return Ok((fed(library, graph).map_err(|e| e.at(style, "use a graph file"))?, true)),
         Err(refused) => refused,
     };
     let looks_like_file = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"))
@@ -103,54 +168,35 @@ fn open(library: &Library, style: &str) -> Result<Graph> {
     let json = fs::read_to_string(path).map_err(|e| {
         Error::file(path, format!("cannot be read as a graph: {e}"), "name a graph file (.json) or a node")
     })?;
-    library.graph_from_json(&json).map_err(|e| e.at(path.display(), "correct the graph file"))
+    let graph = library.graph_from_json(&json).map_err(|e| e.at(path.display(), "correct the graph file"))?;
+    Ok((graph, false))
 }
 
-/// Sets a parameter of the node that is named, or of the only one that has it.
-///
-/// # Errors
-/// [`Error::Input`] when there is no such node or parameter, several nodes have the parameter, or it cannot have
-/// the value.
-pub fn set(graph: &Graph, setting: &Setting) -> Result<()> {
-    let place = format!("--set {setting}");
-    let fail = |e: crate::loader::Refusal| e.at(&place, "see the graph's nodes");
-    let mut named = Vec::new();
-    for node in 0..graph.count() {
-        named.push((node, graph.name(node).map_err(fail)?, graph.spec(node).map_err(fail)?));
-    }
-    let of = |spec: &str| format!("`isophote nodes {spec}` lists its parameters");
-    if let Some(wanted) = &setting.node {
-        let Some((node, _, spec)) = named.iter().find(|(_, name, _)| name == wanted) else {
-            let names: Vec<&str> = named.iter().map(|(_, name, _)| name.as_str()).collect();
-            return Err(Error::input(
-                &place,
-                format!("the graph has no node '{wanted}'"),
-                format!("choose from {}", names.join(", ")),
-            ));
+/// Feeds what a single node needs and no picture gives, such as a tensor, from the first node of the catalogue
+/// that makes it of pictures alone.
+fn fed(library: &Library, mut graph: Graph) -> Answer<Graph> {
+    let spec = graph.spec(0)?;
+    for port in spec.inputs.iter().filter(|p| !p.optional && !is_picture(p)) {
+        let nodes = library.catalogue()?.nodes;
+        let makes = |n: &&Node| {
+            n.output.kind == port.kind
+                && n.inputs.iter().all(|p| p.optional || is_picture(p))
+                && n.id != spec.id
         };
-        return graph.set(*node, &setting.param, &setting.value).map_err(|e| e.at(&place, of(spec.id)));
-    }
-    let has = |spec: &crate::loader::catalogue::Node| spec.params.iter().any(|p| p.id == setting.param);
-    let mut holders = named.iter().filter(|(_, _, spec)| has(spec));
-    match (holders.next(), holders.next(), named.as_slice()) {
-        // A graph of one node is asked even when it has no such parameter: its message names the nearest.
-        (Some((node, _, spec)), None, _) | (None, _, [(node, _, spec)]) => {
-            graph.set(*node, &setting.param, &setting.value).map_err(|e| e.at(&place, of(spec.id)))
+        // Without one the input stays open, which the library tells when it plans.
+        let Some(feeder) = nodes.iter().find(makes) else { continue };
+        let index = graph.add(port.id, feeder.id)?;
+        for picture in feeder.inputs.iter().filter(|p| is_picture(p)) {
+            graph.connect_input(picture.id, index)?;
         }
-        (None, ..) => {
-            let names: Vec<&str> = named.iter().map(|(_, _, spec)| spec.id).collect();
-            Err(Error::input(
-                &place,
-                format!("no node of the graph has a parameter '{}'", setting.param),
-                format!("`isophote nodes NODE` lists the parameters of {}", names.join(", ")),
-            ))
-        }
-        (Some((_, first, _)), Some((_, second, _)), _) => Err(Error::input(
-            &place,
-            format!("several nodes of the graph have a parameter '{}'", setting.param),
-            format!("write {first}.{0}=... or {second}.{0}=...", setting.param),
-        )),
+        graph.connect(index, 0, port.id)?;
     }
+    Ok(graph)
+}
+
+/// Whether an input takes a picture that enters the graph, by its name.
+fn is_picture(port: &Port) -> bool {
+    ["color", "normal", "depth", "object_id"].contains(&port.id)
 }
 
 #[cfg(test)]
