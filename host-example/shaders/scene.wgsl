@@ -4,13 +4,13 @@ struct Frame {
     world_to_view: mat4x4f,
     view_projection: mat4x4f,
     previous_view_projection: mat4x4f,
-    // World to the shadow map's clip space.
-    sun_matrix: mat4x4f,
+    // World to the clip space of each shadow map.
+    sun_matrices: array<mat4x4f, 3>,
     // Position of the camera; w is 1 for perspective, 0 for parallel projection.
     eye: vec4f,
     // Towards the camera, for parallel projection.
     backward: vec4f,
-    // Towards the sun; w is the size of a shadow texel in the world.
+    // Towards the sun.
     sun_direction: vec4f,
     // What a white surface facing the sun reflects; w is 1 where there is a sun.
     sun_color: vec4f,
@@ -22,7 +22,10 @@ struct Frame {
     sky_ray: vec4f,
     // Width, height and their reciprocals.
     size: vec4f,
-    // x exposure, y number of lights.
+    // Depth in the view at which each shadow map ends, and the size of its texels in the world.
+    cascade_ends: vec4f,
+    cascade_texels: vec4f,
+    // x exposure, y number of lights, z number of shadow maps, w factor on the light of the sky.
     settings: vec4f,
 }
 

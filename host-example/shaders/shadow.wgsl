@@ -1,5 +1,11 @@
 // Depth of the scene as the sun sees it.
 
+struct Cascade {
+    index: vec4u,
+}
+
+@group(3) @binding(0) var<uniform> cascade: Cascade;
+
 struct ShadowInput {
     @builtin(position) clip: vec4f,
     @location(0) uv0: vec2f,
@@ -10,7 +16,7 @@ struct ShadowInput {
 @vertex
 fn shadow_vertex(in: VertexInput) -> ShadowInput {
     let position = current_position(in, current_matrix(in));
-    return ShadowInput(frame.sun_matrix * vec4f(position, 1.0), in.uv0, in.uv1, in.color.a);
+    return ShadowInput(frame.sun_matrices[cascade.index.x] * vec4f(position, 1.0), in.uv0, in.uv1, in.color.a);
 }
 
 // Only for materials with holes or blending, which cast a shadow where they are more than half there.

@@ -20,7 +20,7 @@ struct Light {
 }
 
 @group(0) @binding(4) var<storage, read> lights: array<Light>;
-@group(3) @binding(0) var shadow_map: texture_depth_2d;
+@group(3) @binding(0) var shadow_maps: texture_depth_2d_array;
 @group(3) @binding(1) var shadow_sampler: sampler_comparison;
 
 struct SurfaceInput {
@@ -79,26 +79,43 @@ fn reflected(s: Surface, to_light: vec3f) -> vec3f {
     return n_dot_l * (s.diffuse * (1.0 - fresnel) + fresnel * distribution * visibility);
 }
 
-// Share of the sun that arrives: 16 bilinear comparisons around the point, which is moved off the surface
-// by about the size of a shadow texel so that it does not shade itself.
-fn sunlight(position: vec3f, normal: vec3f) -> f32 {
-    let texel = frame.sun_direction.w;
+// Share of the sun that arrives by one shadow map: 9 bilinear comparisons around the point, which is moved
+// off the surface by about the size of a texel so that it does not shade itself.
+fn sunlight_of(cascade: u32, position: vec3f, normal: vec3f) -> f32 {
+    let texel = frame.cascade_texels[cascade];
     let slope = 1.0 - saturate(dot(normal, frame.sun_direction.xyz));
     let moved = position + normal * texel * (0.6 + 2.4 * slope) + frame.sun_direction.xyz * texel;
-    let projected = frame.sun_matrix * vec4f(moved, 1.0);
+    let projected = frame.sun_matrices[cascade] * vec4f(moved, 1.0);
     let uv = projected.xy * vec2f(0.5, -0.5) + 0.5;
     // The map covers the framed scene; backdrops beyond it are in the sun.
-    if (any(uv < vec2f(0.0)) || any(uv > vec2f(1.0)) || projected.z > 1.0) {
+    if any(uv < vec2f(0.0)) || any(uv > vec2f(1.0)) || projected.z > 1.0 {
         return 1.0;
     }
-    let step = 1.0 / vec2f(textureDimensions(shadow_map));
+    let step = 1.0 / vec2f(textureDimensions(shadow_maps));
     var sum = 0.0;
-    for (var y = -1.5; y < 2.0; y += 1.0) {
-        for (var x = -1.5; x < 2.0; x += 1.0) {
-            sum += textureSampleCompareLevel(shadow_map, shadow_sampler, uv + vec2f(x, y) * step, projected.z);
+    for (var y = -1.0; y < 2.0; y += 1.0) {
+        for (var x = -1.0; x < 2.0; x += 1.0) {
+            let place = uv + 1.3 * vec2f(x, y) * step;
+            sum += textureSampleCompareLevel(shadow_maps, shadow_sampler, place, cascade, projected.z);
         }
     }
-    return sum / 16.0;
+    return sum / 9.0;
+}
+
+// Share of the sun that arrives; near its end each map fades into the next, so that no seam shows.
+fn sunlight(position: vec3f, normal: vec3f) -> f32 {
+    let depth = -(frame.world_to_view * vec4f(position, 1.0)).z;
+    let last = u32(frame.settings.z) - 1u;
+    var cascade = 0u;
+    while cascade < last && depth > frame.cascade_ends[cascade] {
+        cascade++;
+    }
+    let share = sunlight_of(cascade, position, normal);
+    let fade = smoothstep(0.9, 1.0, depth / frame.cascade_ends[cascade]);
+    if cascade == last || fade == 0.0 {
+        return share;
+    }
+    return mix(share, sunlight_of(cascade + 1u, position, normal), fade);
 }
 
 fn punctual(s: Surface, position: vec3f) -> vec3f {
@@ -206,8 +223,8 @@ fn surface_fragment(in: SurfaceInput, @builtin(front_facing) front: bool) -> @lo
         let direction = reflect(-s.view, s.normal);
         // Glossy reflections are hidden less than diffuse light, and not where they point outward.
         let specular_occlusion = saturate(pow(s.n_dot_v + occlusion, exp2(-16.0 * s.alpha - 1.0)) - 1.0 + occlusion);
-        color += s.diffuse * sky_irradiance(s.normal) * occlusion;
-        color += mirrored(direction, blur) * (s.specular * terms.x + terms.y) * specular_occlusion;
+        color += frame.settings.w * s.diffuse * sky_irradiance(s.normal) * occlusion;
+        color += frame.settings.w * mirrored(direction, blur) * (s.specular * terms.x + terms.y) * specular_occlusion;
     }
     if ALPHA_MODE == 2u {
         return vec4f(color * coverage, coverage);

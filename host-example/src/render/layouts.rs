@@ -9,8 +9,10 @@ pub struct Layouts {
     pub geometry: wgpu::BindGroupLayout,
     /// Group 2: a material.
     pub material: wgpu::BindGroupLayout,
-    /// Group 3: the shadow map.
+    /// Group 3: the shadow maps.
     pub shadow: wgpu::BindGroupLayout,
+    /// Group 3 of the shadow pass: which map is drawn.
+    pub cascade: wgpu::BindGroupLayout,
 }
 
 impl Layouts {
@@ -37,13 +39,8 @@ impl Layouts {
             ),
             geometry: make("geometry", &[storage(0, vertex), storage(1, vertex)]),
             material: make("material", &material),
-            shadow: make(
-                "shadow",
-                &[
-                    texture(0, wgpu::TextureSampleType::Depth),
-                    sampler(1, wgpu::SamplerBindingType::Comparison),
-                ],
-            ),
+            shadow: make("shadow", &[depth_array(0), sampler(1, wgpu::SamplerBindingType::Comparison)]),
+            cascade: make("cascade", &[uniform(0, vertex)]),
         }
     }
 }
@@ -81,6 +78,18 @@ pub fn texture(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::Bind
             multisampled: false,
         },
         count: None,
+    }
+}
+
+/// The shadow maps.
+fn depth_array(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        ty: wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Depth,
+            view_dimension: wgpu::TextureViewDimension::D2Array,
+            multisampled: false,
+        },
+        ..texture(binding, wgpu::TextureSampleType::Depth)
     }
 }
 

@@ -1,7 +1,6 @@
 //! Light and exposure: the defaults, and what the lights of a file turn into.
 
-use glam::camera::rh::{proj::directx as clip, view};
-use glam::{Mat4, Vec3};
+use glam::Vec3;
 
 use crate::scene::pose::Pose;
 use crate::scene::{LightKind, Scene};
@@ -21,6 +20,8 @@ pub struct Look {
     pub horizon: Vec3,
     /// Radiance of the ground below.
     pub ground: Vec3,
+    /// Factor on the light of the sky, but not on its picture behind the scene.
+    pub sky_scale: f32,
     /// Factor on the lights of the file.
     pub light_scale: f32,
 }
@@ -35,6 +36,7 @@ impl Default for Look {
             zenith: Vec3::new(0.19, 0.30, 0.47),
             horizon: Vec3::new(0.56, 0.62, 0.68),
             ground: Vec3::new(0.15, 0.14, 0.125),
+            sky_scale: 1.0,
             light_scale: 1.0,
         }
     }
@@ -43,7 +45,10 @@ impl Default for Look {
 /// The light that files with lights of their own should put on the middle of the scene, in multiples of what
 /// makes white white; outside of this range they are scaled.
 const LEAST_LIGHT: f32 = 0.7;
-const MOST_LIGHT: f32 = 1.4;
+const MOST_LIGHT: f32 = 1.2;
+
+/// The light of the sky beside that of the file.
+const SKY_FILL: f32 = 0.65;
 
 impl Look {
     /// The default look, or, where the file has lights, those: its first directional light is the sun, and
@@ -70,6 +75,7 @@ impl Look {
             }
         }
         if total > 0.0 && total.is_finite() {
+            look.sky_scale = SKY_FILL;
             look.light_scale = total.clamp(LEAST_LIGHT, MOST_LIGHT) / total;
             look.sun_color = sun.map(|(_, color)| color * look.light_scale);
             if let Some((place, _)) = sun {
@@ -77,27 +83,6 @@ impl Look {
             }
         }
         look
-    }
-
-    /// World to the shadow map: a box around the scene along the sun's direction, and the size of one of
-    /// `resolution` texels in the world.
-    pub fn sun_matrix(&self, scene: &Scene, resolution: u32) -> (Mat4, f32) {
-        let up = if self.sun_direction.y.abs() > 0.99 { Vec3::X } else { Vec3::Y };
-        let center = scene.bounds.center();
-        let rotation = view::look_at_mat4(center + self.sun_direction, center, up);
-        let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        let (min, max) = (scene.bounds.min, scene.bounds.max);
-        for corner in 0..8 {
-            let pick = |bit: u32, a: f32, b: f32| if corner >> bit & 1 == 0 { a } else { b };
-            let point = Vec3::new(pick(0, min.x, max.x), pick(1, min.y, max.y), pick(2, min.z, max.z));
-            let seen = rotation.transform_point3(point);
-            (low, high) = (low.min(seen), high.max(seen));
-        }
-        // Room for the filter at the edges, and for scenes that are flat.
-        let margin = scene.bounds.radius() * 0.02;
-        let (low, high) = (low - margin, high + margin);
-        let projection = clip::orthographic(low.x, high.x, low.y, high.y, -high.z, -low.z);
-        (projection * rotation, (high.x - low.x).max(high.y - low.y) / resolution as f32)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The renderer: a scene on a wgpu device that the caller owns, frame by frame, with everything that is known
 //! about each pixel beside its colour.
 //!
-//! A frame is four passes over the scene or the picture: the shadow map, the multisampled colours, the
+//! A frame is a few passes over the scene and the picture: the shadow maps, the multisampled colours, the
 //! geometry buffer with one sample per pixel, and the tone mapping. They are recorded into the caller's
 //! command encoder; nothing is allocated once every pipeline that the scene needs has been used.
 
@@ -10,6 +10,7 @@ mod layouts;
 pub mod look;
 mod pipelines;
 pub mod readback;
+mod shadow;
 pub mod targets;
 #[cfg(test)]
 mod tests;
@@ -17,24 +18,24 @@ mod textures;
 mod tone_map;
 mod uniforms;
 mod upload;
+mod visible;
 
-use glam::{Mat4, Vec3};
+use glam::Mat4;
 
-use self::layouts::{Layouts, bind_buffer, bind_sampler, bind_view};
+use self::layouts::{Layouts, bind_buffer};
 use self::look::Look;
 use self::pipelines::{Pass, Pipelines, Variant};
-use self::targets::{DEPTH_FORMAT, Targets};
+use self::shadow::{Cascades, ShadowMaps};
+use self::targets::Targets;
 use self::textures::TextureStore;
 use self::tone_map::ToneMap;
 use self::uniforms::{FrameBlock, InstanceBlock, LightBlock};
 use self::upload::GpuPrimitive;
+use self::visible::Visible;
 use crate::error::Result;
+use crate::scene::Scene;
 use crate::scene::camera::View;
 use crate::scene::pose::Pose;
-use crate::scene::{AlphaMode, Scene};
-
-/// Texels along a side of the shadow map.
-const SHADOW_SIZE: u32 = 2048;
 
 /// A scene on the GPU with the targets it is rendered into.
 pub struct Renderer {
@@ -45,8 +46,8 @@ pub struct Renderer {
     primitives: Vec<Vec<GpuPrimitive>>,
     materials: Vec<wgpu::BindGroup>,
     buffers: Buffers,
-    shadow_map: wgpu::TextureView,
-    shadow_group: wgpu::BindGroup,
+    shadow_maps: ShadowMaps,
+    cascades: Option<Cascades>,
     tone_map: ToneMap,
     joints: Vec<Option<u32>>,
     weights: Vec<u32>,
@@ -54,6 +55,7 @@ pub struct Renderer {
     weight_count: usize,
     history: History,
     scratch: Scratch,
+    visible: Visible,
 }
 
 /// Buffers that are filled anew for each frame, and the group that binds them.
@@ -82,7 +84,6 @@ struct Scratch {
     weights: Vec<f32>,
     lights: Vec<LightBlock>,
     mirrored: Vec<bool>,
-    order: Vec<(f32, usize)>,
 }
 
 impl Renderer {
@@ -110,7 +111,7 @@ impl Renderer {
         let light_count = look::visible_lights(scene).count();
         let buffers =
             Buffers::new(device, &layouts, scene.draws.len(), joint_count, weight_count, light_count);
-        let (shadow_map, shadow_group) = make_shadow_map(device, &layouts);
+        let shadow_maps = ShadowMaps::new(device, &layouts);
         let tone_map = ToneMap::new(device, &targets);
         Ok(Self {
             pipelines: Pipelines::new(device, &layouts),
@@ -120,8 +121,8 @@ impl Renderer {
             primitives,
             materials,
             buffers,
-            shadow_map,
-            shadow_group,
+            shadow_maps,
+            cascades: None,
             tone_map,
             joints,
             weights,
@@ -129,6 +130,7 @@ impl Renderer {
             weight_count,
             history: History::default(),
             scratch: Scratch::default(),
+            visible: Visible::default(),
         })
     }
 
@@ -171,8 +173,9 @@ impl Renderer {
                 self.pipelines.prepare(&self.device, self.variant(scene, draw, pass));
             }
         }
-        self.sort_blended(scene, pose, frame.eye.truncate());
-        self.shadow_pass(encoder, scene, look);
+        let eye = frame.eye.truncate();
+        self.visible.update(scene, &self.primitives, pose, eye, frame.view_projection);
+        self.shadow_passes(encoder, scene);
         self.surface_pass(encoder, scene);
         self.geometry_pass(encoder, scene);
         self.tone_map.encode(encoder, &self.targets);
@@ -208,9 +211,10 @@ impl Renderer {
             });
         }
         uniforms::lights(scene, pose, look, &mut scratch.lights);
-        let sun = look.sun_matrix(scene, SHADOW_SIZE);
         let size = (self.targets.width, self.targets.height);
-        let mut frame = FrameBlock::new(view, look, sun, size, self.history.view_projection);
+        let cascades = Cascades::new(scene, look, view, size.0 as f32 / size.1 as f32);
+        self.cascades = look.sun_color.map(|_| cascades);
+        let mut frame = FrameBlock::new(view, look, &cascades, size, self.history.view_projection);
         frame.settings.y = scratch.lights.len() as f32;
         let write = |buffer: &wgpu::Buffer, bytes: &[u8]| {
             if !bytes.is_empty() {
@@ -231,19 +235,6 @@ impl Renderer {
         Variant::new(pass, material, self.scratch.mirrored[draw])
     }
 
-    /// Orders blended draws from far to near by the middle of their vertices.
-    fn sort_blended(&mut self, scene: &Scene, pose: &Pose, eye: Vec3) {
-        self.scratch.order.clear();
-        for (index, draw) in scene.draws.iter().enumerate() {
-            let primitive = scene.primitive(draw);
-            if scene.materials[primitive.material].alpha_mode == AlphaMode::Blend {
-                let middle = pose.world[draw.node].transform_point3(primitive.center());
-                self.scratch.order.push((middle.distance_squared(eye), index));
-            }
-        }
-        self.scratch.order.sort_by(|a, b| b.0.total_cmp(&a.0));
-    }
-
     fn draw(&self, pass: &mut wgpu::RenderPass, scene: &Scene, index: usize, kind: Pass) {
         let Some(pipeline) = self.pipelines.get(self.variant(scene, index, kind)) else { return };
         let draw = &scene.draws[index];
@@ -256,22 +247,24 @@ impl Renderer {
         pass.draw_indexed(0..primitive.index_count, 0, index as u32..index as u32 + 1);
     }
 
-    fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene, look: &Look) {
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("shadow"),
-            depth_stencil_attachment: Some(layouts::depth(&self.shadow_map, 1.0, wgpu::StoreOp::Store)),
-            ..Default::default()
-        });
-        pass.set_bind_group(0, &self.buffers.bind_group, &[]);
-        if look.sun_color.is_some() {
-            // What is shown as it is, such as a painted sky, stands in no light.
-            let unlit = |index: usize| {
-                let material = scene.primitive(&scene.draws[index]).material;
-                scene.materials[material].unlit
-            };
-            (0..scene.draws.len())
-                .filter(|&index| !unlit(index))
-                .for_each(|index| self.draw(&mut pass, scene, index, Pass::Shadow));
+    fn shadow_passes(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene) {
+        let Some(cascades) = &self.cascades else { return };
+        for cascade in 0..cascades.count {
+            let depth = layouts::depth(&self.shadow_maps.layers[cascade], 1.0, wgpu::StoreOp::Store);
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("shadow"),
+                depth_stencil_attachment: Some(depth),
+                ..Default::default()
+            });
+            pass.set_bind_group(0, &self.buffers.bind_group, &[]);
+            pass.set_bind_group(3, &self.shadow_maps.layer_groups[cascade], &[]);
+            for (index, sphere) in self.visible.spheres.iter().enumerate() {
+                // What is shown as it is, such as a painted sky, stands in no light.
+                let unlit = scene.materials[scene.primitive(&scene.draws[index]).material].unlit;
+                if !unlit && sphere.is_none_or(|(middle, radius)| cascades.reaches(cascade, middle, radius)) {
+                    self.draw(&mut pass, scene, index, Pass::Shadow);
+                }
+            }
         }
     }
 
@@ -288,16 +281,13 @@ impl Renderer {
             ..Default::default()
         });
         pass.set_bind_group(0, &self.buffers.bind_group, &[]);
-        pass.set_bind_group(3, &self.shadow_group, &[]);
-        for index in 0..scene.draws.len() {
-            let material = scene.primitive(&scene.draws[index]).material;
-            if scene.materials[material].alpha_mode != AlphaMode::Blend {
-                self.draw(&mut pass, scene, index, Pass::Surface);
-            }
+        pass.set_bind_group(3, &self.shadow_maps.group, &[]);
+        for &(_, index) in &self.visible.solid {
+            self.draw(&mut pass, scene, index, Pass::Surface);
         }
         pass.set_pipeline(&self.pipelines.background);
         pass.draw(0..3, 0..1);
-        for &(_, index) in &self.scratch.order {
+        for &(_, index) in &self.visible.blended {
             self.draw(&mut pass, scene, index, Pass::Surface);
         }
     }
@@ -314,8 +304,10 @@ impl Renderer {
             ..Default::default()
         });
         pass.set_bind_group(0, &self.buffers.bind_group, &[]);
-        pass.set_bind_group(3, &self.shadow_group, &[]);
-        (0..scene.draws.len()).for_each(|index| self.draw(&mut pass, scene, index, Pass::Geometry));
+        pass.set_bind_group(3, &self.shadow_maps.group, &[]);
+        for &(_, index) in self.visible.solid.iter().chain(&self.visible.blended) {
+            self.draw(&mut pass, scene, index, Pass::Geometry);
+        }
     }
 }
 
@@ -419,31 +411,4 @@ impl Buffers {
         });
         Self { frame, instances, joints, weights, lights, bind_group }
     }
-}
-
-fn make_shadow_map(device: &wgpu::Device, layouts: &Layouts) -> (wgpu::TextureView, wgpu::BindGroup) {
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("shadow map"),
-        size: wgpu::Extent3d { width: SHADOW_SIZE, height: SHADOW_SIZE, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: DEPTH_FORMAT,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
-    let view = texture.create_view(&Default::default());
-    let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-        label: Some("shadow map"),
-        mag_filter: wgpu::FilterMode::Linear,
-        min_filter: wgpu::FilterMode::Linear,
-        compare: Some(wgpu::CompareFunction::LessEqual),
-        ..Default::default()
-    });
-    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("shadow map"),
-        layout: &layouts.shadow,
-        entries: &[bind_view(0, &view), bind_sampler(1, &sampler)],
-    });
-    (view, group)
 }

@@ -95,7 +95,7 @@ impl Pipelines {
         };
         Self {
             layout: pipeline_layout("scene", &[scene[0], scene[1], scene[2], Some(&layouts.shadow)]),
-            shadow_layout: pipeline_layout("shadow", &scene),
+            shadow_layout: pipeline_layout("shadow", &[scene[0], scene[1], scene[2], Some(&layouts.cascade)]),
             surface: module("surface", &[SCENE, MATERIAL, SKY, include_str!("../../shaders/surface.wgsl")]),
             geometry: module(
                 "geometry buffer",

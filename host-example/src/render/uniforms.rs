@@ -4,6 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
 
 use super::look::{Look, visible_lights};
+use super::shadow::{CASCADES, Cascades};
 use crate::scene::camera::{Projection, View};
 use crate::scene::pose::Pose;
 use crate::scene::{Light, LightKind, Material, Scene};
@@ -15,7 +16,7 @@ pub struct FrameBlock {
     pub world_to_view: Mat4,
     pub view_projection: Mat4,
     pub previous_view_projection: Mat4,
-    pub sun_matrix: Mat4,
+    pub sun_matrices: [Mat4; CASCADES],
     pub eye: Vec4,
     pub backward: Vec4,
     pub sun_direction: Vec4,
@@ -25,6 +26,8 @@ pub struct FrameBlock {
     pub ground: Vec4,
     pub sky_ray: Vec4,
     pub size: Vec4,
+    pub cascade_ends: Vec4,
+    pub cascade_texels: Vec4,
     pub settings: Vec4,
 }
 
@@ -71,7 +74,7 @@ pub struct MaterialBlock {
     pub transforms: [Vec4; 10],
 }
 
-const _: () = assert!(size_of::<FrameBlock>() == 4 * 64 + 10 * 16);
+const _: () = assert!(size_of::<FrameBlock>() == 6 * 64 + 12 * 16);
 const _: () = assert!(size_of::<InstanceBlock>() == 160);
 const _: () = assert!(size_of::<LightBlock>() == 64);
 const _: () = assert!(size_of::<MaterialBlock>() == 64 + 160);
@@ -111,7 +114,13 @@ impl MaterialBlock {
 
 impl FrameBlock {
     /// The block of a frame of `size` pixels. `previous` is the view-projection matrix of the frame before.
-    pub fn new(view: &View, look: &Look, sun: (Mat4, f32), size: (u32, u32), previous: Option<Mat4>) -> Self {
+    pub fn new(
+        view: &View,
+        look: &Look,
+        shadow: &Cascades,
+        size: (u32, u32),
+        previous: Option<Mat4>,
+    ) -> Self {
         let (width, height) = (size.0 as f32, size.1 as f32);
         let projection = view.projection_matrix(width / height);
         let view_projection = projection * view.world_to_view;
@@ -127,17 +136,19 @@ impl FrameBlock {
             world_to_view: view.world_to_view,
             view_projection,
             previous_view_projection: previous.unwrap_or(view_projection),
-            sun_matrix: sun.0,
+            sun_matrices: shadow.matrices,
             eye: to_world.w_axis.truncate().extend(if perspective { 1.0 } else { 0.0 }),
             backward: to_world.z_axis.truncate().normalize_or(Vec3::Z).extend(0.0),
-            sun_direction: look.sun_direction.extend(sun.1),
+            sun_direction: look.sun_direction.extend(0.0),
             sun_color: look.sun_color.map_or(Vec4::ZERO, |c| c.extend(1.0)),
             zenith: look.zenith.extend(0.0),
             horizon: look.horizon.extend(0.0),
             ground: look.ground.extend(0.0),
             sky_ray,
             size: Vec4::new(width, height, 1.0 / width, 1.0 / height),
-            settings: Vec4::new(look.exposure, 0.0, 0.0, 0.0),
+            cascade_ends: Vec3::from(shadow.ends).extend(0.0),
+            cascade_texels: Vec3::from(shadow.texels).extend(0.0),
+            settings: Vec4::new(look.exposure, 0.0, shadow.count as f32, look.sky_scale),
         }
     }
 }

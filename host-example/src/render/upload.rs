@@ -1,5 +1,7 @@
 //! Geometry and materials of a scene on the GPU.
 
+use glam::Vec3;
+
 use super::layouts::{Layouts, bind_buffer, bind_sampler, bind_view};
 use super::textures::TextureStore;
 use super::uniforms::MaterialBlock;
@@ -13,6 +15,10 @@ pub struct GpuPrimitive {
     pub indices: wgpu::Buffer,
     pub index_count: u32,
     pub bind_group: wgpu::BindGroup,
+    /// Middle and radius in the space of the mesh, at rest.
+    pub sphere: (Vec3, f32),
+    /// Whether joints or morph targets move its vertices out of that sphere.
+    pub deforms: bool,
 }
 
 /// Uploads one primitive.
@@ -51,6 +57,8 @@ pub fn primitive(
         vertices: make("vertices", bytemuck::cast_slice(&source.vertices), wgpu::BufferUsages::VERTEX)?,
         indices: make("indices", bytemuck::cast_slice(&source.indices), wgpu::BufferUsages::INDEX)?,
         index_count: source.indices.len() as u32,
+        sphere: source.sphere(),
+        deforms: !(source.influences.is_empty() && source.morph_targets.is_empty()),
         bind_group: device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("geometry"),
             layout: &layouts.geometry,

@@ -11,7 +11,7 @@ pub mod material;
 pub mod obj_file;
 pub mod pose;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use std::path::Path;
 
@@ -92,14 +92,14 @@ pub struct Primitive {
 }
 
 impl Primitive {
-    /// Middle of the box around its vertices, in the space of the mesh.
-    pub fn center(&self) -> Vec3 {
+    /// Middle and radius of a sphere around its vertices, in the space of the mesh.
+    pub fn sphere(&self) -> (Vec3, f32) {
         let corners = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         let (low, high) = self.vertices.iter().fold(corners, |(low, high), vertex| {
             let position = Vec3::from(vertex.position);
             (low.min(position), high.max(position))
         });
-        (low + high) * 0.5
+        ((low + high) * 0.5, (high - low).length() * 0.5)
     }
 }
 

@@ -140,36 +140,38 @@ pub fn bounds(scene: &Scene) -> Option<Bounds> {
     let mut extremes = vec![(f32::NEG_INFINITY, Vec3::ZERO); directions.len()];
     let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     let mut finite = true;
-    let mut pose = Pose::at_rest(scene);
-    let backdrop = |draw: &Draw| scene.nodes[draw.node].backdrop;
-    let all = scene.draws.iter().all(backdrop);
-    let mut include = |pose: &Pose| {
-        for draw in scene.draws.iter().filter(|draw| all || !backdrop(draw)) {
-            pose.positions(scene, draw, |p| {
-                finite &= p.is_finite();
-                (min, max) = (min.min(p), max.max(p));
-                for (best, direction) in extremes.iter_mut().zip(&directions) {
-                    let reach = p.dot(*direction);
-                    if reach > best.0 {
-                        *best = (reach, p);
-                    }
-                }
-            });
+    let mut include = |p: Vec3| {
+        finite &= p.is_finite();
+        (min, max) = (min.min(p), max.max(p));
+        for (best, direction) in extremes.iter_mut().zip(&directions) {
+            let reach = p.dot(*direction);
+            if reach > best.0 {
+                *best = (reach, p);
+            }
         }
     };
-    include(&pose);
-    for (index, animation) in scene.animations.iter().enumerate().filter(|(_, a)| moves_geometry(scene, a)) {
+    let backdrop = |draw: &Draw| scene.nodes[draw.node].backdrop;
+    let all = scene.draws.iter().all(backdrop);
+    let framed = |draw: &&Draw| all || !backdrop(draw);
+    let mut pose = Pose::at_rest(scene);
+    for draw in scene.draws.iter().filter(framed) {
+        pose.positions(scene, draw, &mut include);
+    }
+    for (index, animation) in scene.animations.iter().enumerate() {
+        let moving = moving_draws(scene, animation);
         for sample in 0..BOUNDS_SAMPLES {
             let time = animation.duration() * sample as f32 / BOUNDS_SAMPLES as f32;
             pose.update(scene, Some(index), time);
-            include(&pose);
+            for draw in moving.iter().filter(framed) {
+                pose.positions(scene, draw, &mut include);
+            }
         }
     }
     finite.then(|| Bounds { min, max, extremes: extremes.into_iter().map(|(_, p)| p).collect() })
 }
 
-/// Whether an animation moves anything visible, and not only cameras and lights.
-fn moves_geometry(scene: &Scene, animation: &animation::Animation) -> bool {
+/// What an animation moves; cameras and lights move nothing visible.
+fn moving_draws(scene: &Scene, animation: &animation::Animation) -> Vec<Draw> {
     let mut moving = vec![false; scene.nodes.len()];
     for channel in &animation.channels {
         moving[channel.node] = true;
@@ -179,10 +181,11 @@ fn moves_geometry(scene: &Scene, animation: &animation::Animation) -> bool {
             moving[index] |= moving[parent];
         }
     }
-    scene.draws.iter().any(|draw| {
+    let moves = |draw: &&Draw| {
         let skin = scene.nodes[draw.node].skin;
         moving[draw.node] || skin.is_some_and(|s| scene.skins[s].joints.iter().any(|&j| moving[j]))
-    })
+    };
+    scene.draws.iter().filter(moves).copied().collect()
 }
 
 /// Directions in which extremes are kept: the axes, so that flat scenes keep their corners, and an even

@@ -1,6 +1,6 @@
 //! Tests of the loaders on files that are made here, whole and broken.
 
 mod broken;
-mod build;
+pub(crate) mod build;
 mod gltf;
 mod obj;
