@@ -448,6 +448,24 @@ typedef void (*IsophoteProgress)(void *user, float done);
 // Asked often, on any thread; another value than 0 stops the work.
 typedef uint32_t (*IsophoteCancelled)(void *user);
 
+// What one pass took on the CPU.
+typedef struct IsophotePassTime {
+  // The kernel; valid during the call.
+  const char *kernel;
+  // Wall-clock time in seconds.
+  double seconds;
+  // Multiply-adds, or operations of like cost, by the kernel's own reckoning.
+  double operations;
+  // Bytes of the images read and written, each once.
+  uint64_t bytes;
+  // Pixels written.
+  uint64_t pixels;
+} IsophotePassTime;
+
+// Told what each pass took, in their order, when the work is done, on the thread that called the
+// library. On a device it is not called.
+typedef void (*IsophoteMeasured)(void *user, const struct IsophotePassTime *pass);
+
 // How work is done and watched. Callbacks may be null, must return normally (no exception, no
 // longjmp), and may themselves call the library.
 typedef struct IsophoteControl {
@@ -459,6 +477,8 @@ typedef struct IsophoteControl {
   IsophoteProgress progress;
   // Asked whether to stop.
   IsophoteCancelled cancelled;
+  // Told what each pass took; without it nothing is measured.
+  IsophoteMeasured measured;
   // Threads of the library to use, or how many the host's `run` has; 0 for one per core, 1 for the
   // calling thread alone. At most 1024.
   uint32_t threads;

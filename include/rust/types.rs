@@ -260,6 +260,26 @@ pub type IsophoteProgress = Option<unsafe extern "C" fn(user: *mut c_void, done:
 /// Asked often, on any thread; another value than 0 stops the work.
 pub type IsophoteCancelled = Option<unsafe extern "C" fn(user: *mut c_void) -> u32>;
 
+/// What one pass took on the CPU.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct IsophotePassTime {
+    /// The kernel; valid during the call.
+    pub kernel: *const c_char,
+    /// Wall-clock time in seconds.
+    pub seconds: f64,
+    /// Multiply-adds, or operations of like cost, by the kernel's own reckoning.
+    pub operations: f64,
+    /// Bytes of the images read and written, each once.
+    pub bytes: u64,
+    /// Pixels written.
+    pub pixels: u64,
+}
+
+/// Told what each pass took, in their order, when the work is done, on the thread that called the
+/// library. On a device it is not called.
+pub type IsophoteMeasured = Option<unsafe extern "C" fn(user: *mut c_void, pass: *const IsophotePassTime)>;
+
 /// How work is done and watched. Callbacks may be null, must return normally (no exception, no
 /// longjmp), and may themselves call the library.
 #[repr(C)]
@@ -273,6 +293,8 @@ pub struct IsophoteControl {
     pub progress: IsophoteProgress,
     /// Asked whether to stop.
     pub cancelled: IsophoteCancelled,
+    /// Told what each pass took; without it nothing is measured.
+    pub measured: IsophoteMeasured,
     /// Threads of the library to use, or how many the host's `run` has; 0 for one per core, 1 for the
     /// calling thread alone. At most 1024.
     pub threads: u32,

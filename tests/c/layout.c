@@ -20,6 +20,7 @@ int main(void)
     SHOW(IsophoteTarget);
     SHOW(IsophoteInput);
     SHOW(IsophoteSupport);
+    SHOW(IsophotePassTime);
     SHOW(IsophoteControl);
     SHOW(IsophoteReport);
     SHOW(IsophoteTexture);

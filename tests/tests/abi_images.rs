@@ -364,7 +364,14 @@ unsafe extern "C" fn on_our_threads(user: *mut c_void, jobs: u32, job: IsophoteJ
 
 fn control(watch: &Watch) -> IsophoteControl {
     let user = (&raw const *watch).cast_mut().cast();
-    IsophoteControl { user, run: None, progress: Some(tell), cancelled: Some(ask), threads: 0 }
+    IsophoteControl {
+        user,
+        run: None,
+        progress: Some(tell),
+        cancelled: Some(ask),
+        measured: None,
+        threads: 0,
+    }
 }
 
 #[test]
@@ -462,8 +469,14 @@ fn a_graph_may_be_destroyed_while_it_runs() {
     let expected = run.result(&color(floats(&data)));
     let mut pair = (run.api, run.graph);
     let user = (&raw mut pair).cast();
-    run.control =
-        Some(IsophoteControl { user, run: None, progress: Some(destroy), cancelled: None, threads: 0 });
+    run.control = Some(IsophoteControl {
+        user,
+        run: None,
+        progress: Some(destroy),
+        cancelled: None,
+        measured: None,
+        threads: 0,
+    });
     let out = vec![-7.0_f32; data.len()];
     let whole = target(floats(&out));
     // SAFETY: the pointers lead to what the table asks for.

@@ -245,7 +245,7 @@ fn the_header_has_the_layout_of_the_declarations() {
     let sizes = sizes! {
         IsophoteText IsophoteRect IsophoteChoice IsophotePort IsophoteParam IsophoteNode IsophoteCatalogue
         IsophoteValue IsophoteRequest IsophoteImage IsophoteTarget IsophoteInput IsophoteSupport
-        IsophoteControl IsophoteReport IsophoteTexture IsophotePass IsophoteBinding IsophoteShader IsophoteApi
+        IsophotePassTime IsophoteControl IsophoteReport IsophoteTexture IsophotePass IsophoteBinding IsophoteShader IsophoteApi
     };
     let Some(program) = compiled("layout.c") else { return };
     let text = printed(&Command::new(program).output().expect("the program can be started"), "layout");

@@ -40,7 +40,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let mut result = target(&source, kind, format.family());
     let bar = progress_bar();
     let mut progress = |done: f32| bar.set_position((done * 1000.0) as u64);
-    let mut control = Control { threads: args.threads, progress: Some(&mut progress) };
+    let mut control = Control { threads: args.threads, progress: Some(&mut progress), measured: None };
     let inputs = [Input { name: "color", pixels: &source.pixels }];
     let report = graph
         .process(device.as_ref(), &request, &inputs, &mut result, &mut control)

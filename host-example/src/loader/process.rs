@@ -3,8 +3,8 @@
 use std::ffi::c_void;
 
 use super::contract::{
-    self as c, IsophoteControl, IsophoteImage, IsophoteInput, IsophoteReport, IsophoteRequest,
-    IsophoteSample, IsophoteTarget,
+    self as c, IsophoteControl, IsophoteImage, IsophoteInput, IsophotePassTime, IsophoteReport,
+    IsophoteRequest, IsophoteSample, IsophoteTarget,
 };
 use super::{Answer, Device, Graph, text};
 use crate::pixels::{Pixels, Precision};
@@ -25,6 +25,23 @@ pub struct Control<'a> {
     pub threads: u32,
     /// Told the share of the work done.
     pub progress: Option<&'a mut dyn FnMut(f32)>,
+    /// Receives what each pass took; on the CPU only.
+    pub measured: Option<&'a mut Vec<PassTime>>,
+}
+
+/// What one pass took on the CPU.
+#[derive(Clone, Debug)]
+pub struct PassTime {
+    /// The kernel.
+    pub kernel: String,
+    /// Wall-clock time.
+    pub seconds: f64,
+    /// Multiply-adds, or operations of like cost, by the kernel's own reckoning.
+    pub operations: f64,
+    /// Bytes of the images read and written, each once.
+    pub bytes: u64,
+    /// Pixels written.
+    pub pixels: u64,
 }
 
 /// What became of the work.
@@ -60,12 +77,13 @@ impl Graph {
             .map(|(name, input)| IsophoteInput { name: name.as_ptr(), image: image(input.pixels) })
             .collect();
         let target = self::target(target);
-        let threads = control.threads;
+        let (threads, wants_times) = (control.threads, control.measured.is_some());
         let control = IsophoteControl {
             user: std::ptr::from_mut(control).cast(),
             run: None,
             progress: Some(progress),
             cancelled: None,
+            measured: if wants_times { Some(measured) } else { None },
             threads,
         };
         let mut report = IsophoteReport::default();
@@ -96,6 +114,25 @@ unsafe extern "C" fn progress(user: *mut c_void, done: f32) {
     let control = unsafe { &mut *user.cast::<Control<'_>>() };
     if let Some(progress) = &mut control.progress {
         progress(done);
+    }
+}
+
+/// Called on the thread that called `process`, while it does not return.
+unsafe extern "C" fn measured(user: *mut c_void, pass: *const IsophotePassTime) {
+    // SAFETY: `user` is the control of the running call, which nothing else touches meanwhile; `pass` and the
+    // name that it points to live during this call.
+    unsafe {
+        let control = &mut *user.cast::<Control<'_>>();
+        let pass = &*pass;
+        if let Some(times) = &mut control.measured {
+            times.push(PassTime {
+                kernel: text::kept(pass.kernel).to_owned(),
+                seconds: pass.seconds,
+                operations: pass.operations,
+                bytes: pass.bytes,
+                pixels: pass.pixels,
+            });
+        }
     }
 }
 

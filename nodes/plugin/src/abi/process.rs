@@ -8,12 +8,12 @@ use super::guard::{self, Failure, Outcome, lock};
 use super::handles::Object;
 use super::images::{Checked, shown};
 use super::threads::{Chosen, User};
-use isophote::engine::cpu::{Control, CpuExecutor};
-use isophote::engine::{Image, Plan, Rect, Support, gpu};
+use isophote::engine::cpu::{Control, CpuExecutor, PassTime};
+use isophote::engine::{Image, ImageId, Plan, Rect, Support, gpu};
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
 use isophote::{ColourSpace, Graph, Planned, Request};
-use std::ffi::c_char;
+use std::ffi::{CString, c_char, c_void};
 use std::ptr::null_mut;
 use std::sync::Arc;
 use std::time::Instant;
@@ -212,8 +212,14 @@ pub(super) unsafe extern "C" fn process(
     })
 }
 
-const NO_CONTROL: IsophoteControl =
-    IsophoteControl { user: null_mut(), run: None, progress: None, cancelled: None, threads: 0 };
+const NO_CONTROL: IsophoteControl = IsophoteControl {
+    user: null_mut(),
+    run: None,
+    progress: None,
+    cancelled: None,
+    measured: None,
+    threads: 0,
+};
 
 /// The host's inputs, checked and named.
 ///
@@ -318,7 +324,13 @@ impl Job<'_> {
             .ok_or_else(|| Failure::new(ISOPHOTE_INTERNAL, "the graph has no plan"))?;
         let results = match device {
             None => {
-                cpu.get_or_insert_default().run(plan, images, self.region, self.threads.threads(), control)?
+                let cpu = cpu.get_or_insert_default();
+                cpu.record_times(self.control.measured.is_some());
+                let results = cpu.run(plan, images, self.region, self.threads.threads(), control)?;
+                if let Some(measured) = self.control.measured {
+                    self.tell_times(plan, cpu.times(), measured);
+                }
+                results
             }
             Some(object) => {
                 let executor = match gpu.take() {
@@ -335,6 +347,37 @@ impl Job<'_> {
             }
         };
         results.into_iter().next().ok_or_else(|| Failure::new(ISOPHOTE_INTERNAL, "the plan gave no image"))
+    }
+}
+
+impl Job<'_> {
+    /// Tells the host what each pass of the last run on the CPU took.
+    fn tell_times(
+        &self,
+        plan: &Plan,
+        times: &[PassTime],
+        measured: unsafe extern "C" fn(*mut c_void, *const IsophotePassTime),
+    ) {
+        let windows = plan.windows(self.region);
+        let pixels = |image: &ImageId| {
+            let window = windows[image.index()];
+            u64::from(window.width()) * u64::from(window.height())
+        };
+        let bytes = |image: &ImageId| pixels(image) * u64::from(plan.desc(*image).channels) * 4;
+        // Passes that the region does not need were not run.
+        let passes = plan.passes().iter().filter(|pass| !windows[pass.outputs[0].index()].is_empty());
+        for (pass, time) in passes.zip(times) {
+            let kernel = CString::new(pass.kernel.name).unwrap_or_default();
+            let told = IsophotePassTime {
+                kernel: kernel.as_ptr(),
+                seconds: time.time.as_secs_f64(),
+                operations: (pass.kernel.cost)(&pass.params) * time.pixels as f64,
+                bytes: pass.inputs.iter().chain(&pass.outputs).map(bytes).sum(),
+                pixels: time.pixels,
+            };
+            // SAFETY: the host promised a function of this type; what it is told lives during the call.
+            unsafe { measured(self.control.user, &raw const told) };
+        }
     }
 }
 
