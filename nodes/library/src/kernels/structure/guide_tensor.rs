@@ -110,34 +110,53 @@ fn other<S: Simd>(v: f32x8<S>, centre: f32x8<S>) -> f32x8<S> {
     (v - centre).abs().simd_gt(c(0.5)).select(c(1.0), c(0.0))
 }
 
-/// The optimized 3x3 operator (2.26, 2.27) on the eight neighbours, given by column and row offset.
+/// Eight pixels with their neighbours, row by row.
+type Neighbours<S> = [[f32x8<S>; 3]; 3];
+
+/// Vector `i` of one channel; the rows begin one pixel before the first vector.
 #[inline(always)]
-fn gradient<S: Simd>(simd: S, tap: impl Fn(usize, usize) -> f32x8<S>) -> [f32x8<S>; 2] {
-    let c = |x: f32| f32x8::splat(simd, x);
-    let (nw, n, ne) = (tap(0, 0), tap(1, 0), tap(2, 0));
-    let (w, e) = (tap(0, 1), tap(2, 1));
-    let (sw, s, se) = (tap(0, 2), tap(1, 2), tap(2, 2));
-    let corner = c(0.091_484_375);
-    let x = ((ne - nw) + (se - sw)) * corner + (e - w) * 0.317_031_25;
-    let y = ((sw - nw) + (se - ne)) * corner + (s - n) * 0.317_031_25;
+fn neighbours<S: Simd>(simd: S, rows: &[&[f32]; 3], i: usize) -> Neighbours<S> {
+    let mut all = [[f32x8::splat(simd, 0.0); 3]; 3];
+    for y in 0..3 {
+        let row = &rows[y][8 * i..8 * i + 10];
+        for x in 0..3 {
+            all[y][x] = f32x8::from_slice(simd, &row[x..x + 8]);
+        }
+    }
+    all
+}
+
+/// The optimized 3x3 operator (2.26, 2.27).
+#[inline(always)]
+fn gradient<S: Simd>([[nw, n, ne], [w, _, e], [sw, s, se]]: Neighbours<S>) -> [f32x8<S>; 2] {
+    let x = ((ne - nw) + (se - sw)) * 0.091_484_375 + (e - w) * 0.317_031_25;
+    let y = ((sw - nw) + (se - ne)) * 0.091_484_375 + (s - n) * 0.317_031_25;
     [x, y]
 }
 
 #[inline(always)]
 fn normals<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
-    let load = |rows: &mut Rows, y: i32| rows.load4(simd, &pass.inputs[1], y, clean_normal);
-    over_blocks::<S, 4>(simd, pass, params, band, load, |rows, i| {
-        let tap = |c: usize, x: usize, y: usize| f32x8::from_slice(simd, &rows[c][y][8 * i + x..][..8]);
-        let channel = |c: usize| gradient(simd, |x, y| tap(c, x, y));
-        let (valid, validity) = (channel(3), tap(3, 1, 1));
-        let mut sums = [f32x8::splat(simd, 0.0); 3];
-        for c in 0..3 {
-            let ([gx, gy], centre) = (channel(c), tap(c, 1, 1));
-            let (x, y) = (validity * gx - centre * valid[0], validity * gy - centre * valid[1]);
-            sums = [sums[0] + x * x, sums[1] + x * y, sums[2] + y * y];
-        }
-        sums
-    });
+    over_blocks(
+        simd,
+        pass,
+        params,
+        band,
+        #[inline(always)]
+        |rows, y| rows.load4(simd, &pass.inputs[1], y, clean_normal),
+        #[inline(always)]
+        |rows: &[[&[f32]; 3]; 4], i| {
+            let around = neighbours(simd, &rows[3], i);
+            let (validity, [valid_x, valid_y]) = (around[1][1], gradient(around));
+            let mut sums = [f32x8::splat(simd, 0.0); 3];
+            for channel in &rows[..3] {
+                let around = neighbours(simd, channel, i);
+                let (centre, [gx, gy]) = (around[1][1], gradient(around));
+                let (x, y) = (validity * gx - centre * valid_x, validity * gy - centre * valid_y);
+                sums = [sums[0] + x * x, sums[1] + x * y, sums[2] + y * y];
+            }
+            sums
+        },
+    );
 }
 
 #[inline(always)]
@@ -149,17 +168,28 @@ fn scalars<S: Simd>(
     clean: impl Fn(f32x8<S>) -> f32x8<S>,
     difference: impl Fn(f32x8<S>, f32x8<S>) -> f32x8<S>,
 ) {
-    let load = |rows: &mut Rows, y: i32| rows.load1(simd, &pass.inputs[1], y, &clean);
-    over_blocks::<S, 1>(simd, pass, params, band, load, |rows, i| {
-        let tap = |x: usize, y: usize| f32x8::from_slice(simd, &rows[0][y][8 * i + x..][..8]);
-        let centre = tap(1, 1);
-        let [x, y] = gradient(simd, |x, y| difference(tap(x, y), centre));
-        [x * x, x * y, y * y]
-    });
+    over_blocks(
+        simd,
+        pass,
+        params,
+        band,
+        #[inline(always)]
+        |rows, y| rows.load1(simd, &pass.inputs[1], y, &clean),
+        #[inline(always)]
+        |rows: &[[&[f32]; 3]; 1], i| {
+            let mut around = neighbours(simd, &rows[0], i);
+            let centre = around[1][1];
+            for value in around.as_flattened_mut() {
+                *value = difference(*value, centre);
+            }
+            let [x, y] = gradient(around);
+            [x * x, x * y, y * y]
+        },
+    );
 }
 
 /// Adds the guide's tensor to the first input. `guide` gives it for vector `i` of a row, from the rows
-/// above, at and below, channel by channel; they begin one pixel before the first vector.
+/// above, at and below, channel by channel.
 #[inline(always)]
 fn over_blocks<S: Simd, const CHANNELS: usize>(
     simd: S,
