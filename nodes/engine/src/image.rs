@@ -25,16 +25,19 @@ impl Rect {
     }
 
     /// Columns covered; 0 when empty.
+    #[inline]
     pub const fn width(&self) -> u32 {
         if self.x1 > self.x0 { (self.x1 - self.x0) as u32 } else { 0 }
     }
 
     /// Rows covered; 0 when empty.
+    #[inline]
     pub const fn height(&self) -> u32 {
         if self.y1 > self.y0 { (self.y1 - self.y0) as u32 } else { 0 }
     }
 
     /// True when no pixel lies inside.
+    #[inline]
     pub const fn is_empty(&self) -> bool {
         self.width() == 0 || self.height() == 0
     }
@@ -177,6 +180,7 @@ impl Image {
     }
 
     /// Values from one row to the next.
+    #[inline]
     pub fn stride(&self) -> usize {
         self.window.width() as usize * self.channels as usize
     }
@@ -271,6 +275,7 @@ impl<'a> View<'a> {
     }
 
     /// Values from one row to the next.
+    #[inline]
     pub fn stride(&self) -> usize {
         self.window.width() as usize * self.channels as usize
     }
