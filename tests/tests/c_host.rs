@@ -281,6 +281,21 @@ fn bad_arguments_of_the_c_program_are_one_line_each() {
 }
 
 #[test]
+fn a_c_program_may_end_without_cleaning_up() {
+    let Some(program) = compiled("leave.c") else { return };
+    for end in ["stay", "unload"] {
+        for device in ["cpu", "gpu"] {
+            let run = Command::new(&program).arg(library::path()).args([end, device]).output();
+            let text = printed(&run.expect("the program can be started"), end);
+            if device == "gpu" && text != "device\n" {
+                assert!(std::env::var("CI").is_err(), "there is no graphics device");
+                eprintln!("\n*** SKIPPED: ending with a graphics device alive needs one ***\n");
+            }
+        }
+    }
+}
+
+#[test]
 fn the_library_exports_one_symbol() {
     if !cfg!(target_os = "linux") || !has("nm") {
         return;
