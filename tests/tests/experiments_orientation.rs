@@ -102,17 +102,18 @@ fn scharr_is_more_rotation_invariant_than_sobel_at_every_angle() {
     };
     let all = OPERATORS.map(binned);
     println!("angle   {}", OPERATORS.map(|o| format!("{o:>8}")).join(" "));
-    for bin in 0..18 {
+    for bin in 0..18usize {
         let row: Vec<String> = all.iter().map(|o| format!("{:8.3}", o[bin])).collect();
         println!("{:2}..{:2}  {}", 5 * bin, 5 * bin + 5, row.join(" "));
     }
-    for bin in 0..18 {
-        assert!(all[2][bin] < all[1][bin], "scharr3 at {} degrees", 5 * bin);
-        assert!(all[3][bin] < all[1][bin], "scharr5 at {} degrees", 5 * bin);
+    let [_, sobel, scharr3, scharr5] = &all;
+    for (bin, limit) in sobel.iter().enumerate() {
+        assert!(scharr3[bin] < *limit, "scharr3 at {} degrees", 5 * bin);
+        assert!(scharr5[bin] < *limit, "scharr5 at {} degrees", 5 * bin);
     }
     let spread =
         |o: &[f64; 18]| o.iter().fold(0.0f64, |m, v| m.max(*v)) - o.iter().fold(f64::MAX, |m, v| m.min(*v));
-    assert!(spread(&all[2]) < 0.5 * spread(&all[1]), "the error depends less on the angle");
+    assert!(spread(scharr3) < 0.5 * spread(sobel), "the error depends less on the angle");
 }
 
 /// Eigenvalues and angle of the major eigenvector, in double precision.
