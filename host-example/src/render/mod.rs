@@ -33,9 +33,9 @@ use self::uniforms::{FrameBlock, InstanceBlock, LightBlock};
 use self::upload::GpuPrimitive;
 use self::visible::Visible;
 use crate::error::Result;
-use crate::scene::Scene;
 use crate::scene::camera::View;
 use crate::scene::pose::Pose;
+use crate::scene::{AlphaMode, Scene};
 
 /// A scene on the GPU with the targets it is rendered into.
 pub struct Renderer {
@@ -169,7 +169,7 @@ impl Renderer {
     ) {
         let frame = self.write_buffers(scene, pose, view, look);
         for draw in 0..scene.draws.len() {
-            for pass in [Pass::Shadow, Pass::Surface, Pass::Geometry] {
+            for pass in [Pass::Shadow, Pass::Depth, Pass::Surface, Pass::Geometry] {
                 self.pipelines.prepare(&self.device, self.variant(scene, draw, pass));
             }
         }
@@ -282,6 +282,12 @@ impl Renderer {
         });
         pass.set_bind_group(0, &self.buffers.bind_group, &[]);
         pass.set_bind_group(3, &self.shadow_maps.group, &[]);
+        for &(_, index) in &self.visible.solid {
+            let material = &scene.materials[scene.primitive(&scene.draws[index]).material];
+            if material.alpha_mode == AlphaMode::Opaque {
+                self.draw(&mut pass, scene, index, Pass::Depth);
+            }
+        }
         for &(_, index) in &self.visible.solid {
             self.draw(&mut pass, scene, index, Pass::Surface);
         }

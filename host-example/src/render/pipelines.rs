@@ -13,6 +13,8 @@ use crate::scene::{AlphaMode, Material, Vertex};
 pub enum Pass {
     /// Depth as the sun sees it.
     Shadow,
+    /// Depth of opaque draws alone, so that the colours of each pixel are computed once.
+    Depth,
     /// Colours.
     Surface,
     /// The geometry buffer.
@@ -41,6 +43,7 @@ impl Variant {
             AlphaMode::Blend => 2,
         };
         match pass {
+            Pass::Depth => Self { pass, alpha: 0, double_sided: material.double_sided, mirrored },
             Pass::Shadow => Self { pass, alpha: alpha.min(1), double_sided: true, mirrored: false },
             Pass::Geometry => {
                 Self { pass, alpha: alpha.min(1), double_sided: material.double_sided, mirrored }
@@ -140,11 +143,18 @@ impl Pipelines {
         let target = |format, blend| {
             Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL })
         };
+        // The pass has a colour target all the same.
+        let untouched = Some(wgpu::ColorTargetState {
+            format: COLOR_FORMAT,
+            blend: None,
+            write_mask: wgpu::ColorWrites::empty(),
+        });
         let blend = (variant.alpha == 2).then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
         let alpha_mode = [("ALPHA_MODE", f64::from(variant.alpha))];
         let cutout = [("CUTOUT", f64::from(variant.alpha))];
         let (module, name, targets, constants): (_, _, Vec<_>, &[(&str, f64)]) = match variant.pass {
             Pass::Shadow => (&self.shadow, "shadow", vec![], &[]),
+            Pass::Depth => (&self.surface, "depth", vec![untouched], &alpha_mode),
             Pass::Surface => (&self.surface, "surface", vec![target(COLOR_FORMAT, blend)], &alpha_mode),
             Pass::Geometry => {
                 let formats = [NORMAL_FORMAT, LINEAR_DEPTH_FORMAT, OBJECT_ID_FORMAT, MOTION_FORMAT];
@@ -152,7 +162,8 @@ impl Pipelines {
             }
         };
         let in_shadow = variant.pass == Pass::Shadow;
-        let solid_shadow = in_shadow && variant.alpha == 0;
+        let multisampled = matches!(variant.pass, Pass::Depth | Pass::Surface);
+        let no_fragments = in_shadow && variant.alpha == 0;
         let entry = |stage| format!("{name}_{stage}");
         let (vertex_entry, fragment_entry) = (entry("vertex"), entry("fragment"));
         // Constants may only be given to stages whose module declares them, and the vertex stage shares it.
@@ -177,8 +188,8 @@ impl Pipelines {
                 depth_compare: Some(if in_shadow {
                     wgpu::CompareFunction::Less
                 } else {
-                    // Depth is reversed.
-                    wgpu::CompareFunction::Greater
+                    // Depth is reversed, and may be there already.
+                    wgpu::CompareFunction::GreaterEqual
                 }),
                 stencil: Default::default(),
                 bias: if in_shadow {
@@ -188,11 +199,11 @@ impl Pipelines {
                 },
             }),
             multisample: wgpu::MultisampleState {
-                count: if variant.pass == Pass::Surface { SAMPLES } else { 1 },
+                count: if multisampled { SAMPLES } else { 1 },
                 alpha_to_coverage_enabled: variant.pass == Pass::Surface && variant.alpha == 1,
                 ..Default::default()
             },
-            fragment: (!solid_shadow).then_some(wgpu::FragmentState {
+            fragment: (!no_fragments).then_some(wgpu::FragmentState {
                 module,
                 entry_point: Some(&fragment_entry),
                 compilation_options: options,
