@@ -16,6 +16,6 @@ pub struct Options {
 /// # Errors
 /// When the build or the benchmark fails.
 pub fn run(options: &Options) -> Result<()> {
-    cargo(&["build", "--release", "--package", "isophote-host", "--package", "isophote-plugin"])?;
+    cargo(&["build", "--release", "--workspace", "--lib", "--bins"])?;
     run_command(host("release").arg("bench").args(&options.arguments))
 }

@@ -3,7 +3,7 @@
 
 use crate::error::{Context, Result};
 use crate::setup::{self, VULKAN};
-use crate::tools::{cargo, heading, host, root, run as run_command, target_dir};
+use crate::tools::{cargo, heading, host, root, run as run_command};
 use image::imageops::{FilterType, overlay, resize};
 use image::{Rgb, RgbImage};
 use std::path::{Path, PathBuf};
@@ -25,8 +25,12 @@ const THUMBNAIL: (u32, u32) = (160, 90);
 const THUMBNAILS_PER_ROW: u32 = 12;
 
 /// Name of the pictures, and what `--style` says.
-const STYLES: [(&str, &str); 4] =
-    [("plain", "none"), ("cartoon", "cartoon"), ("blueprint", "blueprint"), ("flow", "host-example/graphs/flow.json")];
+const STYLES: [(&str, &str); 4] = [
+    ("plain", "none"),
+    ("cartoon", "cartoon"),
+    ("blueprint", "blueprint"),
+    ("flow", "host-example/graphs/flow.json"),
+];
 
 /// Builds, renders and says where the pictures are.
 ///
@@ -35,7 +39,7 @@ const STYLES: [(&str, &str); 4] =
 pub fn run(options: &Options) -> Result<()> {
     setup::ensure(&[&VULKAN])?;
     heading("build");
-    cargo(&["build", "--package", "isophote-host", "--package", "isophote-plugin"])?;
+    cargo(&["build", "--workspace", "--lib", "--bins"])?;
     let out = root().join(&options.out);
     let scene = out.join("scene");
     crate::scene::run(&crate::scene::Options { out: scene.clone() })?;
@@ -51,11 +55,12 @@ pub fn run(options: &Options) -> Result<()> {
         let pattern = out.join("turntable").join(format!("{name}.####.png"));
         let frames = options.frames.to_string();
         render(&file, &pattern, style, TURNTABLE, &["--frames", &frames, "--turntable"])?;
-        turntables.push((1..=options.frames).map(|i| out.join("turntable").join(format!("{name}.{i:04}.png"))));
+        turntables
+            .extend((1..=options.frames).map(|i| out.join("turntable").join(format!("{name}.{i:04}.png"))));
     }
 
     let sheet = out.join("contact-sheet.png");
-    contact_sheet(&panels, turntables.into_iter().flatten(), options.frames)?
+    contact_sheet(&panels, turntables.into_iter(), options.frames)?
         .save(&sheet)
         .context(|| format!("cannot write {}", sheet.display()))?;
     println!("\nthe pictures are in {}\nall of them on one sheet: {}", out.display(), sheet.display());
@@ -69,12 +74,7 @@ fn render(scene: &Path, out: &Path, style: &str, size: (u32, u32), more: &[&str]
     let mut command = host("debug");
     command.current_dir(root()).arg("render").arg(scene).arg(out);
     command.args(["--style", style, "--size", &format!("{}x{}", size.0, size.1)]).args(more);
-    command.env("ISOPHOTE_LIBRARY", target_dir("debug").join(libloading_name()));
     run_command(&mut command)
-}
-
-fn libloading_name() -> String {
-    format!("{}isophote{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX)
 }
 
 fn contact_sheet(panels: &[PathBuf], frames: impl Iterator<Item = PathBuf>, count: u32) -> Result<RgbImage> {

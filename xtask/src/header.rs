@@ -14,7 +14,7 @@ use std::path::Path;
 pub struct Options {
     /// Compare with the committed header instead of writing it
     #[arg(long)]
-    check: bool,
+    pub check: bool,
 }
 
 /// The files that declare the contract, in the order of the header.

@@ -1,8 +1,14 @@
 //! The project's chores, `cargo xtask <chore>`: one module for each.
 
+mod bench;
+mod demo;
 mod error;
 mod header;
+mod readme;
 mod scene;
+mod setup;
+mod test;
+mod tools;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -17,8 +23,18 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Chore {
+    /// Renders the demo scene in four styles, with turntables and a contact sheet
+    Demo(demo::Options),
+    /// Sets up what the tests need and runs every check
+    Test(test::Options),
+    /// Makes the golden images anew; look at them before committing
+    Bless,
+    /// Runs the host's benchmark, built for speed
+    Bench(bench::Options),
     /// Writes include/isophote.h from the Rust declarations
     Header(header::Options),
+    /// Writes the README's table of nodes from their declarations
+    Readme(readme::Options),
     /// Writes the demo scene (glTF) and the house (OBJ)
     Scene(scene::Options),
 }
@@ -26,6 +42,11 @@ enum Chore {
 fn main() -> ExitCode {
     // Clap itself ends wrong usage with code 2.
     let outcome = match Cli::parse().chore {
+        Chore::Demo(options) => demo::run(&options),
+        Chore::Test(options) => test::run(&options),
+        Chore::Bless => test::bless(),
+        Chore::Bench(options) => bench::run(&options),
+        Chore::Readme(options) => readme::run(&options),
         Chore::Header(options) => header::run(&options),
         Chore::Scene(options) => scene::run(&options),
     };

@@ -24,7 +24,8 @@ pub const C_COMPILER: Need =
     Need { what: "a C compiler", present: || program("cc"), packages: &["gcc", "libc6-dev"] };
 
 /// A C++ compiler.
-pub const CPP_COMPILER: Need = Need { what: "a C++ compiler", present: || program("c++"), packages: &["g++"] };
+pub const CPP_COMPILER: Need =
+    Need { what: "a C++ compiler", present: || program("c++"), packages: &["g++"] };
 
 /// `nm`, to list exported symbols.
 pub const BINUTILS: Need = Need { what: "binutils", present: || program("nm"), packages: &["binutils"] };
@@ -41,11 +42,29 @@ pub const XVFB: Need = Need {
     what: "Xvfb and the X11 libraries",
     present: || {
         program("Xvfb")
-            && ["libX11.so.6", "libX11-xcb.so.1", "libXcursor.so.1", "libXi.so.6", "libXrandr.so.2", "libxkbcommon-x11.so.0"]
-                .into_iter()
-                .all(shared_library)
+            && program("xdotool")
+            && [
+                "libX11.so.6",
+                "libX11-xcb.so.1",
+                "libXcursor.so.1",
+                "libXi.so.6",
+                "libXrandr.so.2",
+                "libxkbcommon-x11.so.0",
+            ]
+            .into_iter()
+            .all(shared_library)
     },
-    packages: &["xvfb", "xauth", "libx11-6", "libx11-xcb1", "libxcursor1", "libxi6", "libxrandr2", "libxkbcommon-x11-0"],
+    packages: &[
+        "xvfb",
+        "xauth",
+        "xdotool",
+        "libx11-6",
+        "libx11-xcb1",
+        "libxcursor1",
+        "libxi6",
+        "libxrandr2",
+        "libxkbcommon-x11-0",
+    ],
 };
 
 /// Makes sure that everything in `needs` is there, installing packages where this machine is a
@@ -71,7 +90,11 @@ pub fn ensure(needs: &[&Need]) -> Result<()> {
         let mut line: Vec<&str> = prefix.to_vec();
         line.extend(["apt-get", "-q"]);
         line.extend(arguments);
-        Command::new(line[0]).args(&line[1..]).env("DEBIAN_FRONTEND", "noninteractive").status().is_ok_and(|s| s.success())
+        Command::new(line[0])
+            .args(&line[1..])
+            .env("DEBIAN_FRONTEND", "noninteractive")
+            .status()
+            .is_ok_and(|s| s.success())
     };
     let mut install = vec!["install", "-y", "--no-install-recommends"];
     install.extend(&packages);
@@ -90,7 +113,12 @@ fn apt() -> Option<&'static [&'static str]> {
         return None;
     }
     let quiet = |name: &str, arguments: &[&str]| {
-        Command::new(name).args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).stdin(Stdio::null()).status()
+        Command::new(name)
+            .args(arguments)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .stdin(Stdio::null())
+            .status()
     };
     let root = Command::new("id").arg("-u").output().is_ok_and(|o| o.stdout.trim_ascii() == b"0");
     if root {
@@ -113,11 +141,16 @@ fn shared_library(name: &str) -> bool {
         return true;
     }
     let arch = format!("/usr/lib/{}-linux-gnu", std::env::consts::ARCH);
-    [arch.as_str(), "/usr/lib64", "/usr/lib", "/usr/local/lib", "/lib"].iter().any(|dir| Path::new(dir).join(name).exists())
+    [arch.as_str(), "/usr/lib64", "/usr/lib", "/usr/local/lib", "/lib"]
+        .iter()
+        .any(|dir| Path::new(dir).join(name).exists())
 }
 
 fn vulkan_driver() -> bool {
-    if !cfg!(target_os = "linux") || std::env::var_os("VK_DRIVER_FILES").is_some() || std::env::var_os("VK_ICD_FILENAMES").is_some() {
+    if !cfg!(target_os = "linux")
+        || std::env::var_os("VK_DRIVER_FILES").is_some()
+        || std::env::var_os("VK_ICD_FILENAMES").is_some()
+    {
         return true;
     }
     ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d", "/usr/local/share/vulkan/icd.d"]

@@ -34,3 +34,12 @@ pub fn run(options: &Options) -> Result<()> {
     heading("tests");
     cargo(&["test", "--workspace", "--no-fail-fast"])
 }
+
+/// Makes the golden images anew. Look at them before they are committed.
+///
+/// # Errors
+/// When they cannot be made.
+pub fn bless() -> Result<()> {
+    let mut command = crate::tools::cargo_command(&["test", "--workspace", "--test", "goldens"]);
+    crate::tools::run(command.env("ISOPHOTE_BLESS", "1"))
+}
