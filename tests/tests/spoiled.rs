@@ -40,8 +40,14 @@ fn a_changed_number_in_a_shader_is_noticed() {
             let outcome = noticed.as_deref().unwrap_or("NOT NOTICED");
             println!("{:28} {}: {outcome}", kernel.name, change.change);
         }
-        if tried.iter().all(|(_, noticed)| noticed.is_none()) {
-            unnoticed.push(format!("{}: none of {} changes was noticed", kernel.name, tried.len()));
+        // Some numbers only guard what rarely happens; most must matter.
+        let noticed = tried.iter().filter(|(_, noticed)| noticed.is_some()).count();
+        if noticed == 0 || 3 * noticed < tried.len() {
+            unnoticed.push(format!(
+                "{}: only {noticed} of {} changes were noticed",
+                kernel.name,
+                tried.len()
+            ));
         }
     }
     assert!(unnoticed.is_empty(), "\n{}", unnoticed.join("\n"));
