@@ -14,7 +14,7 @@ pub(crate) const LOOK: &str = "look";
 pub(crate) const ADVANCED: &str = "advanced";
 
 pub(crate) const LINE_WIDTH: Param = Param::float("line_width", "Line width", 2.0, [0.2, 40.0])
-    .slider(0.5, 10.0)
+    .slider(0.8, 10.0)
     .pixels()
     .group(LOOK)
     .doc("Width of lines: scales `sigma_e` by width / 2.");
@@ -23,7 +23,7 @@ pub(crate) const LINE_AMOUNT: Param = Param::float("line_amount", "Line amount",
     .doc("How many lines: 0 draws none, 1 draws them at faint edges too; scales 1 - `tau`.");
 pub(crate) const SUPPRESS_SMALL: Param =
     Param::float("suppress_small", "Suppress small", 0.0, [0.0, 1.0]).group(LOOK).doc(
-        "Drops short and weak lines: lengthens `sigma_m` up to three times and lowers `epsilon` by up to 2.",
+        "Drops short and weak lines: lengthens `sigma_m` up to three times and lowers `epsilon` by up to 0.75.",
     );
 pub(crate) const DETAIL: Param = Param::float("detail", "Detail", 0.5, [0.0, 1.0]).group(LOOK).doc(
     "How much survives the abstraction: scales `sigma_r` from 4 to 1/4 times and `sigma_d` from 2 to 1/2.",
@@ -86,7 +86,7 @@ impl Lines {
             sigma_e: self.sigma_e * (width / 2.0),
             sigma_m: self.sigma_m * (1.0 + 2.0 * suppress),
             tau: 1.0 - base,
-            epsilon: self.epsilon - 2.0 * suppress,
+            epsilon: self.epsilon - 0.75 * suppress,
             phi: self.phi,
         }
     }
@@ -103,7 +103,7 @@ fn base_factor(amount: f32) -> f32 {
     if amount <= 0.0 {
         f32::INFINITY
     } else if amount <= 0.5 {
-        ((1.0 - amount) / amount).powf(1.5)
+        (1.0 - amount) / amount
     } else {
         4f32.powf(1.0 - 2.0 * amount)
     }

@@ -49,6 +49,7 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::bool("cover", "Cover", false)
             .group(LOOK)
             .doc("Paper also where the picture is transparent; the result is then opaque."),
+        cartoon::ABSTRACTION,
         cartoon::N_E,
         cartoon::SIGMA_D,
         cartoon::SIGMA_R,

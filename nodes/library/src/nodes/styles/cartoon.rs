@@ -3,11 +3,11 @@
 use crate::kernels::colour::quantize_luminance::{Steepness, quantize};
 use crate::kernels::colour::{composite_lines, lab_to_rgb, lightness, rgb_to_lab, tone_curve};
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
-use crate::kernels::smoothing::oriented_bilateral::{self, Direction, Options as Bilateral, Sampling};
 use crate::look::{self, ADVANCED, Lines};
 use crate::nodes::colour::quantize_luminance as quantization;
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::lines::flow_dog::{self, FlowDog};
+use crate::nodes::smoothing::{flow_bilateral, oriented_bilateral};
 use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
 
@@ -72,10 +72,17 @@ pub static NODE: NodeSpec = NodeSpec {
 const LINE_COLOR: Param = Param::color("line_color", "Line colour", [0.0, 0.0, 0.0, 1.0])
     .group(look::LOOK)
     .doc("Colour of the lines; its alpha is their opacity.");
-const ABSTRACTION: Param =
-    Param::choice("abstraction", "Abstraction", 0, &[Choice { id: "oriented", label: "Oriented bilateral" }])
-        .group(ADVANCED)
-        .doc("Bilateral filter: aligned to the local orientation (3.4).");
+pub(crate) const ABSTRACTION: Param = Param::choice(
+    "abstraction",
+    "Abstraction",
+    0,
+    &[Choice { id: "oriented", label: "Oriented bilateral" }, Choice { id: "flow", label: "Flow bilateral" }],
+)
+.group(ADVANCED)
+.doc(
+    "Bilateral filter: across and along the local orientation (3.4), or along stream lines (3.5), whose \
+     own scales then grow with `sigma_d` / 3 and `sigma_r` / 4.25.",
+);
 pub(crate) const N_E: Param = Param::int("n_e", "Iterations for lines", 1, [0, 16])
     .slider(0.0, 8.0)
     .structural()
@@ -109,16 +116,31 @@ const SIGMA_A: Param = Param::float("sigma_a", "Edge smoothing", 1.5, [0.0, 20.0
 
 /// The bilateral filter of styles; lengths in pixels of the picture that is rendered.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Abstraction {
-    pub sigma_d: f32,
-    pub sigma_r: f32,
+pub(crate) enum Abstraction {
+    /// Along the local orientation (3.4).
+    Oriented(oriented_bilateral::Passes),
+    /// Along stream lines (3.5).
+    Flow(flow_bilateral::Passes),
 }
 
 impl Abstraction {
     /// The values of `advanced`, as `detail` leaves them.
     pub(crate) fn of(scope: &Scope<'_>) -> Self {
         let [d, r] = look::detail_factors(scope.float("detail"));
-        Self { sigma_d: scope.float("sigma_d") * d, sigma_r: scope.float("sigma_r") * r }
+        let (sigma_d, sigma_r) = (scope.float("sigma_d") * d, scope.float("sigma_r") * r);
+        if scope.choice("abstraction") == "flow" {
+            let mut passes = flow_bilateral::Passes::default();
+            passes.gradient.sigma_d *= sigma_d / 3.0;
+            passes.gradient.sigma_r *= sigma_r / 4.25;
+            passes.flow.sigma_d *= sigma_d / 3.0;
+            passes.flow.sigma_r *= sigma_r / 4.25;
+            return Self::Flow(passes);
+        }
+        let mut passes = oriented_bilateral::Passes::default();
+        for options in [&mut passes.gradient, &mut passes.tangent] {
+            (options.sigma_d, options.sigma_r) = (sigma_d, sigma_r);
+        }
+        Self::Oriented(passes)
     }
 
     /// A Lab image after `iterations`.
@@ -129,15 +151,9 @@ impl Abstraction {
         tensor: ImageId,
         iterations: i32,
     ) -> ImageId {
-        let options = Bilateral {
-            sigma_d: self.sigma_d,
-            sigma_r: self.sigma_r,
-            sampling: Sampling::Linear,
-            elongation: 0.0,
-        };
-        (0..iterations).fold(lab, |lab, _| {
-            let across = oriented_bilateral::pass(plan, lab, tensor, Direction::Gradient, &options);
-            oriented_bilateral::pass(plan, across, tensor, Direction::Tangent, &options)
+        (0..iterations).fold(lab, |lab, _| match self {
+            Self::Oriented(passes) => oriented_bilateral::iteration(plan, lab, tensor, passes),
+            Self::Flow(passes) => flow_bilateral::iteration(plan, lab, tensor, passes),
         })
     }
 }
