@@ -115,12 +115,11 @@ fn neighbours<S: Simd>(simd: S, view: &View<'_>, block: &Block, dx: i32, dy: i32
         let [l, _, _, alpha] = Block { x, y, len: block.len }.read4(simd, view);
         [l, alpha]
     } else {
-        let mut values = [[0.0; 8]; 2];
-        for lane in 0..block.len {
-            let [l, _, _, alpha] = view.pixel4(x + lane as i32, y);
-            (values[0][lane], values[1][lane]) = (l, alpha);
+        let (mut lightness, mut coverage) = ([0.0; 8], [0.0; 8]);
+        for (lane, (l, alpha)) in lightness.iter_mut().zip(&mut coverage).take(block.len).enumerate() {
+            [*l, _, _, *alpha] = view.pixel4(x + lane as i32, y);
         }
-        [f32x8::simd_from(simd, values[0]), f32x8::simd_from(simd, values[1])]
+        [f32x8::simd_from(simd, lightness), f32x8::simd_from(simd, coverage)]
     };
     own + (l - own) * alpha.max(0.0).min(1.0)
 }

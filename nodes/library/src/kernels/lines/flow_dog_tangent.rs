@@ -93,7 +93,7 @@ fn smooth<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
             let mut active = mask32x8::splat(simd, true);
             for u in 1..=steps {
                 field.advance(simd, &mut line, active);
-                active = active & field.inside(simd, &line);
+                active &= field.inside(simd, &line);
                 // The lanes share the arc length, so one power serves them all.
                 let weight = active.select(f32x8::splat(simd, (falloff * (u * u) as f32).exp2()), zero);
                 let [v, alpha] = sample_linear2(simd, response, line.x, line.y);
