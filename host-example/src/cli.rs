@@ -22,6 +22,8 @@ pub enum Command {
     Render(RenderArgs),
     /// Applies a node or graph to a picture.
     Apply(ApplyArgs),
+    /// Opens a window that renders a scene and stylizes every frame.
+    View(ViewArgs),
     /// Lists the nodes, or the parameters of one.
     Nodes(NodesArgs),
 }
@@ -72,6 +74,32 @@ pub struct RenderArgs {
     /// Sets a parameter of the style; node.id=value for one node of a graph. May be repeated.
     #[arg(long, value_name = "ID=VALUE")]
     pub set: Vec<Setting>,
+}
+
+/// Options of `view`.
+#[derive(Args, Debug)]
+pub struct ViewArgs {
+    /// The scene: .gltf, .glb or .obj.
+    pub scene: PathBuf,
+    /// A style for the keys 1, 2, ...: none, the id of a node or a graph file (.json); may be given several
+    /// times. Without it: none and every node of the group styles.
+    #[arg(long, value_name = "STYLE")]
+    pub style: Vec<String>,
+    /// Sets a parameter of the styles; may be given several times.
+    #[arg(long, value_name = "ID=VALUE")]
+    pub set: Vec<Setting>,
+    /// Size of the window in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
+    pub size: (u32, u32),
+    /// Image that colours an OBJ without textures.
+    #[arg(long, value_name = "FILE")]
+    pub texture: Option<PathBuf>,
+    /// Closes after so many frames.
+    #[arg(long, value_name = "N")]
+    pub frames: Option<u32>,
+    /// Prints adapter, frames and milliseconds of each style when the window is closed.
+    #[arg(long)]
+    pub report: bool,
 }
 
 /// Options of `apply`.

@@ -11,3 +11,4 @@ pub mod render;
 pub mod render_verb;
 pub mod scene;
 pub mod stylize;
+pub mod view;

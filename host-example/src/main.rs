@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::ErrorKind;
 use isophote_host::cli::{Cli, Command};
-use isophote_host::{apply, nodes_verb, render_verb};
+use isophote_host::{apply, nodes_verb, render_verb, view};
 
 fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
@@ -14,6 +14,7 @@ fn main() -> ExitCode {
     };
     let result = match cli.command {
         Command::Render(args) => render_verb::run(&args),
+        Command::View(args) => view::run(&args),
         Command::Apply(args) => apply::run(&args),
         Command::Nodes(args) => nodes_verb::run(&args),
     };

@@ -6,9 +6,9 @@
 //! command encoder; nothing is allocated once every pipeline that the scene needs has been used.
 
 pub mod gpu;
-mod layouts;
+pub(crate) mod layouts;
 pub mod look;
-mod pipelines;
+pub(crate) mod pipelines;
 pub mod readback;
 mod shadow;
 pub mod targets;
@@ -17,7 +17,7 @@ mod tests;
 mod textures;
 mod tone_map;
 mod uniforms;
-mod upload;
+pub(crate) mod upload;
 mod visible;
 
 use glam::Mat4;

@@ -1,0 +1,50 @@
+//! `isophote view`: a window that renders a scene and stylizes every frame.
+//!
+//! | input | does |
+//! |---|---|
+//! | drag | orbits; with shift or another button, pans |
+//! | wheel | zooms |
+//! | 1, 2, ... and Tab | switch the style |
+//! | space | plays and pauses the animation |
+//! | f, c | frames the scene; looks through the file's camera |
+//! | q, Escape | closes |
+
+mod app;
+mod present;
+mod stage;
+mod viewer;
+
+use winit::event_loop::EventLoop;
+
+use crate::cli::ViewArgs;
+use crate::error::{Error, Result};
+use app::App;
+use viewer::Viewer;
+
+/// Runs the verb until the window is closed.
+///
+/// # Errors
+/// [`Error::Input`] for scenes and styles that cannot be shown, [`Error::Failure`] without a display or a
+/// graphics device.
+pub fn run(args: &ViewArgs) -> Result<()> {
+    let viewer = Viewer::new(args)?;
+    let failed = |e| Error::failure(format!("no window can be opened: {e}"), "start the viewer in a desktop session");
+    let event_loop = EventLoop::new().map_err(|e| failed(e.to_string()))?;
+    let mut app = App::new(viewer);
+    event_loop.run_app(&mut app).map_err(|e| failed(e.to_string()))?;
+    if args.report {
+        report(app.viewer());
+    }
+    app.failure.map_or(Ok(()), Err)
+}
+
+fn report(viewer: &Viewer) {
+    println!("{}", viewer.adapter);
+    for stretch in viewer.stretches() {
+        let mut times = stretch.times.clone();
+        times.sort_unstable();
+        let median = times.get(times.len() / 2).map_or(0.0, |t| t.as_secs_f64() * 1e3);
+        let (width, height) = stretch.size;
+        println!("{} {width}x{height}: {} frames, {median:.1} ms each", stretch.style, times.len());
+    }
+}
