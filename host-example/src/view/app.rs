@@ -77,7 +77,10 @@ impl App {
                     .with_title(self.viewer.title(None))
                     .with_inner_size(PhysicalSize::new(width, height));
                 let window = event_loop.create_window(attributes).map_err(|e| {
-                    Error::failure(format!("no window can be opened: {e}"), "start the viewer in a desktop session")
+                    Error::failure(
+                        format!("no window can be opened: {e}"),
+                        "start the viewer in a desktop session",
+                    )
                 })?;
                 Arc::clone(self.window.insert(Arc::new(window)))
             }
@@ -138,7 +141,9 @@ impl App {
             Key::Character("f") => self.viewer.frame_all(),
             Key::Character("c") => self.viewer.use_file_camera(),
             Key::Character(text) => {
-                if let Some(number) = text.parse::<usize>().ok().filter(|n| (1..=self.viewer.styles.len()).contains(n)) {
+                if let Some(number) =
+                    text.parse::<usize>().ok().filter(|n| (1..=self.viewer.styles.len()).contains(n))
+                {
                     return self.switch(number - 1);
                 }
                 return Ok(());

@@ -28,7 +28,8 @@ use viewer::Viewer;
 /// graphics device.
 pub fn run(args: &ViewArgs) -> Result<()> {
     let viewer = Viewer::new(args)?;
-    let failed = |e| Error::failure(format!("no window can be opened: {e}"), "start the viewer in a desktop session");
+    let failed =
+        |e| Error::failure(format!("no window can be opened: {e}"), "start the viewer in a desktop session");
     let event_loop = EventLoop::new().map_err(|e| failed(e.to_string()))?;
     let mut app = App::new(viewer);
     event_loop.run_app(&mut app).map_err(|e| failed(e.to_string()))?;

@@ -42,7 +42,13 @@ impl Present {
     }
 
     /// Shows `picture` from now on: linear light, or grey values.
-    pub fn bind(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, picture: &wgpu::TextureView, kind: Kind) {
+    pub fn bind(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        picture: &wgpu::TextureView,
+        kind: Kind,
+    ) {
         let grey = if kind == Kind::Scalar { GREY } else { 0 };
         queue.write_buffer(&self.settings, 0, bytemuck::bytes_of(&[grey | self.encode, 0, 0, 0]));
         self.bind_group = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {

@@ -55,7 +55,10 @@ impl Stage {
         let gpu = Gpu::with_instance(instance, Some(&surface))?;
         let size = drawable(window.inner_size());
         let mut config = surface.get_default_config(&gpu.adapter, size.0, size.1).ok_or_else(|| {
-            Error::failure("the adapter cannot draw on the window", "install a Vulkan driver with X11 or Wayland support")
+            Error::failure(
+                "the adapter cannot draw on the window",
+                "install a Vulkan driver with X11 or Wayland support",
+            )
         })?;
         // The pictures are linear light: a surface that encodes by itself saves the shader the work.
         let formats = surface.get_capabilities(&gpu.adapter).formats;
@@ -110,7 +113,14 @@ impl Stage {
     ///
     /// # Errors
     /// [`Error::Failure`] when the device is lost or reports an error.
-    pub fn draw(&mut self, window: &Arc<Window>, scene: &Scene, pose: &Pose, view: &View, look: &Look) -> Result<Drawn> {
+    pub fn draw(
+        &mut self,
+        window: &Arc<Window>,
+        scene: &Scene,
+        pose: &Pose,
+        view: &View,
+        look: &Look,
+    ) -> Result<Drawn> {
         use wgpu::CurrentSurfaceTexture as Current;
         let (frame, renew) = match self.surface.get_current_texture() {
             Current::Success(frame) => (frame, false),
@@ -166,9 +176,12 @@ impl Stage {
 }
 
 fn surface(instance: &wgpu::Instance, window: &Arc<Window>) -> Result<wgpu::Surface<'static>> {
-    instance
-        .create_surface(Arc::clone(window))
-        .map_err(|e| Error::failure(format!("the window cannot be drawn on: {e}"), "install a Vulkan driver with X11 or Wayland support"))
+    instance.create_surface(Arc::clone(window)).map_err(|e| {
+        Error::failure(
+            format!("the window cannot be drawn on: {e}"),
+            "install a Vulkan driver with X11 or Wayland support",
+        )
+    })
 }
 
 /// A minimised window has no pixels; targets have at least one.

@@ -90,7 +90,8 @@ impl Viewer {
         let look = Look::for_scene(&scene, &pose);
         let aspect = args.size.0 as f32 / args.size.1 as f32;
         let file_camera = camera::file_camera(&scene);
-        let name = Path::new(&args.scene).file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+        let name =
+            Path::new(&args.scene).file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
         Ok(Self {
             orbit: Orbit::framing(&scene, aspect, Direction::default()),
             from_file: file_camera.is_some(),
@@ -175,7 +176,8 @@ impl Viewer {
     /// The camera that the mouse turns. It takes over from where the file's camera stands.
     pub fn orbit(&mut self) -> &mut Orbit {
         if self.from_file
-            && let Some(view) = self.file_camera.and_then(|node| View::from_node(&self.scene, &self.pose, node))
+            && let Some(view) =
+                self.file_camera.and_then(|node| View::from_node(&self.scene, &self.pose, node))
         {
             let offset = view.eye() - self.orbit.target;
             let distance = offset.length();
@@ -198,7 +200,9 @@ impl Viewer {
         }
         self.ticked = Instant::now();
         let from_file = self.file_camera.filter(|_| self.from_file);
-        from_file.and_then(|node| View::from_node(&self.scene, &self.pose, node)).unwrap_or_else(|| self.orbit.view())
+        from_file
+            .and_then(|node| View::from_node(&self.scene, &self.pose, node))
+            .unwrap_or_else(|| self.orbit.view())
     }
 
     /// A frame was shown.
@@ -213,7 +217,9 @@ impl Viewer {
 
     /// Whether all frames that were asked for have been shown.
     pub fn finished(&self) -> bool {
-        self.limit.is_some_and(|limit| self.stretches.iter().map(|s| s.times.len()).sum::<usize>() >= limit as usize)
+        self.limit.is_some_and(|limit| {
+            self.stretches.iter().map(|s| s.times.len()).sum::<usize>() >= limit as usize
+        })
     }
 
     /// Title of the window: scene, style, frames shown since the last switch, time of the last one.
