@@ -166,26 +166,59 @@ pub fn channels<S: Simd>(p: [f32x4<S>; 8]) -> [f32x8<S>; 4] {
 /// Each lane takes four 128-bit loads; hardware gathers would take sixteen times as many.
 #[inline(always)]
 pub fn sample_linear4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 4] {
-    let taps = LinearTaps::new(simd, view, x, y);
-    let data = view.data();
+    let ([w, h], held, data) = (view.full(), view.window(), view.data());
+    let (columns, fx) = floor_and_share(x, w);
+    let (rows, fy) = floor_and_share(y, h);
+    let inside = columns.simd_ge(0) & columns.simd_lt(w - 1) & rows.simd_ge(0) & rows.simd_lt(h - 1);
     let mut pixels = [f32x4::splat(simd, 0.0); 8];
-    for (lane, pixel) in pixels.iter_mut().enumerate() {
-        let a = load_pixel(simd, data, taps.at[0][lane]);
-        let b = load_pixel(simd, data, taps.at[1][lane]);
-        let c = load_pixel(simd, data, taps.at[2][lane]);
-        let d = load_pixel(simd, data, taps.at[3][lane]);
-        let x = f32x4::splat(simd, taps.fx[lane]);
-        let top = (b - a).mul_add(x, a);
-        let bottom = (d - c).mul_add(x, c);
-        *pixel = (bottom - top).mul_add(f32x4::splat(simd, taps.fy[lane]), top);
+    let (fx, fy) = (fx.to_array(), fy.to_array());
+    if inside.all_true() {
+        // Away from the edges the right neighbour is the next pixel: half as many places to look up.
+        let stride = view.stride() as u32 as usize;
+        let at = ((rows - held.y0) * stride as i32 + (columns - held.x0) * 4).to_array();
+        for (lane, pixel) in pixels.iter_mut().enumerate() {
+            let at = at[lane] as u32 as usize;
+            let (top, bottom) = (&data[at..at + 8], &data[at + stride..at + stride + 8]);
+            let (a, b) = (f32x4::from_slice(simd, &top[..4]), f32x4::from_slice(simd, &top[4..]));
+            let (c, d) = (f32x4::from_slice(simd, &bottom[..4]), f32x4::from_slice(simd, &bottom[4..]));
+            *pixel = bilinear(a, b, c, d, fx[lane], fy[lane]);
+        }
+    } else {
+        let taps = LinearTaps::new(simd, view, x, y);
+        for (lane, pixel) in pixels.iter_mut().enumerate() {
+            let a = load_pixel(simd, data, taps.at[0][lane]);
+            let b = load_pixel(simd, data, taps.at[1][lane]);
+            let c = load_pixel(simd, data, taps.at[2][lane]);
+            let d = load_pixel(simd, data, taps.at[3][lane]);
+            *pixel = bilinear(a, b, c, d, fx[lane], fy[lane]);
+        }
     }
     channels(pixels)
+}
+
+#[inline(always)]
+fn bilinear<S: Simd>(a: f32x4<S>, b: f32x4<S>, c: f32x4<S>, d: f32x4<S>, fx: f32, fy: f32) -> f32x4<S> {
+    let x = f32x4::splat(a.simd, fx);
+    let top = (b - a).mul_add(x, a);
+    let bottom = (d - c).mul_add(x, c);
+    (bottom - top).mul_add(f32x4::splat(a.simd, fy), top)
+}
+
+/// The pixel before a position, on one axis of a picture of `full` pixels, and the next one's share.
+#[inline(always)]
+fn floor_and_share<S: Simd>(position: f32x8<S>, full: i32) -> (i32x8<S>, f32x8<S>) {
+    // Far outside, the integer conversion would saturate or wrap: keep positions near the picture.
+    let position = (position - 0.5).max(-2.0f32).min(full as f32 + 2.0);
+    let floor = position.floor();
+    (floor.to_int(), position - floor)
 }
 
 /// The four values from offset `at` on.
 #[inline(always)]
 pub fn load_pixel<S: Simd>(simd: S, data: &[f32], at: i32) -> f32x4<S> {
-    f32x4::from_slice(simd, &data[at as usize..at as usize + 4])
+    // Through u32 one comparison is enough to check the range.
+    let at = at as u32 as usize;
+    f32x4::from_slice(simd, &data[at..at + 4])
 }
 
 /// Bilinear sample of a one-channel image at eight positions; see [`sample_linear4`].
@@ -260,13 +293,10 @@ impl Axis {
         let last = i32x8::splat(simd, self.full - 1);
         let (zero, start) = (i32x8::splat(simd, 0), i32x8::splat(simd, self.start));
         let stride = i32x8::splat(simd, self.stride);
-        // Far outside, the integer conversion would saturate or wrap: keep positions near the picture.
-        let position = (position - 0.5).max(-2.0f32).min(self.full as f32 + 2.0);
-        let floor = position.floor();
-        let i: i32x8<S> = floor.to_int();
+        let (i, share) = floor_and_share(position, self.full);
         let first = (i.max(zero).min(last) - start) * stride;
         let second = ((i + 1).max(zero).min(last) - start) * stride;
-        (first, second, position - floor)
+        (first, second, share)
     }
 }
 
