@@ -48,6 +48,32 @@ impl<S: Simd> Stream<S> {
     pub fn begin(x: f32x8<S>, y: f32x8<S>, direction: [f32x8<S>; 2]) -> Self {
         Self { x, y, direction, turn: f32x8::splat(x.simd, 1.0), begins: true }
     }
+
+    /// Both sides of lines through (x, y), where the tangent is `tangent`.
+    #[inline(always)]
+    pub fn both_sides(x: f32x8<S>, y: f32x8<S>, [tx, ty]: [f32x8<S>; 2]) -> [Self; 2] {
+        [Self::begin(x, y, [-tx, -ty]), Self::begin(x, y, [tx, ty])]
+    }
+
+    /// Half a step of Euler's method along `t` or its opposite.
+    #[inline(always)]
+    fn halfway(&self, t: [f32x8<S>; 2], h: f32x8<S>) -> [f32x8<S>; 2] {
+        let [kx, ky] = signed(t, dot(self.direction, t));
+        let half = h * 0.5;
+        [half.mul_add(kx, self.x), half.mul_add(ky, self.y)]
+    }
+
+    /// A step of length `h` along `t` or its opposite.
+    #[inline(always)]
+    fn follow(&mut self, t: [f32x8<S>; 2], h: f32x8<S>) {
+        let cosine = dot(self.direction, t);
+        let [tx, ty] = signed(t, cosine);
+        self.x = h.mul_add(tx, self.x);
+        self.y = h.mul_add(ty, self.y);
+        self.direction = [tx, ty];
+        self.turn = cosine.abs();
+        self.begins = false;
+    }
 }
 
 impl StreamField<'_> {
@@ -61,21 +87,39 @@ impl StreamField<'_> {
     /// Moves the `active` lanes by one step.
     #[inline(always)]
     pub fn advance<S: Simd>(&self, simd: S, line: &mut Stream<S>, active: mask32x8<S>) {
-        let h = active.select(f32x8::splat(simd, self.step), f32x8::splat(simd, 0.0));
-        let last = line.direction;
-        let mut t = if line.begins { last } else { self.tangent(simd, line.x, line.y) };
+        let h = self.steps(simd, active);
+        let mut t = if line.begins { line.direction } else { self.tangent(simd, line.x, line.y) };
         if self.midpoint {
-            let [kx, ky] = signed(t, dot(last, t));
-            let half = h * 0.5;
-            t = self.tangent(simd, half.mul_add(kx, line.x), half.mul_add(ky, line.y));
+            let [x, y] = line.halfway(t, h);
+            t = self.tangent(simd, x, y);
         }
-        let cosine = dot(last, t);
-        let [tx, ty] = signed(t, cosine);
-        line.x = h.mul_add(tx, line.x);
-        line.y = h.mul_add(ty, line.y);
-        line.direction = [tx, ty];
-        line.turn = cosine.abs();
-        line.begins = false;
+        line.follow(t, h);
+    }
+
+    /// Moves both sides of eight lines by one step.
+    ///
+    /// A step is a long chain of operations that wait for each other; two independent ones, side by
+    /// side, take little longer than one.
+    #[inline(always)]
+    pub fn advance_both<S: Simd>(&self, simd: S, lines: &mut [Stream<S>; 2], active: [mask32x8<S>; 2]) {
+        let h = [self.steps(simd, active[0]), self.steps(simd, active[1])];
+        let mut t = [lines[0].direction, lines[1].direction];
+        if !lines[0].begins {
+            t[0] = self.tangent(simd, lines[0].x, lines[0].y);
+            t[1] = self.tangent(simd, lines[1].x, lines[1].y);
+        }
+        if self.midpoint {
+            let [x0, y0] = lines[0].halfway(t[0], h[0]);
+            let [x1, y1] = lines[1].halfway(t[1], h[1]);
+            t = [self.tangent(simd, x0, y0), self.tangent(simd, x1, y1)];
+        }
+        lines[0].follow(t[0], h[0]);
+        lines[1].follow(t[1], h[1]);
+    }
+
+    #[inline(always)]
+    fn steps<S: Simd>(&self, simd: S, active: mask32x8<S>) -> f32x8<S> {
+        active.select(f32x8::splat(simd, self.step), f32x8::splat(simd, 0.0))
     }
 
     /// Lanes whose line lies inside the picture.

@@ -130,7 +130,6 @@ impl Filter<'_> {
         let params = &self.params;
         let zero = f32x8::splat(simd, 0.0);
         let [e, f, g, _] = get_pixels4(simd, &self.field.tensors, x, y, last);
-        let [tx, ty] = tangent(e, f, g);
         let colour = get_pixels4(simd, &self.origins, x, y, last);
         let range = -0.721_347_52 / (params.sigma_r * params.sigma_r).max(1e-6);
         let domain = f32x8::splat(simd, -0.721_347_52 / (params.sigma_d * params.sigma_d).max(1e-6));
@@ -141,41 +140,41 @@ impl Filter<'_> {
         let alpha = colour[3];
         let first = [colour[0] * alpha, colour[1] * alpha, colour[2] * alpha, alpha];
         let mut sum = if at_crossings { [zero; 4] } else { first };
-        for side in [-1.0, 1.0] {
-            let mut line = Stream::begin(px, py, [tx * side, ty * side]);
-            let mut active = mask32x8::splat(simd, true);
-            let (mut before, mut before_u) = (first, zero);
-            let mut u = 1.0;
-            while u <= params.radius && active.any_true() {
-                self.field.advance(simd, &mut line, active);
-                let mut sampled = active;
+        let mut lines = Stream::both_sides(px, py, tangent(e, f, g));
+        let mut active = [mask32x8::splat(simd, true); 2];
+        let (mut before, mut before_u) = ([first; 2], [zero; 2]);
+        let mut u = 1.0;
+        while u <= params.radius && (active[0] | active[1]).any_true() {
+            self.field.advance_both(simd, &mut lines, active);
+            for (side, line) in lines.iter().enumerate() {
+                let mut sampled = active[side];
                 let mut back = zero;
                 if at_crossings {
-                    back = distance_back(&line);
+                    back = distance_back(line);
                     sampled &= back.simd_lt(1.0);
                     back = sampled.select(back, zero);
                 }
                 let sx = line.x - back * line.direction[0];
                 let sy = line.y - back * line.direction[1];
                 let inside = self.field.holds(simd, sx, sy);
-                active &= inside | !sampled;
+                active[side] &= inside | !sampled;
                 sampled &= inside;
                 let at = f32x8::splat(simd, u) - back;
                 let value = self.weighted(simd, [sx, sy], &origin, domain * at * at);
                 if at_crossings {
-                    let width = sampled.select((at - before_u) * 0.5, zero);
+                    let width = sampled.select((at - before_u[side]) * 0.5, zero);
                     for i in 0..4 {
-                        sum[i] = width.mul_add(before[i] + value[i], sum[i]);
-                        before[i] = sampled.select(value[i], before[i]);
+                        sum[i] = width.mul_add(before[side][i] + value[i], sum[i]);
+                        before[side][i] = sampled.select(value[i], before[side][i]);
                     }
-                    before_u = sampled.select(at, before_u);
+                    before_u[side] = sampled.select(at, before_u[side]);
                 } else {
                     for i in 0..4 {
                         sum[i] += sampled.select(value[i], zero);
                     }
                 }
-                u += 1.0;
             }
+            u += 1.0;
         }
         let seen = sum[3].simd_gt(f32x8::splat(simd, 1e-6));
         [

@@ -140,33 +140,32 @@ fn convolved<S: Simd>(
     let falloff = f32x8::splat(simd, -0.721_347_52) / (sigma * sigma).max(f32x8::splat(simd, 1e-6));
     let step = f32x8::splat(simd, params.step);
 
-    let [tx, ty] = tangent(e, f, g);
+    let zero = f32x8::splat(simd, 0.0);
     let mut sum = sample_linear4(simd, source, x, y);
     let mut norm = f32x8::splat(simd, 1.0);
-    for side in [-1.0, 1.0] {
-        let mut line = Stream::begin(x, y, [tx * side, ty * side]);
-        let mut u = f32x8::splat(simd, 0.0);
-        let mut active = (u + step).simd_le(limit);
-        while active.any_true() {
-            field.advance(simd, &mut line, active);
+    let mut lines = Stream::both_sides(x, y, tangent(e, f, g));
+    let mut u = [zero; 2];
+    let mut active = [step.simd_le(limit); 2];
+    while (active[0] | active[1]).any_true() {
+        field.advance_both(simd, &mut lines, active);
+        for (side, line) in lines.iter().enumerate() {
             let mut du = step;
             if params.adapt == Adapt::Angle as u32 {
                 du = du.max(acos(line.turn) * radius / std::f32::consts::PI);
             }
-            u += du;
-            active &= u.simd_le(limit) & line.turn.simd_ge(f32x8::splat(simd, params.least_turn));
-            active &= field.inside(simd, &line);
-            let weight = active.select((falloff * u * u).exp2(), f32x8::splat(simd, 0.0));
+            u[side] += du;
+            active[side] &= u[side].simd_le(limit) & field.inside(simd, line);
+            active[side] &= line.turn.simd_ge(f32x8::splat(simd, params.least_turn));
+            let weight = active[side].select((falloff * u[side] * u[side]).exp2(), zero);
             let tap = sample_linear4(simd, source, line.x, line.y);
             for (sum, tap) in sum.iter_mut().zip(tap) {
                 *sum = weight.mul_add(tap, *sum);
             }
             norm += weight;
-            active &= (u + step).simd_le(limit);
+            active[side] &= (u[side] + step).simd_le(limit);
         }
     }
     let [r, g, b, alpha] = sum;
     let seen = alpha.simd_gt(f32x8::splat(simd, 1e-6));
-    let zero = f32x8::splat(simd, 0.0);
     [seen.select(r / alpha, zero), seen.select(g / alpha, zero), seen.select(b / alpha, zero), alpha / norm]
 }
