@@ -30,6 +30,11 @@ impl Covered {
         Self(image)
     }
 
+    /// True when all alphas are 1, so that dividing by them can be left out.
+    pub fn is_opaque(&self) -> bool {
+        self.0.is_none()
+    }
+
     /// The multiplied colours, where `view` is the image that this was made from.
     pub fn view<'a>(&'a self, view: &View<'a>) -> View<'a> {
         self.0.as_ref().map_or(*view, |image| View::new(image, view.full()))

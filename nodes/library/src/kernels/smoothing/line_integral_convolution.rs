@@ -38,7 +38,7 @@ crate::kernel!(line_integral_convolution {
     tolerance: Tolerance {
         absolute: 2e-3,
         relative: 1e-3,
-        outliers: 0.02,
+        outliers: 0.003,
         reason: "stream lines add up roundings; where the field is undetermined, or a line ends at a \
                  whole number of pixels, the last bit decides where it goes",
     },

@@ -112,8 +112,13 @@ fn reach(params: &Params) -> i32 {
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let covered = (params.manual == 0).then(|| Covered::new(&pass.inputs[0], band, reach(&params)));
-    let source = covered.as_ref().map_or(pass.inputs[0], |c| c.view(&pass.inputs[0]));
-    let block = Blocks { params, origins: pass.inputs[0], source, tensors: pass.inputs[1] };
+    let block = Blocks {
+        params,
+        origins: pass.inputs[0],
+        source: covered.as_ref().map_or(pass.inputs[0], |c| c.view(&pass.inputs[0])),
+        tensors: pass.inputs[1],
+        opaque: covered.as_ref().is_some_and(Covered::is_opaque),
+    };
     dispatch!(pass.level, simd => {
         let window = band.window;
         for y in window.y0..window.y1 {
@@ -132,6 +137,8 @@ struct Blocks<'a> {
     /// Colours times coverage for linear sampling, as they are for manual.
     source: View<'a>,
     tensors: View<'a>,
+    /// All coverage is 1.
+    opaque: bool,
 }
 
 /// Where the taps of eight lines lie.
@@ -143,6 +150,10 @@ struct Lines<S: Simd> {
     along_x: mask32x8<S>,
     /// Advance along the other axis per pixel of that one.
     slope: f32x8<S>,
+    /// Offset of the pixel in the middle, and offsets per pixel of the two axes.
+    start: i32x8<S>,
+    major: i32x8<S>,
+    minor: i32x8<S>,
 }
 
 impl Blocks<'_> {
@@ -172,7 +183,17 @@ impl Blocks<'_> {
         let alpha = origin[3];
         let mut sum = [origin[0] * alpha, origin[1] * alpha, origin[2] * alpha, alpha];
         let columns = i32x8::from_fn(simd, |lane| (x + lane as i32).min(last));
-        let lines = Lines { x: columns, y: i32x8::splat(simd, y), along_x, slope };
+        let (held, stride) = (self.source.window(), self.source.stride() as i32);
+        let (across, down) = (i32x8::splat(simd, 4), i32x8::splat(simd, stride));
+        let lines = Lines {
+            x: columns,
+            y: i32x8::splat(simd, y),
+            along_x,
+            slope,
+            start: (columns - held.x0) * 4 + (y - held.y0) * stride,
+            major: along_x.select(across, down),
+            minor: along_x.select(down, across),
+        };
         // Away from the picture's edges no position needs to be clamped.
         let reach = reach(params);
         let [w, h] = self.source.full();
@@ -200,8 +221,11 @@ impl Blocks<'_> {
                     }
                 } else {
                     let [r, g, b, a] = self.between(simd, at, f);
-                    let seen = f32x8::splat(simd, 1.0) / a.max(f32x8::splat(simd, 1e-6));
-                    let colour = [r * seen, g * seen, b * seen, a];
+                    let mut colour = [r, g, b, a];
+                    if !self.opaque {
+                        let seen = f32x8::splat(simd, 1.0) / a.max(f32x8::splat(simd, 1e-6));
+                        colour = [r * seen, g * seen, b * seen, a];
+                    }
                     let weight = (distance2(&colour, &origin) * range + domain).exp2();
                     let weight = active.select(weight, f32x8::splat(simd, 0.0));
                     for (sum, tap) in sum.iter_mut().zip([r, g, b, a]) {
@@ -223,16 +247,10 @@ impl Blocks<'_> {
     /// Offsets of the two pixels around the taps `k` pixels along the axis, and the second one's share.
     #[inline(always)]
     fn inner<S: Simd>(&self, lines: Lines<S>, k: f32x8<S>) -> ([[i32; 8]; 2], f32x8<S>) {
-        let simd = lines.slope.simd;
         let o = lines.slope * k;
         let i = o.floor();
-        let held = self.source.window();
-        let stride = self.source.stride() as i32;
-        let start = (lines.y - i32x8::splat(simd, held.y0)) * i32x8::splat(simd, stride) + (lines.x - i32x8::splat(simd, held.x0)) * i32x8::splat(simd, 4);
-        let major = lines.along_x.select(i32x8::splat(simd, 4), i32x8::splat(simd, stride));
-        let minor = lines.along_x.select(i32x8::splat(simd, stride), i32x8::splat(simd, 4));
-        let at = start + major * k.to_int::<i32x8<S>>() + minor * i.to_int::<i32x8<S>>();
-        ([at.to_array(), (at + minor).to_array()], o - i)
+        let at = lines.start + lines.major * k.to_int::<i32x8<S>>() + lines.minor * i.to_int::<i32x8<S>>();
+        ([at.to_array(), (at + lines.minor).to_array()], o - i)
     }
 
     /// As [`Blocks::inner`], with positions clamped to the picture.
