@@ -26,6 +26,8 @@ pub enum Command {
     View(ViewArgs),
     /// Lists the nodes, or the parameters of one.
     Nodes(NodesArgs),
+    /// Measures how fast the nodes are.
+    Bench(BenchArgs),
 }
 
 /// Options of `render`.
@@ -173,4 +175,33 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
         }
         _ => Err("give width and height such as 1280x720, both at least 1".into()),
     }
+}
+
+/// Options of `bench`.
+#[derive(Args, Debug)]
+pub struct BenchArgs {
+    /// Everything, as JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Where to measure; on both without.
+    #[arg(long, value_enum)]
+    pub backend: Option<BenchBackend>,
+    /// Size of the picture in pixels; without it 1280x720 and 1920x1080.
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub size: Option<(u32, u32)>,
+    /// Only this node. May be repeated.
+    #[arg(long, value_name = "ID")]
+    pub node: Vec<String>,
+    /// Runs whose median counts, after one that does not.
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub runs: u32,
+}
+
+/// What `bench` measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum BenchBackend {
+    /// The CPU, against its own peak.
+    Cpu,
+    /// The best graphics device there is.
+    Gpu,
 }

@@ -1,6 +1,7 @@
 //! The sample host as a library: scenes, their rendering, and the verbs of the program `isophote`.
 
 pub mod apply;
+pub mod bench;
 pub mod cli;
 pub mod error;
 pub mod loader;

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::ErrorKind;
 use isophote_host::cli::{Cli, Command};
-use isophote_host::{apply, nodes_verb, render_verb, view};
+use isophote_host::{apply, bench, nodes_verb, render_verb, view};
 
 fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
@@ -17,6 +17,7 @@ fn main() -> ExitCode {
         Command::View(args) => view::run(&args),
         Command::Apply(args) => apply::run(&args),
         Command::Nodes(args) => nodes_verb::run(&args),
+        Command::Bench(args) => bench::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

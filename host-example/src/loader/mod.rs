@@ -50,6 +50,14 @@ impl Library {
         Ok(Self { api, path })
     }
 
+    /// Opens the library from this file.
+    ///
+    /// # Errors
+    /// As [`Library::open`].
+    pub fn from_file(path: &Path) -> Result<Self> {
+        Ok(Self { api: open::open(path)?, path: path.to_owned() })
+    }
+
     /// The file that was opened.
     pub fn path(&self) -> &Path {
         &self.path

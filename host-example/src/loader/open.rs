@@ -44,7 +44,8 @@ pub fn find() -> Result<(&'static IsophoteApi, PathBuf)> {
     Ok((table(library, &path)?, path))
 }
 
-fn open(path: &Path) -> Result<&'static IsophoteApi> {
+/// The table of the library in this file.
+pub fn open(path: &Path) -> Result<&'static IsophoteApi> {
     // A bare name would be looked for among the system's libraries instead.
     let absolute = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let library = load(absolute.as_os_str()).map_err(|e| {

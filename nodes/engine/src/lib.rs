@@ -11,6 +11,7 @@ pub mod gpu;
 pub mod image;
 pub mod kernel;
 pub mod math;
+pub mod peak;
 pub mod pixels;
 pub mod plan;
 pub mod program;

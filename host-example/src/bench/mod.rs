@@ -1,0 +1,125 @@
+//! `isophote bench`: what each node and each of its passes takes, on the CPU and on the GPU.
+//!
+//! Every number is the median of warm runs: plans are made, memory is allocated and shaders are compiled
+//! before. The CPU's are set against what the machine can do at most, measured in the same run; a small picture
+//! that stays in the caches may be copied faster than that.
+
+mod cpu;
+mod gpu;
+mod report;
+
+use isophote_engine::fearless_simd::Level;
+use isophote_engine::{cpu::Pool, peak};
+
+use self::report::{Machine, Report};
+use crate::cli::{BenchArgs, BenchBackend};
+use crate::error::{Error, Result};
+use crate::loader::Library;
+use crate::pixels::{Pixels, Samples};
+use crate::render::gpu::Gpu;
+
+/// Sizes that are measured when none is given.
+const SIZES: [(u32, u32); 2] = [(1280, 720), (1920, 1080)];
+
+/// Runs the verb.
+///
+/// # Errors
+/// [`Error::Failure`] without a library, and without an adapter when the GPU was asked for;
+/// [`Error::Input`] for nodes that do not exist.
+pub fn run(args: &BenchArgs) -> Result<()> {
+    let library = Library::open()?;
+    let nodes = nodes(&library, &args.node)?;
+    let gpu = match args.backend {
+        Some(BenchBackend::Cpu) => None,
+        Some(BenchBackend::Gpu) => Some(Gpu::open()?),
+        None => Gpu::open().map_err(|e| eprintln!("warning: the GPU is left out: {e}")).ok(),
+    };
+    let mut gpu = gpu.map(gpu::Bench::new);
+    let on_cpu = args.backend != Some(BenchBackend::Gpu);
+    let pool = Pool::new(0).map_err(|e| Error::failure(e, "close other programs"))?;
+    let machine = Machine::new(
+        isophote_engine::cpu::Threads::count(&pool),
+        on_cpu.then(|| peak::measure(Level::new(), &pool)),
+        gpu.as_ref().map(gpu::Bench::adapter),
+    );
+    drop(pool);
+    let mut report = Report::new(&library, machine, args.runs);
+    if !args.json {
+        report.print_heading();
+    }
+    let sizes = args.size.map_or(SIZES.to_vec(), |size| vec![size]);
+    for size in sizes {
+        let picture = picture(size);
+        for node in &nodes {
+            if on_cpu {
+                report.add(cpu::run(&library, node, &picture, args.runs)?, !args.json);
+            }
+            if let Some(gpu) = &mut gpu {
+                report.add(gpu.run(&library, node, &picture, args.runs)?, !args.json);
+            }
+        }
+    }
+    if args.json { report.print_json() } else { Ok(()) }
+}
+
+/// The nodes asked for, or all.
+fn nodes(library: &Library, wanted: &[String]) -> Result<Vec<String>> {
+    let mut nodes = Vec::new();
+    for id in wanted {
+        let node =
+            library.find_node(id).map_err(|e| e.at(format!("--node {id}"), "`isophote nodes` lists all"))?;
+        nodes.push(node.id.to_owned());
+    }
+    if nodes.is_empty() {
+        let catalogue = library.catalogue().map_err(|e| e.at("the catalogue", "use another library"))?;
+        nodes.extend(catalogue.nodes.iter().map(|n| n.id.to_owned()));
+    }
+    Ok(nodes)
+}
+
+/// A picture that has what pictures have: slow changes, edges in all directions, fine detail.
+fn picture((width, height): (u32, u32)) -> Pixels {
+    let mut samples = Vec::with_capacity(width as usize * height as usize * 4);
+    for y in 0..height {
+        for x in 0..width {
+            let (u, v) = (x as f32 / width as f32, y as f32 / height as f32);
+            let cell = [(x % 160) as f32 - 80.0, (y % 160) as f32 - 80.0];
+            let disc = if cell[0].hypot(cell[1]) < 50.0 { 0.35 } else { 0.0 };
+            let hash = (x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77)).wrapping_mul(0xc2b2_ae3d);
+            let noise = (hash >> 24) as f32 / 255.0 * 0.04;
+            let waves = 0.05 * (x as f32 * 0.3 + y as f32 * 0.1).sin();
+            samples.extend([
+                0.1 + 0.5 * u + disc + noise,
+                0.2 + 0.4 * v + noise + waves,
+                0.6 - disc + noise,
+                1.0,
+            ]);
+        }
+    }
+    // Four samples were made for each pixel.
+    let black = || Pixels::zeroed(width, height, 4, crate::pixels::Precision::F32);
+    Pixels::new(width, height, 4, Samples::F32(samples)).unwrap_or_else(black)
+}
+
+/// The middle one of some numbers, the mean of the middle two; 0 of none.
+fn median(mut numbers: Vec<f64>) -> f64 {
+    numbers.sort_by(f64::total_cmp);
+    let count = numbers.len();
+    match (numbers.get(count.saturating_sub(1) / 2), numbers.get(count / 2)) {
+        (Some(a), Some(b)) => (a + b) / 2.0,
+        _ => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians() {
+        assert_eq!(median(vec![]), 0.0);
+        assert_eq!(median(vec![3.0]), 3.0);
+        assert_eq!(median(vec![9.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(vec![9.0, 1.0, 2.0, 4.0]), 3.0);
+    }
+}

@@ -1,0 +1,192 @@
+//! Measurements as a table or as JSON.
+
+use isophote_engine::peak::Peak;
+use serde_json::{Value, json};
+
+use crate::error::{Error, Result};
+use crate::loader::Library;
+
+/// What was measured on.
+#[derive(Debug)]
+pub struct Machine {
+    threads: usize,
+    peak: Option<Peak>,
+    adapter: Option<String>,
+}
+
+impl Machine {
+    /// A machine with so many threads, the peak of its CPU and the name of its adapter, where they are used.
+    pub fn new(threads: usize, peak: Option<Peak>, adapter: Option<String>) -> Self {
+        Self { threads, peak, adapter }
+    }
+}
+
+/// One node on one backend.
+#[derive(Debug)]
+pub struct Entry {
+    /// Id of the node.
+    pub node: String,
+    /// `cpu` or `gpu`.
+    pub backend: &'static str,
+    /// Size of the picture in pixels.
+    pub size: (u32, u32),
+    /// All passes together.
+    pub seconds: f64,
+    /// The whole call with the conversion of pixels in and out, where there is any.
+    pub call_seconds: Option<f64>,
+    /// The passes; empty where they cannot be told apart.
+    pub passes: Vec<PassEntry>,
+}
+
+/// One pass.
+#[derive(Debug)]
+pub struct PassEntry {
+    /// The kernel.
+    pub kernel: String,
+    /// How long it took.
+    pub seconds: f64,
+    /// Pixels written.
+    pub pixels: u64,
+    /// Multiply-adds and bytes, on the CPU.
+    pub work: Option<(f64, f64)>,
+}
+
+/// All measurements of a run.
+#[derive(Debug)]
+pub struct Report {
+    version: &'static str,
+    machine: Machine,
+    runs: u32,
+    entries: Vec<Entry>,
+}
+
+/// Shares of the machine's peak: of multiply-adds and of copied bytes.
+fn shares(peak: Option<Peak>, seconds: f64, work: Option<(f64, f64)>) -> Option<[f64; 2]> {
+    let (peak, (operations, bytes)) = (peak?, work?);
+    (seconds > 0.0).then(|| [operations / seconds / peak.multiply_adds, bytes / seconds / peak.copied])
+}
+
+impl Entry {
+    fn megapixels(&self) -> f64 {
+        f64::from(self.size.0) * f64::from(self.size.1) / 1e6
+    }
+
+    /// Work of all passes together.
+    fn work(&self) -> Option<(f64, f64)> {
+        self.passes
+            .iter()
+            .map(|p| p.work)
+            .try_fold((0.0, 0.0), |sum, work| work.map(|w| (sum.0 + w.0, sum.1 + w.1)))
+            .filter(|_| !self.passes.is_empty())
+    }
+}
+
+impl Report {
+    /// An empty report of medians of `runs`.
+    pub fn new(library: &Library, machine: Machine, runs: u32) -> Self {
+        Self { version: library.version(), machine, runs, entries: Vec::new() }
+    }
+
+    /// Keeps an entry, and prints it where that is wanted.
+    pub fn add(&mut self, entry: Entry, print: bool) {
+        if print {
+            let peak = self.machine.peak;
+            let rate = entry.megapixels() / entry.seconds;
+            println!(
+                "\n{} ({}, {}x{}){}",
+                entry.node,
+                entry.backend,
+                entry.size.0,
+                entry.size.1,
+                columns(entry.seconds, rate, shares(peak, entry.seconds, entry.work()))
+            );
+            for pass in &entry.passes {
+                let rate = pass.pixels as f64 / 1e6 / pass.seconds;
+                println!(
+                    "  {:38}{}",
+                    pass.kernel,
+                    columns(pass.seconds, rate, shares(peak, pass.seconds, pass.work))
+                );
+            }
+        }
+        self.entries.push(entry);
+    }
+
+    /// What comes before the table.
+    pub fn print_heading(&self) {
+        println!("Isophote {}, medians of {} warm runs", self.version, self.runs);
+        if let Some(peak) = self.machine.peak {
+            println!(
+                "CPU: {} threads, {:.1} G multiply-adds/s, {:.1} GB/s copied",
+                self.machine.threads,
+                peak.multiply_adds / 1e9,
+                peak.copied / 1e9
+            );
+        }
+        if let Some(adapter) = &self.machine.adapter {
+            println!("GPU: {adapter}");
+        }
+    }
+
+    /// Everything as JSON.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when standard output cannot be written.
+    pub fn print_json(&self) -> Result<()> {
+        let peak = self.machine.peak;
+        let value = json!({
+            "version": self.version,
+            "runs": self.runs,
+            "threads": self.machine.threads,
+            "adapter": self.machine.adapter,
+            "peak": peak.map(|p| json!({
+                "multiply_adds_per_second": p.multiply_adds,
+                "copied_bytes_per_second": p.copied,
+            })),
+            "results": self.entries.iter().map(|e| entry(e, peak)).collect::<Vec<_>>(),
+        });
+        let text = serde_json::to_string_pretty(&value)
+            .map_err(|e| Error::failure(format!("cannot be written as JSON: {e}"), "leave out --json"))?;
+        println!("{text}");
+        Ok(())
+    }
+}
+
+fn columns(seconds: f64, rate: f64, shares: Option<[f64; 2]>) -> String {
+    let shares = shares.map_or_else(String::new, |[operations, bytes]| {
+        format!("  {:5.1} % of multiply-adds, {:5.1} % of copying", operations * 100.0, bytes * 100.0)
+    });
+    format!("{:10.2} ms {rate:9.1} MP/s{shares}", seconds * 1e3)
+}
+
+fn entry(entry: &Entry, peak: Option<Peak>) -> Value {
+    let mut value = json!({
+        "node": entry.node,
+        "backend": entry.backend,
+        "width": entry.size.0,
+        "height": entry.size.1,
+        "milliseconds": entry.seconds * 1e3,
+        "megapixels_per_second": entry.megapixels() / entry.seconds,
+        "passes": entry.passes.iter().map(|p| {
+            let mut value = json!({
+                "kernel": p.kernel,
+                "milliseconds": p.seconds * 1e3,
+                "megapixels_per_second": p.pixels as f64 / 1e6 / p.seconds,
+            });
+            add_shares(&mut value, shares(peak, p.seconds, p.work));
+            value
+        }).collect::<Vec<_>>(),
+    });
+    if let Some(call) = entry.call_seconds {
+        value["call_milliseconds"] = json!(call * 1e3);
+    }
+    add_shares(&mut value, shares(peak, entry.seconds, entry.work()));
+    value
+}
+
+fn add_shares(value: &mut Value, shares: Option<[f64; 2]>) {
+    if let Some([operations, bytes]) = shares {
+        value["share_of_peak_multiply_adds"] = json!(operations);
+        value["share_of_peak_copy"] = json!(bytes);
+    }
+}
