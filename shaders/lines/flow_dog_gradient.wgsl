@@ -21,7 +21,8 @@ struct Params {
 
 @group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var lightness: texture_2d<f32>;
-@group(0) @binding(3) var tensor: texture_2d<f32>;
+// (E - G, F), see orientation_field.
+@group(0) @binding(3) var field: texture_2d<f32>;
 @group(0) @binding(4) var target_image: texture_storage_2d<rg32float, write>;
 
 // Sample k steps along the main axis and k * slope across it.
@@ -43,7 +44,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let p = pixel(id);
-    let t = tensor_tangent(fetch(tensor, 1u, p));
+    let t = tensor_tangent(fetch(field, 1u, p));
     // The gradient is (t.y, -t.x); its sign means nothing.
     let upright = abs(t.x) > abs(t.y);
     let slope = select(-t.x / t.y, -t.y / t.x, upright);

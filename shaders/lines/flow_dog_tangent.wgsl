@@ -17,7 +17,8 @@ struct Params {
 
 @group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var response: texture_2d<f32>;
-@group(0) @binding(3) var tensors: texture_2d<f32>;
+// (E - G, F), see orientation_field.
+@group(0) @binding(3) var field: texture_2d<f32>;
 @group(0) @binding(4) var target_image: texture_storage_2d<r32float, write>;
 
 @compute @workgroup_size(8, 8)
@@ -30,12 +31,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let limit = floor(2.0 * params.sigma + 1e-3);
     // exp(-u^2 / 2 sigma^2) as a power of two.
     let falloff = -0.72134752 / max(params.sigma * params.sigma, 1e-6);
-    let tangent = tensor_tangent(fetch(tensors, 1u, pixel(id)));
+    let tangent = tensor_tangent(fetch(field, 1u, pixel(id)));
     var sum = fetch(response, 0u, pixel(id)).xy;
     for (var side = -1.0; side <= 1.0; side += 2.0) {
         var line = stream_begin(origin, side * tangent);
         for (var u = 1.0; u <= limit; u += 1.0) {
-            stream_step(&line, tensors, 1u, 1.0, params.midpoint != 0u);
+            stream_step(&line, field, 1u, 1.0, params.midpoint != 0u);
             if stream_outside(0u, line.position) {
                 break;
             }

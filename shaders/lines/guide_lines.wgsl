@@ -22,7 +22,8 @@ struct Params {
 
 @group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var response: texture_2d<f32>;
-@group(0) @binding(3) var tensor: texture_2d<f32>;
+// (E - G, F), see orientation_field.
+@group(0) @binding(3) var field: texture_2d<f32>;
 @group(0) @binding(4) var normal: texture_2d<f32>;
 @group(0) @binding(5) var depth: texture_2d<f32>;
 @group(0) @binding(6) var object_id: texture_2d<f32>;
@@ -92,7 +93,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let p = pixel(id);
-    let t = tensor_tangent(fetch(tensor, 1u, p));
+    let t = tensor_tangent(fetch(field, 1u, p));
     let upright = abs(t.x) > abs(t.y);
     let slope = select(-t.x / t.y, -t.y / t.x, upright);
     let ds = sqrt(1.0 + slope * slope);

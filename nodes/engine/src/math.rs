@@ -243,18 +243,42 @@ pub fn sample_linear1<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S
 
 /// Bilinear sample of a two-channel image at eight positions, one vector per channel; see
 /// [`sample_linear4`].
+///
+/// The two pixels of a row are neighbours in memory too, so a lane takes two 128-bit loads.
 #[inline(always)]
 pub fn sample_linear2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
+    let ([w, h], window) = (view.full(), view.window());
+    if w < 2 {
+        return sample_column2(simd, view, x, y);
+    }
+    let rows = Axis { full: h, start: window.y0, stride: view.stride() as i32 };
+    let (top, bottom, fy) = rows.taps(simd, y);
+    // At the right edge the left pixel is the last but one, with all the weight on the last.
+    let column = (x - 0.5).max(0.0f32).min((w - 1) as f32);
+    let left = column.floor().min((w - 2) as f32);
+    let fx = column - left;
+    let left = (left.to_int::<i32x8<S>>() - i32x8::splat(simd, window.x0)) * 2;
+    let (top, bottom, fy) = ((top + left).to_array(), (bottom + left).to_array(), fy.to_array());
+    let data = view.data();
+    let mut pixels = [f32x4::splat(simd, 0.0); 8];
+    for (lane, pixel) in pixels.iter_mut().enumerate() {
+        let a = load_pixel(simd, data, top[lane]);
+        let b = load_pixel(simd, data, bottom[lane]);
+        *pixel = (b - a).mul_add(f32x4::splat(simd, fy[lane]), a);
+    }
+    let [l0, l1, r0, r1] = channels(pixels);
+    [(r0 - l0).mul_add(fx, l0), (r1 - l1).mul_add(fx, l1)]
+}
+
+/// [`sample_linear2`] of a picture one pixel wide, whose columns have no neighbour.
+#[inline(always)]
+fn sample_column2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
     let taps = LinearTaps::new(simd, view, x, y);
-    let (fx, fy) = (f32x8::simd_from(simd, taps.fx), f32x8::simd_from(simd, taps.fy));
-    let (fx, fy) = (fx.interleave(fx), fy.interleave(fy));
-    let a = load_pairs(simd, view.data(), taps.at[0]);
-    let b = load_pairs(simd, view.data(), taps.at[1]);
-    let c = load_pairs(simd, view.data(), taps.at[2]);
-    let d = load_pairs(simd, view.data(), taps.at[3]);
-    let (top0, bottom0) = ((b[0] - a[0]).mul_add(fx.0, a[0]), (d[0] - c[0]).mul_add(fx.0, c[0]));
-    let (top1, bottom1) = ((b[1] - a[1]).mul_add(fx.1, a[1]), (d[1] - c[1]).mul_add(fx.1, c[1]));
-    (bottom0 - top0).mul_add(fy.0, top0).deinterleave((bottom1 - top1).mul_add(fy.1, top1)).into()
+    let fy = f32x8::simd_from(simd, taps.fy);
+    let (a, b) = (load_pairs(simd, view.data(), taps.at[0]), load_pairs(simd, view.data(), taps.at[2]));
+    let (a0, a1) = a[0].deinterleave(a[1]);
+    let (b0, b1) = b[0].deinterleave(b[1]);
+    [(b0 - a0).mul_add(fy, a0), (b1 - a1).mul_add(fy, a1)]
 }
 
 /// Eight pairs of neighbouring values, from where `at` says, four pairs to a vector: one 64-bit load

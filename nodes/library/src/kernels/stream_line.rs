@@ -11,7 +11,7 @@
 use crate::kernels::tensor_algebra::tangent;
 use isophote_engine::View;
 use isophote_engine::fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
-use isophote_engine::math::sample_linear4;
+use isophote_engine::math::{sample_linear2, sample_linear4};
 
 /// A tensor field and how its stream lines are stepped.
 ///
@@ -19,7 +19,7 @@ use isophote_engine::math::sample_linear4;
 /// floor(radius) + 1 pixels of the centre in x and in y.
 #[derive(Clone, Copy, Debug)]
 pub struct StreamField<'a> {
-    /// Tensors (E, F, G, w).
+    /// Tensors (E, F, G, w), or as much of them as orientation needs, (E - G, F).
     pub tensors: View<'a>,
     /// Step size h in pixels.
     pub step: f32,
@@ -80,6 +80,10 @@ impl StreamField<'_> {
     /// Unit minor eigenvectors at (x, y), of either sign.
     #[inline(always)]
     pub fn tangent<S: Simd>(&self, simd: S, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
+        if self.tensors.channels() == 2 {
+            let [difference, f] = sample_linear2(simd, &self.tensors, x, y);
+            return tangent(difference, f, f32x8::splat(simd, 0.0));
+        }
         let [e, f, g, _] = sample_linear4(simd, &self.tensors, x, y);
         tangent(e, f, g)
     }

@@ -47,12 +47,12 @@ crate::kernel!(flow_dog_gradient {
 /// Cut-off, in standard deviations of the wider Gaussian; `precision` of Listing 4.1.
 const PRECISION: f32 = 3.0;
 
-/// Response across the tangents of `tensor` of (L alpha, alpha), as (u alpha, alpha), for standard
+/// Response across the orientations of `field` (E - G, F) of (L alpha, alpha), as (u alpha, alpha), for standard
 /// deviations `sigma` and `k` `sigma` pixels.
 pub fn response(
     plan: &mut PlanBuilder,
     lightness: ImageId,
-    tensor: ImageId,
+    field: ImageId,
     sigma: f32,
     k: f32,
     xdog: &Xdog,
@@ -68,7 +68,7 @@ pub fn response(
     };
     // A step is at least one pixel long, and a sample reaches one pixel further across.
     let support = Support::Pixels(halfwidth as u32 + 1);
-    plan.pass(&KERNEL, &[lightness, tensor], &params, Class::Field, support)
+    plan.pass(&KERNEL, &[lightness, field], &params, Class::Field, support)
 }
 
 /// How far the first pass reaches, in pixels.
@@ -90,10 +90,10 @@ pub struct Across<S: Simd> {
 }
 
 impl<S: Simd> Across<S> {
-    /// The lines across the tangents of tensors (E, F, G) at the pixels of `block`.
+    /// The lines across the tangents of the orientations (E - G, F) at the pixels of `block`.
     #[inline(always)]
-    pub fn new(simd: S, block: &Block, [e, f, g]: [f32x8<S>; 3]) -> Self {
-        let [tx, ty] = tangent(e, f, g);
+    pub fn new(simd: S, block: &Block, [difference, f]: [f32x8<S>; 2]) -> Self {
+        let [tx, ty] = tangent(difference, f, f32x8::splat(simd, 0.0));
         let upright = tx.abs().simd_gt(ty.abs());
         let slope = upright.select(-ty / tx, -tx / ty);
         let none = i32x8::splat(simd, 0);
@@ -148,11 +148,11 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 
 #[inline(always)]
 fn gradient<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
-    let (lightness, tensor) = (&pass.inputs[0], &pass.inputs[1]);
+    let (lightness, field) = (&pass.inputs[0], &pass.inputs[1]);
     for_blocks::<2>(band, #[inline(always)] |block, target| {
         let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        let [e, f, g, _] = block.read4(simd, tensor);
-        let line = Across::new(simd, &block, [e, f, g]);
+        let orientation = block.read2(simd, field);
+        let line = Across::new(simd, &block, orientation);
         let [middle, alpha] = block.read2(simd, lightness);
         let (mut narrow, mut narrow_alpha, mut wide, mut wide_alpha) = (middle, alpha, middle, alpha);
         for k in 1..=params.halfwidth as i32 {

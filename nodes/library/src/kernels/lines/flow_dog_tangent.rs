@@ -2,7 +2,7 @@
 //! the stream line of the tensor field (§ 2.9, 4.5), then the threshold (4.8).
 //!
 //! Cost: 4 sigma_m steps per pixel, each one bilinear sample of two values and one (Euler) or two
-//! tensor samples with their tangents, about 110 operations.
+//! samples of orientation with their tangents, about 100 operations.
 
 use crate::kernels::blocks::{for_blocks, write1};
 use crate::kernels::edge_threshold::{LEAST_COVERAGE, Xdog, edge_threshold, edge_uncovered};
@@ -48,12 +48,12 @@ fn radius(sigma: f32) -> f32 {
     (2.0 * sigma + 1e-3).floor()
 }
 
-/// The edge image of a `response` (u alpha, alpha): smoothed along the stream lines of `tensor` by
+/// The edge image of a `response` (u alpha, alpha): smoothed along the stream lines of `field` (E - G, F) by
 /// standard deviation `sigma` pixels, thresholded as `xdog` says.
 pub fn edges(
     plan: &mut PlanBuilder,
     response: ImageId,
-    tensor: ImageId,
+    field: ImageId,
     sigma: f32,
     midpoint: bool,
     xdog: &Xdog,
@@ -67,7 +67,7 @@ pub fn edges(
     };
     // A bilinear sample at distance L reads one pixel further.
     let support = Support::Pixels(radius(sigma) as u32 + 1);
-    plan.pass(&KERNEL, &[response, tensor], &params, Class::Field, support)
+    plan.pass(&KERNEL, &[response, field], &params, Class::Field, support)
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
@@ -84,8 +84,8 @@ fn smooth<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
     let last = band.window.x1 - 1;
     for_blocks::<1>(band, #[inline(always)] |block, target| {
         let zero = f32x8::splat(simd, 0.0);
-        let [e, f, g, _] = block.read4(simd, tensors);
-        let [tx, ty] = tangent(e, f, g);
+        let [difference, f] = block.read2(simd, tensors);
+        let [tx, ty] = tangent(difference, f, zero);
         let [x, y] = centres(simd, block.x, block.y, last);
         let [mut sum, mut norm] = block.read2(simd, response);
         for side in [-1.0, 1.0] {

@@ -54,7 +54,7 @@ const AMOUNT: f32 = 16.0;
 pub fn add(
     plan: &mut PlanBuilder,
     response: ImageId,
-    tensor: ImageId,
+    field: ImageId,
     guides: [Option<ImageId>; 3],
     sigma: f32,
     k: f32,
@@ -71,7 +71,7 @@ pub fn add(
     // A guide that is not there is not read; any image may stand in for it.
     let [normal, depth, id] = guides.map(|guide| guide.unwrap_or(response));
     let support = Support::Pixels(halfwidth as u32 + 1);
-    plan.pass(&KERNEL, &[response, tensor, normal, depth, id], &params, Class::Field, support)
+    plan.pass(&KERNEL, &[response, field, normal, depth, id], &params, Class::Field, support)
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
@@ -81,12 +81,12 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 
 #[inline(always)]
 fn breaks<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
-    let [response, tensor, normal, depth, object_id] = pass.inputs else { return };
+    let [response, field, normal, depth, object_id] = pass.inputs else { return };
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     let has = |bit: u32| params.guides & bit != 0;
     for_blocks::<2>(band, #[inline(always)] |block, target| {
-        let [e, f, g, _] = block.read4(simd, tensor);
-        let line = Across::new(simd, &block, [e, f, g]);
+        let orientation = block.read2(simd, field);
+        let line = Across::new(simd, &block, orientation);
         let at = line.at;
         let n0 = if has(1) { normals(simd, normal, at) } else { [zero; 3] };
         let z0 = if has(2) { depths(simd, depth, at) } else { zero };

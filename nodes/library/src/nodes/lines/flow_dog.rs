@@ -2,7 +2,7 @@
 
 use crate::kernels::colour::lightness;
 use crate::kernels::edge_threshold::{Threshold, Xdog};
-use crate::kernels::lines::{darken_by_lines, flow_dog_gradient, flow_dog_tangent, guide_lines};
+use crate::kernels::lines::{darken_by_lines, flow_dog_gradient, flow_dog_tangent, guide_lines, orientation_field};
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::structure::structure_tensor::{Guides, TensorOptions, of_color_and_guides};
 use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
@@ -109,23 +109,24 @@ impl FlowDog {
         tensor: ImageId,
         guides: &Guides,
     ) -> ImageId {
+        let field = orientation_field::of_tensor(plan, tensor);
         let (mut source, mut edges) = (lightness, lightness);
         let guides = [guides.normal, guides.depth, guides.object_id];
         for iteration in 1..=self.iterations {
             let last = iteration == self.iterations;
             let mut response =
-                flow_dog_gradient::response(plan, source, tensor, self.sigma_e, self.k, &self.xdog);
+                flow_dog_gradient::response(plan, source, field, self.sigma_e, self.k, &self.xdog);
             if self.guide_weight > 0.0 && guides.iter().any(Option::is_some) {
                 let (sigma, k, weight) = (self.sigma_e, self.k, self.guide_weight);
                 response =
-                    guide_lines::add(plan, response, tensor, guides, sigma, k, weight, self.xdog.edge);
+                    guide_lines::add(plan, response, field, guides, sigma, k, weight, self.xdog.edge);
             }
             let mut xdog = self.xdog;
             if !last && xdog.threshold == Threshold::None {
                 // Only an edge image can darken the input of the next iteration.
                 xdog.threshold = Threshold::Tanh;
             }
-            edges = flow_dog_tangent::edges(plan, response, tensor, self.sigma_m, self.midpoint, &xdog);
+            edges = flow_dog_tangent::edges(plan, response, field, self.sigma_m, self.midpoint, &xdog);
             if !last {
                 source = darken_by_lines::darken(plan, lightness, edges);
             }

@@ -1,0 +1,22 @@
+// What orientation needs of a tensor, (E - G, F): both are linear, so that interpolation commutes, and
+// stream lines load half as much. Read as a tensor whose G is 0 it has the same eigenvectors.
+// Cost: one load.
+#import grid
+
+struct Params {
+    // Factor on both; eigenvectors have none.
+    scale: f32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var tensor: texture_2d<f32>;
+@group(0) @binding(3) var target_image: texture_storage_2d<rg32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let t = fetch(tensor, 0u, pixel(id));
+    textureStore(target_image, vec2i(id.xy), vec4f(params.scale * (t.x - t.z), params.scale * t.y, 0.0, 0.0));
+}
