@@ -1,0 +1,138 @@
+//! `isophote view` in a real window, on a display without a screen: frames of each style, a resize,
+//! a clean end.
+
+mod support;
+
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+const STYLES: [&str; 3] = ["none", "cartoon", "blueprint"];
+const FRAMES: u32 = 10;
+/// Software rendering on a busy machine takes its time; this only ends a test that hangs.
+const PATIENCE: Duration = Duration::from_secs(300);
+
+/// A child that does not outlive its test.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Xvfb on a display that it chooses itself.
+fn display() -> Option<(Running, String)> {
+    let mut server = Command::new("Xvfb")
+        .args(["-displayfd", "1", "-screen", "0", "800x600x24", "-nolisten", "tcp"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .ok()?;
+    let mut number = String::new();
+    BufReader::new(server.stdout.take()?).read_line(&mut number).ok()?;
+    Some((Running(server), format!(":{}", number.trim())))
+}
+
+fn xdotool(display: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new("xdotool").env("DISPLAY", display).args(arguments).output().ok()?;
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}
+
+/// A triangle that turns for ever.
+fn turning_triangle(folder: &Path) -> PathBuf {
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let values: [f32; 24] = [
+        -1.0, -0.6, 0.0, 1.0, -0.6, 0.0, 0.0, 1.0, 0.0, // positions
+        0.0, 1.0, 2.0, // times
+        0.0, 0.0, 0.0, 1.0, 0.0, half, 0.0, half, 0.0, 1.0, 0.0, 0.0, // rotations
+    ];
+    let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
+    std::fs::write(folder.join("triangle.bin"), &bytes).unwrap();
+    let json = r#"{
+      "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0 }],
+      "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "material": 0 }] }],
+      "materials": [{ "doubleSided": true, "pbrMetallicRoughness": { "baseColorFactor": [0.8, 0.3, 0.1, 1] } }],
+      "animations": [{ "channels": [{ "sampler": 0, "target": { "node": 0, "path": "rotation" } }],
+                       "samplers": [{ "input": 1, "output": 2 }] }],
+      "buffers": [{ "uri": "triangle.bin", "byteLength": 96 }],
+      "bufferViews": [{ "buffer": 0, "byteOffset": 0, "byteLength": 36 },
+                      { "buffer": 0, "byteOffset": 36, "byteLength": 12 },
+                      { "buffer": 0, "byteOffset": 48, "byteLength": 48 }],
+      "accessors": [
+        { "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -0.6, 0], "max": [1, 1, 0] },
+        { "bufferView": 1, "componentType": 5126, "count": 3, "type": "SCALAR", "min": [0], "max": [2] },
+        { "bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC4" }]
+    }"#;
+    let path = folder.join("triangle.gltf");
+    std::fs::write(&path, json).unwrap();
+    path
+}
+
+/// Style, and frames since the last switch or resize, that a title tells.
+fn shown(title: &str) -> Option<(String, u32)> {
+    let mut parts = title.split(" - ");
+    let (_, style, frame) = (parts.next()?, parts.next()?, parts.next()?);
+    Some((style.to_owned(), frame.strip_prefix("frame ")?.parse().ok()?))
+}
+
+#[test]
+fn a_window_shows_every_style_resizes_and_closes() {
+    let Some((_server, display)) = display().filter(|(_, d)| xdotool(d, &["version"]).is_some()) else {
+        assert!(std::env::var_os("CI").is_none(), "Xvfb and xdotool are needed: apt install xvfb xdotool");
+        eprintln!("SKIPPED: no Xvfb or xdotool");
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let scene = turning_triangle(folder.path());
+    let mut command = support::isophote();
+    command.env("DISPLAY", &display).env_remove("WAYLAND_DISPLAY").args(["view", "--size", "200x120", "--report"]);
+    command.arg(&scene).args(STYLES.iter().flat_map(|s| ["--style", s]));
+    let mut viewer = Running(command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap());
+
+    let started = Instant::now();
+    let mut wait_for = |what: &str, done: &dyn Fn() -> bool| {
+        while !done() {
+            assert!(started.elapsed() < PATIENCE, "waited too long for {what}");
+            if let Some(status) = viewer.0.try_wait().unwrap() {
+                panic!("the viewer ended ({status}) before {what}: {}", text(viewer.0.stderr.as_mut().unwrap()));
+            }
+            std::thread::sleep(Duration::from_millis(100));
+        }
+    };
+    let window = || xdotool(&display, &["search", "--name", "triangle.gltf"]).filter(|w| !w.is_empty());
+    wait_for("a window", &|| window().is_some());
+    let id = window().unwrap();
+    let title = || xdotool(&display, &["getwindowname", &id]).unwrap_or_default();
+    let key = |key: &str| xdotool(&display, &["windowfocus", "--sync", &id, "key", key]);
+    for (number, style) in STYLES.iter().enumerate() {
+        wait_for("focus", &|| key(&format!("{}", number + 1)).is_some());
+        let enough = || shown(&title()).is_some_and(|(s, n)| s == *style && n >= FRAMES);
+        wait_for(&format!("{FRAMES} frames of {style}"), &enough);
+    }
+    wait_for("the resize", &|| xdotool(&display, &["windowsize", "--sync", &id, "300", "180"]).is_some());
+    std::thread::sleep(Duration::from_secs(1));
+    wait_for("frames of the new size", &|| shown(&title()).is_some_and(|(_, n)| n >= FRAMES));
+    let _ = key("q");
+    while viewer.0.try_wait().unwrap().is_none() {
+        assert!(started.elapsed() < PATIENCE, "the viewer does not close");
+        std::thread::sleep(Duration::from_millis(100));
+    }
+    let status = viewer.0.wait().unwrap();
+    let report = text(viewer.0.stdout.as_mut().unwrap());
+    let errors = text(viewer.0.stderr.as_mut().unwrap());
+    assert!(status.success(), "{status}: {errors}");
+    for style in STYLES {
+        assert!(report.contains(&format!("{style} 200x120: ")), "{report}");
+    }
+    assert!(report.contains("blueprint 300x180: "), "{report}");
+    assert!(!errors.contains("error:") && !errors.contains("warning:"), "{errors}");
+}
+
+fn text(pipe: &mut impl Read) -> String {
+    let mut text = String::new();
+    pipe.read_to_string(&mut text).unwrap();
+    text
+}
