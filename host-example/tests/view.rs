@@ -88,7 +88,10 @@ fn a_window_shows_every_style_resizes_and_closes() {
     let folder = tempfile::tempdir().unwrap();
     let scene = turning_triangle(folder.path());
     let mut command = support::isophote();
-    command.env("DISPLAY", &display).env_remove("WAYLAND_DISPLAY").args(["view", "--size", "200x120", "--report"]);
+    command
+        .env("DISPLAY", &display)
+        .env_remove("WAYLAND_DISPLAY")
+        .args(["view", "--size", "200x120", "--report"]);
     command.arg(&scene).args(STYLES.iter().flat_map(|s| ["--style", s]));
     let mut viewer = Running(command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap());
 
@@ -97,7 +100,10 @@ fn a_window_shows_every_style_resizes_and_closes() {
         while !done() {
             assert!(started.elapsed() < PATIENCE, "waited too long for {what}");
             if let Some(status) = viewer.0.try_wait().unwrap() {
-                panic!("the viewer ended ({status}) before {what}: {}", text(viewer.0.stderr.as_mut().unwrap()));
+                panic!(
+                    "the viewer ended ({status}) before {what}: {}",
+                    text(viewer.0.stderr.as_mut().unwrap())
+                );
             }
             std::thread::sleep(Duration::from_millis(100));
         }
