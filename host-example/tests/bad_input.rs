@@ -324,6 +324,13 @@ fn libraries() {
     let text = folder.path().join("text.so");
     fs::write(&text, "not a library").expect("the folder is writable");
     fails(&text, &["text.so", "cannot be loaded as a dynamic library"]);
+    if cfg!(target_os = "linux") {
+        let bytes = fs::read(support::library()).expect("the library is there");
+        for keep in [100, 4096, bytes.len() / 2, bytes.len() - 100] {
+            fs::write(&text, &bytes[..keep]).expect("the folder is writable");
+            fails(&text, &["text.so", "cannot be loaded as a dynamic library"]);
+        }
+    }
     if let Some(library) = compiled(folder.path(), "foreign", "int something_else(void) { return 1; }\n") {
         fails(&library, &["foreign", "not Isophote", "isophote_api"]);
     }

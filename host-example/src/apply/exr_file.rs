@@ -28,7 +28,12 @@ pub struct Layers {
 /// # Errors
 /// [`Error::Input`] for damaged and deep files and for files without such a layer.
 pub fn read(path: &Path, bytes: &[u8]) -> Result<Source> {
-    let failed = |e: exr::error::Error| malformed(path, "EXR", e);
+    let failed = |e: exr::error::Error| match e {
+        exr::error::Error::NotSupported(what) => {
+            Error::file(path, format!("is an EXR of a kind that is not read: {what}"), "convert it")
+        }
+        e => malformed(path, "EXR", e),
+    };
     let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(failed)?;
     for header in &meta.headers {
         check_size(path, header.layer_size.x() as u64, header.layer_size.y() as u64)?;
@@ -77,7 +82,7 @@ fn find(layer: &FlatLayer, names: &[&str]) -> Option<Vec<usize>> {
     };
     let with = |prefix: &str| -> Option<Vec<usize>> {
         let wanted = |n: &&str| (0..list.len()).filter(usable).find(|at| name(*at) == format!("{prefix}{n}"));
-        names.iter().map(|n| wanted(n)).collect()
+        names.iter().map(wanted).collect()
     };
     let prefixes = (0..list.len()).filter_map(|at| Some(name(at).strip_suffix(names[0])?.to_owned()));
     with("").or_else(|| prefixes.filter(|p| p.ends_with('.')).find_map(|p| with(&p)))

@@ -2,6 +2,8 @@
 
 use std::env;
 use std::ffi::OsStr;
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::contract::{ISOPHOTE_ABI_VERSION, IsophoteApi, IsophoteEntry};
@@ -48,6 +50,12 @@ pub fn find() -> Result<(&'static IsophoteApi, PathBuf)> {
 pub fn open(path: &Path) -> Result<&'static IsophoteApi> {
     // A bare name would be looked for among the system's libraries instead.
     let absolute = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    if is_cut(&absolute) {
+        return Err(Error::failure(
+            format!("'{}' cannot be loaded as a dynamic library: it is cut short", path.display()),
+            MEND,
+        ));
+    }
     let library = load(absolute.as_os_str()).map_err(|e| {
         Error::failure(
             format!("'{}' cannot be loaded as a dynamic library: {}", path.display(), reason(&e)),
@@ -61,6 +69,22 @@ fn load(name: &OsStr) -> std::result::Result<libloading::Library, libloading::Er
     // SAFETY: loading runs the library's initialisers. The file is the one that the user or the installation
     // names as Isophote, whose initialisers do nothing; there is no way to tell beforehand.
     unsafe { libloading::Library::new(name) }
+}
+
+/// Whether the file is a 64-bit ELF library that ends before its table of sections, which comes last. The
+/// system's loader does not notice, and the process is killed at the first touch of what is missing.
+fn is_cut(path: &Path) -> bool {
+    let mut header = [0u8; 64];
+    let Ok(mut file) = File::open(path) else { return false };
+    if file.read_exact(&mut header).is_err() || !header.starts_with(b"\x7fELF\x02\x01") {
+        return false;
+    }
+    let short = |at: usize| u64::from(u16::from_le_bytes([header[at], header[at + 1]]));
+    let Some(sections) = header[40..].first_chunk().map(|bytes| u64::from_le_bytes(*bytes)) else {
+        return false;
+    };
+    let end = sections.saturating_add(short(58) * short(60));
+    file.metadata().is_ok_and(|metadata| metadata.len() < end)
 }
 
 /// Libloading wraps what the system says.
