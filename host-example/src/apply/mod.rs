@@ -23,7 +23,8 @@ use crate::stylize::style::Style;
 /// Runs the verb.
 ///
 /// # Errors
-/// [`Error::Input`] for bad input before anything is computed, [`Error::Failure`] when the library or the device
+/// [`Error::Input`](crate::error::Error::Input) for bad input before anything is computed,
+/// [`Error::Failure`](crate::error::Error::Failure) when the library or the device
 /// fails. The output is written as a whole or not at all.
 pub fn run(args: &ApplyArgs) -> Result<()> {
     let format = write::Format::of(&args.output)?;
