@@ -22,3 +22,8 @@ pub use graph::{Graph, NodeId};
 pub use isophote_engine as engine;
 pub use request::{ColourSpace, Planned, Request};
 pub use values::Value;
+
+/// The README's example, compiled with the documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+pub struct Readme;
