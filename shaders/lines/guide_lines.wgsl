@@ -1,20 +1,23 @@
 // Adds lines where geometry breaks to the response of the first pass of the flow-based difference of
-// Gaussians: across the tangent, it measures how much of a Gaussian window lies past a break of
-// normal, depth or object id, and takes that off the response. The second pass then smooths both
-// kinds of lines along the same flow. Lines are centred on the break.
+// Gaussians: across the tangent, it finds the breaks of normal, depth or object id between successive
+// pixels, and takes a difference of Gaussians of their density off the response. The second pass then
+// smooths both kinds of lines along the same flow. Lines are centred on the break; where breaks are as
+// dense as the pixels nothing stands out, and no line is drawn.
 //
-// normal: 1 - cos of the angle between neighbours. depth: 1/z is linear in x and y over any plane, so
-// |z0/z+ + z0/z- - 2| is 0 on planes however slanted, and has no scale. object id: different or not.
-// Cost: up to 6 loads and one exponential per step, about 3 k sigma_e steps.
+// normal: 1 - cos of the angle. depth: 1/z is linear in x and y over any plane, so |z0/z+ + z0/z- - 2|
+// is 0 on planes however slanted, and has no scale. object id: different or not.
+// Cost: up to 3 loads and two exponentials per step, 12 sigma_e steps.
 #import grid
 #import tensor
 
 struct Params {
-    // -1 / (2 sigma^2) of the Gaussian across the line.
+    // -1 / (2 sigma^2) of the narrower and of the wider Gaussian.
     narrow: f32,
-    // Cut-off, in pixels.
+    wide: f32,
+    // Cut-off, in pixels, and steps on each side that it takes at most.
     halfwidth: f32,
-    // Units of response that a window wholly past a break takes off.
+    steps: i32,
+    // Units of response that a unit of the difference takes off.
     amount: f32,
     // Bit 0: normal, bit 1: depth, bit 2: object id are there.
     guides: u32,
@@ -60,8 +63,8 @@ fn normal_break(a: vec3f, b: vec3f) -> f32 {
         return select(0.0, 1.0, aa > 0.0 || bb > 0.0);
     }
     let turn = 1.0 - dot(a, b) / sqrt(aa * bb);
-    // Below 18 degrees it is relief of the surface, from 41 degrees on an edge.
-    let t = clamp((turn - 0.05) * 5.0, 0.0, 1.0);
+    // Below 10 degrees a pixel it is relief of the surface, from 31 degrees on an edge.
+    let t = clamp((turn - 0.015) * 8.0, 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
 }
 
@@ -73,10 +76,15 @@ fn relative_nearness(z0: f32, z: f32) -> f32 {
     return select(0.0, min(z0 / z, 2.0), z > 0.0);
 }
 
-fn depth_break(z0: f32, ahead: f32, behind: f32) -> f32 {
-    let bend = abs(relative_nearness(z0, ahead) + relative_nearness(z0, behind) - 2.0);
+// How far depth at the middle one of three pixels is from a plane through its neighbours.
+fn depth_bend(before: f32, z0: f32, after: f32) -> f32 {
+    return abs(relative_nearness(z0, before) + relative_nearness(z0, after) - 2.0);
+}
+
+// Both pixels at a jump lie off the plane of their neighbours.
+fn depth_break(bend: f32, next_bend: f32) -> f32 {
     // A step of 2 % is relief, one of 12 % an edge.
-    let t = clamp((bend - 0.02) * 10.0, 0.0, 1.0);
+    let t = clamp((min(bend, next_bend) - 0.02) * 10.0, 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
 }
 
@@ -97,30 +105,61 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let upright = abs(t.x) > abs(t.y);
     let slope = select(-t.x / t.y, -t.y / t.x, upright);
     let ds = sqrt(1.0 + slope * slope);
-    let n0 = normal_at(p);
-    let z0 = depth_at(p);
-    let id0 = id_at(p);
 
-    // Breaks of normal, depth and object id.
-    var sums = vec3f(0.0);
-    var weights = 1.0;
-    for (var k = 1; f32(k) * ds <= params.halfwidth; k++) {
-        let d = f32(k) * ds;
-        let w = exp(params.narrow * d * d);
-        let ahead = place(p, upright, k, slope);
-        let behind = place(p, upright, -k, slope);
-        weights += 2.0 * w;
+    // Breaks between pixels k and k + 1 along the line; depth looks one further on either side.
+    let first = -params.steps;
+    let start = place(p, upright, first, slope);
+    var normal_here = vec3f(0.0);
+    var id_here = 0.0;
+    var depth_here = 0.0;
+    var depth_next = 0.0;
+    var bend_here = 0.0;
+    if (params.guides & 1u) != 0u {
+        normal_here = normal_at(start);
+    }
+    if (params.guides & 2u) != 0u {
+        depth_here = depth_at(start);
+        depth_next = depth_at(place(p, upright, first + 1, slope));
+        bend_here = depth_bend(depth_at(place(p, upright, first - 1, slope)), depth_here, depth_next);
+    }
+    if (params.guides & 4u) != 0u {
+        id_here = id_at(start);
+    }
+    // Of normal, depth and object id.
+    var narrow = vec3f(0.0);
+    var wide = vec3f(0.0);
+    var weights = vec2f(0.0);
+    for (var k = first; k < params.steps; k++) {
+        let next = place(p, upright, k + 1, slope);
+        var found = vec3f(0.0);
         if (params.guides & 1u) != 0u {
-            sums.x += w * (normal_break(n0, normal_at(ahead)) + normal_break(n0, normal_at(behind)));
+            let normal_next = normal_at(next);
+            found.x = normal_break(normal_here, normal_next);
+            normal_here = normal_next;
         }
         if (params.guides & 2u) != 0u {
-            sums.y += w * depth_break(z0, depth_at(ahead), depth_at(behind));
+            let after = depth_at(place(p, upright, k + 2, slope));
+            let bend_next = depth_bend(depth_here, depth_next, after);
+            found.y = depth_break(bend_here, bend_next);
+            depth_here = depth_next;
+            depth_next = after;
+            bend_here = bend_next;
         }
         if (params.guides & 4u) != 0u {
-            sums.z += w * (select(0.0, 1.0, id_at(ahead) != id0) + select(0.0, 1.0, id_at(behind) != id0));
+            let id_next = id_at(next);
+            found.z = select(0.0, 1.0, id_next != id_here);
+            id_here = id_next;
+        }
+        let d = (f32(k) + 0.5) * ds;
+        if abs(d) <= params.halfwidth {
+            let w = vec2f(exp(params.narrow * d * d), exp(params.wide * d * d));
+            narrow += w.x * found;
+            wide += w.y * found;
+            weights += w;
         }
     }
-    let past = max(max(sums.x, sums.y), sums.z) / weights;
+    let ridge = max(narrow / weights.x - wide / weights.y, vec3f(0.0));
+    let strength = params.amount * max(max(ridge.x, ridge.y), ridge.z);
     let v = fetch(response, 0u, p).xy;
-    textureStore(target_image, vec2i(id.xy), vec4f(v.x - params.amount * past * v.y, v.y, 0.0, 0.0));
+    textureStore(target_image, vec2i(id.xy), vec4f(v.x - strength * v.y, v.y, 0.0, 0.0));
 }

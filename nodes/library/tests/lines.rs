@@ -222,6 +222,20 @@ fn lines_are_drawn_where_geometry_breaks_though_the_shading_does_not() {
 }
 
 #[test]
+fn relief_as_fine_as_the_pixels_is_not_filled_with_ink() {
+    let flat = picture(60, 40, 4, |_, _| grey(70.0));
+    let folds = picture(60, 40, 4, |x, _| {
+        let side = if (20..40).contains(&x) && x % 2 == 0 { -0.6 } else { 0.6 };
+        [side, 0.0, 0.8, 1.0]
+    });
+    let out = apply("flow_dog", &[("guide_weight", "1")], &[("color", &flat), ("normal", &folds)]);
+    let row: Vec<f32> = (0..60).map(|x| out.pixel(x, 20)[0]).collect();
+    assert!(row[26..34].iter().all(|v| *v > 0.9), "{row:?}");
+    // The relief as a whole keeps its outline.
+    assert!(row[18..23].iter().any(|v| *v < 0.2) && row[37..42].iter().any(|v| *v < 0.2), "{row:?}");
+}
+
+#[test]
 fn a_slanted_plane_draws_no_line_at_any_scale() {
     let flat = picture(64, 40, 4, |_, _| grey(70.0));
     for scale in [1e-3, 1.0, 1e4] {

@@ -1,16 +1,17 @@
 //! Adds lines where geometry breaks to the response of the first pass of the flow-based difference of
 //! Gaussians, so that the second pass smooths both kinds along the same flow.
 //!
-//! Across the tangent it measures how much of a Gaussian window lies past a break of normal, depth or
-//! object id, and takes that off the response; the result is a line centred on the break, as wide as
-//! those of the difference of Gaussians. The thesis has no guides; this is the second derivative test
-//! of § 4.5 applied to geometry: 1/z is linear in x and y over any plane, so z0/z+ + z0/z- - 2 is 0 on
-//! planes however slanted, and has no scale.
+//! Across the tangent it finds the breaks of normal, depth or object id between successive pixels, and
+//! takes a difference of Gaussians of their density off the response; the result is a line centred on
+//! the break, as wide as those of the difference of Gaussians. Where breaks are as dense as the pixels
+//! nothing stands out, and no line is drawn. The thesis has no guides; this is the reasoning of § 4.5
+//! applied to geometry. 1/z is linear in x and y over any plane, so z0/z+ + z0/z- - 2 is 0 on planes
+//! however slanted, and has no scale.
 //!
-//! Cost: per step (about 3 k sigma_e of them) up to six reads and an exponential.
+//! Cost: per step (12 sigma_e of them) up to three reads and two exponentials.
 
 use crate::kernels::blocks::{fetch1, fetch4, for_blocks, offsets, write2};
-use crate::kernels::lines::flow_dog_gradient::{Across, halfwidth};
+use crate::kernels::lines::flow_dog_gradient::Across;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
@@ -18,11 +19,15 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::params! {
     /// Uniform block.
     pub struct Params for guide_lines {
-        /// -1 / (2 sigma^2) of the Gaussian across the line.
+        /// -1 / (2 sigma^2) of the narrower Gaussian.
         pub narrow: f32,
+        /// The same of the wider Gaussian.
+        pub wide: f32,
         /// Cut-off, in pixels.
         pub halfwidth: f32,
-        /// Units of response that a window wholly past a break takes off.
+        /// Steps on each side that the cut-off takes at most.
+        pub steps: i32,
+        /// Units of response that a unit of the difference takes off.
         pub amount: f32,
         /// Bit 0: normal, bit 1: depth, bit 2: object id are there.
         pub guides: u32,
@@ -33,7 +38,7 @@ crate::kernel!(guide_lines {
     cpu: run,
     cost: |params| {
         let p: Params = bytemuck::pod_read_unaligned(params);
-        f64::from(p.halfwidth) * 0.88 * 60.0 + 30.0
+        f64::from(p.steps) * 2.0 * 60.0 + 60.0
     },
     tolerance: Tolerance {
         absolute: 1e-3,
@@ -44,10 +49,17 @@ crate::kernel!(guide_lines {
     },
 });
 
-/// Response, in units of L, that a break of geometry takes off at weight 1: next to the break the
-/// line is then as dark as at a step of about 12 units of L. Much more would let relief as fine as
-/// the lines themselves, such as flutes of a distant column, run together.
-const AMOUNT: f32 = 4.0;
+/// Response, in units of L, that a unit of the difference of Gaussians takes off at weight 1: next to a
+/// lone break, where the difference is 0.17, the line is as dark as at a step of about 25 units of L.
+const AMOUNT: f32 = 16.0;
+
+/// Standard deviations, in those of the line filter: the Gaussians cross 1.8 of them from the break, so
+/// that lines are as wide as those of lightness.
+const NARROW: f32 = 1.2;
+const WIDE: f32 = 3.0;
+
+/// Cut-off in standard deviations of the wider Gaussian.
+const PRECISION: f32 = 2.0;
 
 /// `response` (u alpha, alpha) with lines of strength `weight` where the guides, that is normal, depth
 /// and object id as far as there are any, break; `edge` is the weight of the difference of Gaussians
@@ -58,20 +70,26 @@ pub fn add(
     field: ImageId,
     guides: [Option<ImageId>; 3],
     sigma: f32,
-    k: f32,
     weight: f32,
     edge: f32,
 ) -> ImageId {
-    let halfwidth = halfwidth(sigma, k);
+    // Narrower than this, no tap but the two next to the pixel would have any weight.
+    let sigma = sigma.clamp(0.4, 100.0);
+    let falloff = |factor: f32| -0.5 / (factor * sigma * factor * sigma);
+    let halfwidth = PRECISION * WIDE * sigma;
+    let steps = (halfwidth + 0.5) as i32;
     let params = Params {
-        narrow: -0.5 / (sigma * sigma).max(1e-6),
+        narrow: falloff(NARROW),
+        wide: falloff(WIDE),
         halfwidth,
+        steps,
         amount: AMOUNT * weight * edge,
         guides: (0..3).map(|i| u32::from(guides[i].is_some()) << i).sum(),
     };
     // A guide that is not there is not read; any image may stand in for it.
     let [normal, depth, id] = guides.map(|guide| guide.unwrap_or(response));
-    let support = Support::Pixels(halfwidth as u32 + 1);
+    // The bend of depth at the last pixel looks at one more.
+    let support = Support::Pixels(steps as u32 + 1);
     plan.pass(&KERNEL, &[response, field, normal, depth, id], &params, Class::Field, support)
 }
 
@@ -85,39 +103,62 @@ fn breaks<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
     let [response, field, normal, depth, object_id] = pass.inputs else { return };
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     let has = |bit: u32| params.guides & bit != 0;
-    for_blocks::<2>(band, #[inline(always)] |block, target| {
-        let orientation = block.read2(simd, field);
-        let line = Across::new(simd, &block, orientation);
-        let at = line.at;
-        let n0 = if has(1) { normals(simd, normal, at) } else { [zero; 3] };
-        let z0 = if has(2) { depths(simd, depth, at) } else { zero };
-        let id0 = if has(4) { ids(simd, object_id, at) } else { zero };
-        let (mut sums, mut weights) = ([zero; 3], one);
-        for k in 1..=params.halfwidth as i32 {
-            let d = line.step * k as f32;
-            let w = d.simd_le(params.halfwidth).select((d * params.narrow * d).exp(), zero);
-            weights += w * 2.0;
-            let (ahead, behind) = (line.nearest(k), line.nearest(-k));
-            if has(1) {
-                let a = normal_break(n0, normals(simd, normal, ahead));
-                let b = normal_break(n0, normals(simd, normal, behind));
-                sums[0] += w * (a + b);
-            }
+    for_blocks::<2>(
+        band,
+        #[inline(always)]
+        |block, target| {
+            let orientation = block.read2(simd, field);
+            let line = Across::new(simd, &block, orientation);
+            let first = -params.steps;
+            let start = line.nearest(first);
+            let mut normal_here = if has(1) { normals(simd, normal, start) } else { [zero; 3] };
+            let mut id_here = if has(4) { ids(simd, object_id, start) } else { zero };
+            let (mut depth_here, mut depth_next, mut bend_here) = (zero, zero, zero);
             if has(2) {
-                let a = relative_nearness(z0, depths(simd, depth, ahead));
-                let b = relative_nearness(z0, depths(simd, depth, behind));
-                sums[1] += w * ramp(((a + b - 2.0).abs() - 0.02) * 10.0);
+                depth_here = depths(simd, depth, start);
+                depth_next = depths(simd, depth, line.nearest(first + 1));
+                bend_here = depth_bend(depths(simd, depth, line.nearest(first - 1)), depth_here, depth_next);
             }
-            if has(4) {
-                let a = ids(simd, object_id, ahead).simd_eq(id0).select(zero, one);
-                let b = ids(simd, object_id, behind).simd_eq(id0).select(zero, one);
-                sums[2] += w * (a + b);
+            let (mut narrow, mut wide) = ([zero; 3], [zero; 3]);
+            let (mut narrow_weights, mut wide_weights) = (zero, zero);
+            for k in first..params.steps {
+                let next = line.nearest(k + 1);
+                let mut found = [zero; 3];
+                if has(1) {
+                    let normal_next = normals(simd, normal, next);
+                    found[0] = normal_break(normal_here, normal_next);
+                    normal_here = normal_next;
+                }
+                if has(2) {
+                    let after = depths(simd, depth, line.nearest(k + 2));
+                    let bend_next = depth_bend(depth_here, depth_next, after);
+                    found[1] = ramp((bend_here.min(bend_next) - 0.02) * 10.0);
+                    (depth_here, depth_next, bend_here) = (depth_next, after, bend_next);
+                }
+                if has(4) {
+                    let id_next = ids(simd, object_id, next);
+                    found[2] = id_next.simd_eq(id_here).select(zero, one);
+                    id_here = id_next;
+                }
+                let d = line.step * (k as f32 + 0.5);
+                let near = d.abs().simd_le(params.halfwidth);
+                let n = near.select((d * params.narrow * d).exp(), zero);
+                let w = near.select((d * params.wide * d).exp(), zero);
+                for (i, found) in found.iter().enumerate() {
+                    narrow[i] = n.mul_add(*found, narrow[i]);
+                    wide[i] = w.mul_add(*found, wide[i]);
+                }
+                narrow_weights += n;
+                wide_weights += w;
             }
-        }
-        let past = sums[0].max(sums[1]).max(sums[2]) / weights;
-        let [u, alpha] = block.read2(simd, response);
-        write2([u - past * params.amount * alpha, alpha], target);
-    });
+            let mut ridge = zero;
+            for (narrow, wide) in narrow.iter().zip(&wide) {
+                ridge = ridge.max(*narrow / narrow_weights - *wide / wide_weights);
+            }
+            let [u, alpha] = block.read2(simd, response);
+            write2([u - ridge * params.amount * alpha, alpha], target);
+        },
+    );
 }
 
 #[inline(always)]
@@ -155,7 +196,7 @@ fn ramp<S: Simd>(t: f32x8<S>) -> f32x8<S> {
 }
 
 /// 0 for equal directions or two missing normals, 1 for perpendicular ones or one that is missing.
-/// Below 18 degrees it is relief of the surface, from 41 degrees on an edge.
+/// Below 10 degrees a pixel it is relief of the surface, from 31 degrees on an edge.
 #[inline(always)]
 fn normal_break<S: Simd>(a: [f32x8<S>; 3], b: [f32x8<S>; 3]) -> f32x8<S> {
     let (zero, one) = (f32x8::splat(a[0].simd, 0.0), f32x8::splat(a[0].simd, 1.0));
@@ -164,7 +205,7 @@ fn normal_break<S: Simd>(a: [f32x8<S>; 3], b: [f32x8<S>; 3]) -> f32x8<S> {
     let both = has_a & has_b;
     let turn = one - dot(a, b) / both.select(aa * bb, one).sqrt();
     let lone = (has_a | has_b).select(one, zero);
-    both.select(ramp((turn - 0.05) * 5.0), lone)
+    both.select(ramp((turn - 0.015) * 8.0), lone)
 }
 
 #[inline(always)]
@@ -179,4 +220,11 @@ fn relative_nearness<S: Simd>(z0: f32x8<S>, z: f32x8<S>) -> f32x8<S> {
     let there = z.simd_gt(0.0);
     let near = there.select((z0 / there.select(z, one)).min(2.0), zero);
     z0.simd_gt(0.0).select(near, there.select(one + 1.0, one))
+}
+
+/// How far depth at the middle one of three pixels is from a plane through its neighbours; both pixels
+/// at a jump are.
+#[inline(always)]
+fn depth_bend<S: Simd>(before: f32x8<S>, z0: f32x8<S>, after: f32x8<S>) -> f32x8<S> {
+    (relative_nearness(z0, before) + relative_nearness(z0, after) - 2.0).abs()
 }

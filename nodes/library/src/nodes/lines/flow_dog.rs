@@ -117,9 +117,9 @@ impl FlowDog {
             let mut response =
                 flow_dog_gradient::response(plan, source, field, self.sigma_e, self.k, &self.xdog);
             if self.guide_weight > 0.0 && guides.iter().any(Option::is_some) {
-                let (sigma, k, weight) = (self.sigma_e, self.k, self.guide_weight);
+                let (sigma, weight) = (self.sigma_e, self.guide_weight);
                 response =
-                    guide_lines::add(plan, response, field, guides, sigma, k, weight, self.xdog.edge);
+                    guide_lines::add(plan, response, field, guides, sigma, weight, self.xdog.edge);
             }
             let mut xdog = self.xdog;
             if !last && xdog.threshold == Threshold::None {
