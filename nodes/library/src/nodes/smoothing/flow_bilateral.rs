@@ -1,7 +1,7 @@
 //! The flow-based bilateral filter (§ 3.5): as the oriented one, with the second pass along stream
 //! lines, so that curved features are enhanced and not smoothed away.
 //!
-//! Other nodes interleave single iterations with work of their own by [`iteration`].
+//! Other nodes interleave single iterations with work of their own by `iteration`.
 
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::flow_bilateral;

@@ -1,6 +1,6 @@
 //! The orientation-aligned bilateral filter (§ 3.4): regions of like colour become flat, borders stay.
 //!
-//! Other nodes interleave single iterations with work of their own by [`iteration`], on a CIELAB
+//! Other nodes interleave single iterations with work of their own by `iteration`, on a CIELAB
 //! image and with a tensor that stays the same throughout.
 
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
