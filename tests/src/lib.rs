@@ -14,3 +14,4 @@ pub mod random;
 pub mod run;
 pub mod shaders;
 pub mod sweep;
+pub mod table;

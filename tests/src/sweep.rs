@@ -5,7 +5,6 @@ use crate::cases::{self, Setting};
 use crate::pictures::{self, Kind};
 use crate::run;
 use isophote::graph::GraphInput;
-use isophote::registry;
 use isophote::spec::{ImageKind, NodeSpec};
 use isophote_engine::cpu::{Control, CpuExecutor};
 use isophote_engine::{Image, Kernel, Plan, Rect};
@@ -69,7 +68,7 @@ pub fn sweep(mut visit: impl FnMut(&Step)) {
     for size in SIZES {
         // Equal passes of different nodes and sets are computed once.
         let mut known = HashMap::new();
-        for spec in registry::nodes() {
+        for spec in cases::nodes() {
             for (case, wired, kind, guides) in combinations(spec) {
                 one(spec, &case, wired, kind, guides, size, &mut known, &mut visit);
             }

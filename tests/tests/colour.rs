@@ -1,7 +1,6 @@
 //! Colour, alpha and bad pixels, for every node: what enters in a space leaves in it, nothing that is
 //! not finite spreads, flat pictures stay flat, transparent pixels lend no colour.
 
-use isophote::registry;
 use isophote::request::ColourSpace;
 use isophote::spec::{ImageKind, NodeSpec};
 use isophote::{Graph, Request};
@@ -13,7 +12,7 @@ use isophote_tests::run;
 
 /// Nodes that filter a picture into a picture.
 fn filters() -> impl Iterator<Item = &'static NodeSpec> {
-    registry::nodes().iter().copied().filter(|n| n.has_mix())
+    cases::nodes().into_iter().filter(|n| n.has_mix())
 }
 
 /// The filters whose purpose is to keep colour as it is; styles and quantization change it.
@@ -28,7 +27,7 @@ fn default_graph(spec: &'static NodeSpec) -> Graph {
 #[test]
 fn every_node_keeps_every_kind_of_picture_finite() {
     let mut wrong = Vec::new();
-    for spec in registry::nodes() {
+    for spec in cases::nodes() {
         for setting in cases::settings(spec, 4) {
             for kind in [Kind::Hdr, Kind::Broken, Kind::CutOut] {
                 let mut setup = cases::setup(spec, false);
@@ -51,7 +50,7 @@ fn every_node_keeps_every_kind_of_picture_finite() {
 #[test]
 fn a_bad_pixel_stays_where_it_is() {
     // One pixel of the picture is not a number: it counts as black, and nothing else changes.
-    for spec in registry::nodes() {
+    for spec in cases::nodes() {
         let graph = default_graph(spec);
         let good = pictures::color(Kind::Noise, 40, 30);
         let (mut bad, mut black) = (good.clone(), good.clone());
@@ -205,7 +204,7 @@ fn mix_leads_from_the_input_to_the_filter() {
 #[test]
 fn fields_and_scalars_have_their_shape() {
     let picture = pictures::color(Kind::Noise, 33, 17);
-    for spec in registry::nodes() {
+    for spec in cases::nodes() {
         let out = run::graph(&default_graph(spec), Request::new(33, 17), &picture);
         assert_eq!((out.width(), out.height(), out.channels()), (33, 17, spec.output.kind.channels()));
         if spec.output.kind == ImageKind::Tensor {

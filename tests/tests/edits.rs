@@ -1,7 +1,6 @@
 //! Moving a slider rewrites uniform bytes in place: no pass changes, nothing is allocated, and the
 //! result is that of a plan made anew.
 
-use isophote::registry;
 use isophote::request::Change;
 use isophote::{Request, Value};
 use isophote_engine::Rect;
@@ -29,7 +28,7 @@ fn parameters_that_are_not_structural_only_rewrite_uniforms_and_allocate_nothing
     let mut random = Random::new(5);
     let mut wrong = Vec::new();
     let mut edits = 0;
-    for spec in registry::nodes() {
+    for spec in cases::nodes() {
         for setting in cases::settings(spec, 2) {
             for wired in [false, true] {
                 let mut setup = cases::setup(spec, wired);
@@ -69,7 +68,7 @@ fn parameters_that_are_not_structural_only_rewrite_uniforms_and_allocate_nothing
 #[test]
 fn structural_parameters_lead_to_the_plan_that_a_new_one_would_be() {
     let mut random = Random::new(6);
-    for spec in registry::nodes() {
+    for spec in cases::nodes() {
         let mut setup = cases::setup(spec, false);
         let request = cases::request(Kind::Steps, 61, 37, false);
         let mut planned = run::planned(&setup.graph, request);
@@ -91,7 +90,7 @@ fn structural_parameters_lead_to_the_plan_that_a_new_one_would_be() {
 #[test]
 fn an_edited_plan_gives_the_picture_of_a_new_one() {
     let picture = pictures::color(Kind::Steps, 61, 37);
-    for spec in registry::nodes() {
+    for spec in cases::nodes() {
         let Some(param) = spec.params().find(|p| !p.structural && float_default(p).is_some()) else {
             continue;
         };
@@ -120,7 +119,7 @@ fn a_warm_frame_creates_nothing_on_the_gpu_and_submits_once() {
         return;
     };
     let executor = isophote_engine::gpu::Executor::new(device.clone());
-    for spec in registry::nodes() {
+    for spec in cases::nodes() {
         let mut setup = cases::setup(spec, false);
         let mut planned = run::planned(&setup.graph, Request::new(320, 180));
         let region = Rect::of_size(320, 180);

@@ -107,7 +107,7 @@ fn check(name: &str, executor: &str, picture: &Image) -> Option<String> {
 
 /// Every golden image: its name, the node and the input.
 fn all() -> Vec<(String, &'static NodeSpec, Image)> {
-    let mut all: Vec<_> = registry::nodes().iter().map(|spec| (spec.id.to_owned(), *spec, card())).collect();
+    let mut all: Vec<_> = cases::nodes().into_iter().map(|spec| (spec.id.to_owned(), spec, card())).collect();
     for style in ["cartoon", "blueprint"] {
         all.push((format!("{style}-on-scene"), registry::find(style).unwrap(), scene()));
     }
@@ -145,7 +145,7 @@ fn the_gpu_gives_the_golden_images() {
 
 #[test]
 fn every_golden_image_belongs_to_a_node_and_all_are_small() {
-    if is_blessing() {
+    if is_blessing() || cases::only_some() {
         return;
     }
     let names: Vec<String> = all().into_iter().map(|(name, ..)| format!("{name}.png")).collect();

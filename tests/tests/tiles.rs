@@ -1,7 +1,6 @@
 //! A part of a picture computed alone is the same part of the whole, bit for bit on the CPU, whatever
 //! the threads; other instruction sets differ by rounding only; a proxy looks like the full frame.
 
-use isophote::registry;
 use isophote::request::Planned;
 use isophote::spec::{ImageKind, NodeSpec};
 use isophote::{Request, Value};
@@ -43,7 +42,7 @@ struct Run {
 /// Every node with several parameter sets, pictures and guides.
 fn runs(size: [u32; 2]) -> Vec<Run> {
     let mut all = Vec::new();
-    for spec in registry::nodes() {
+    for spec in cases::nodes() {
         for (index, setting) in cases::settings(spec, 3).into_iter().enumerate() {
             let kind = Kind::ALL[(index + 2) % Kind::ALL.len()];
             let wired = cases::has_optional_field(spec) && index % 2 == 1;
@@ -146,7 +145,7 @@ fn instruction_sets_differ_by_rounding_only() {
     let mut wrong = Vec::new();
     for (name, level) in levels() {
         let mut worst = (0.0, String::new());
-        for spec in registry::nodes() {
+        for spec in cases::nodes() {
             let default = &cases::settings(spec, 0)[0];
             let run = one(spec, default, Kind::Steps, false, cases::has_guides(spec), SIZE);
             let all = Rect::of_size(SIZE[0], SIZE[1]);
@@ -192,7 +191,7 @@ fn a_proxy_looks_like_the_full_frame() {
     let picture = pictures::scenery(256, 192);
     let small = halved(&picture);
     let mut wrong = Vec::new();
-    for spec in registry::nodes() {
+    for spec in cases::nodes() {
         // Tensors change with the gradient's scale, and views of them show noise that is not scaled.
         let takes_color = spec.inputs.iter().any(|p| p.kind == ImageKind::Color && !p.optional);
         if spec.output.kind == ImageKind::Tensor || !takes_color {

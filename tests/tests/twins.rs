@@ -4,8 +4,8 @@
 use isophote::kernels::KERNELS;
 use isophote_engine::cpu::Control;
 use isophote_tests::compare::Difference;
-use isophote_tests::device;
 use isophote_tests::sweep::sweep;
+use isophote_tests::{cases, device};
 use std::collections::BTreeMap;
 
 #[derive(Default)]
@@ -57,6 +57,9 @@ fn every_shader_agrees_with_its_cpu_twin() {
             "{:30} {:5} {:8} {:9.5} {:8.5} {:8.1e} {:8.2}",
             kernel.name, tally.runs, tally.values, share, kernel.tolerance.outliers, tally.worst, tally.ratio
         );
+        if tally.runs == 0 && cases::only_some() {
+            continue;
+        }
         if tally.runs == 0 {
             wrong.push(format!("{}: no node reaches it", kernel.name));
         }

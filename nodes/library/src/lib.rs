@@ -12,6 +12,7 @@ mod json;
 pub mod kernels;
 mod look;
 pub mod nodes;
+mod ports;
 pub mod registry;
 pub mod request;
 pub mod spec;

@@ -1,6 +1,7 @@
 //! Lines over a picture (§ 4.6).
 
 use crate::kernels::colour::composite_lines::composite;
+use crate::ports;
 use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
 use isophote_engine::ImageId;
 
@@ -12,10 +13,10 @@ pub static NODE: NodeSpec = NodeSpec {
     doc: "Draws an edge image (1 = paper, 0 = line) over the picture, or over plain paper.",
     section: "4.6",
     inputs: &[
-        Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The picture." },
+        ports::COLOR,
         Port { id: "edges", kind: ImageKind::Scalar, optional: false, doc: "The edge image." },
     ],
-    output: Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The picture with lines." },
+    output: ports::color_output("The picture with lines."),
     own_params: &[
         Param::color("color", "Line colour", [0.0, 0.0, 0.0, 1.0]).doc("Colour of the lines."),
         Param::float("opacity", "Opacity", 1.0, [0.0, 1.0]).doc("Opacity of the lines."),

@@ -2,7 +2,8 @@
 
 use crate::kernels::colour::quantize_luminance::{Steepness, quantize};
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
-use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
+use crate::ports;
+use crate::spec::{NodeSpec, Param, Scope};
 use isophote_engine::ImageId;
 
 /// The node.
@@ -13,8 +14,8 @@ pub static NODE: NodeSpec = NodeSpec {
     doc: "Flattens CIELAB lightness to soft steps, q + d/2 tanh(phi_q (L - q)) with q the middle of the \
           bin of L and d = 100 / bins; colour stays. Bins continue below black and above white.",
     section: "4.6",
-    inputs: &[Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The picture." }],
-    output: Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The flattened picture." },
+    inputs: &[ports::COLOR],
+    output: ports::color_output("The flattened picture."),
     own_params: &[
         Param::int("bins", "Bins", 8, [1, 256]).slider(2.0, 24.0).doc("Levels between black and white."),
         PHI_Q,

@@ -3,6 +3,7 @@
 use crate::kernels::colour::lightness;
 use crate::kernels::edge_threshold::{Threshold, Xdog};
 use crate::kernels::lines::dog_columns;
+use crate::ports;
 use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
 use isophote_engine::ImageId;
 
@@ -14,7 +15,7 @@ pub static NODE: NodeSpec = NodeSpec {
     doc: "Lines by the extended difference of Gaussians on lightness (4.7, 4.8) or its sharpening form \
           (4.10): 1 is paper, 0 is line. Transparent pixels neither draw nor receive lines.",
     section: "4.2-4.4",
-    inputs: &[Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The picture." }],
+    inputs: &[ports::COLOR],
     output: EDGES,
     own_params: &[
         SIGMA_E, K, FORM, TAU, EPSILON, PHI, P, EPSILON_P, PHI_P, THRESHOLD,

@@ -5,6 +5,7 @@ use crate::kernels::edge_threshold::{Threshold, Xdog};
 use crate::kernels::lines::{darken_by_lines, flow_dog_gradient, flow_dog_tangent, guide_lines, orientation_field};
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::structure::structure_tensor::{Guides, TensorOptions, of_color_and_guides};
+use crate::ports;
 use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
 
@@ -18,13 +19,8 @@ pub static NODE: NodeSpec = NodeSpec {
           drawn where these break, along the same flow. 1 is paper, 0 is line.",
     section: "4.5",
     inputs: &[
-        Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The picture." },
-        Port {
-            id: "tensor",
-            kind: ImageKind::Tensor,
-            optional: true,
-            doc: "Local orientation; by default the smoothed structure tensor of the picture.",
-        },
+        ports::COLOR,
+        ports::TENSOR,
         NORMAL,
         DEPTH,
         OBJECT_ID,

@@ -8,7 +8,8 @@ use crate::kernels::smoothing::flow_bilateral;
 use crate::kernels::smoothing::oriented_bilateral::{self, Direction, Sampling};
 use crate::nodes::smoothing::oriented_bilateral::{SAMPLING, sampling};
 use crate::nodes::structure::structure_tensor;
-use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
+use crate::ports;
+use crate::spec::{Choice, NodeSpec, Param, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -21,15 +22,10 @@ pub static NODE: NodeSpec = NodeSpec {
           in CIELAB. Transparent pixels lend no colour, and coverage stays as it is.",
     section: "3.5",
     inputs: &[
-        Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The picture." },
-        Port {
-            id: "tensor",
-            kind: ImageKind::Tensor,
-            optional: true,
-            doc: "The orientation of all iterations; that of the picture itself when open.",
-        },
+        ports::COLOR,
+        ports::TENSOR,
     ],
-    output: Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The abstracted picture." },
+    output: ports::color_output("The abstracted picture."),
     own_params: &[
         Param::float("sigma_dg", "Sigma along gradient", 3.0, [0.0, 40.0])
             .slider(0.0, 10.0)

@@ -1,7 +1,8 @@
 //! The Gaussian filter (§ 2.2.2, equation 2.21).
 
 use crate::kernels::smoothing::gaussian_blur;
-use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
+use crate::ports;
+use crate::spec::{NodeSpec, Param, Scope};
 use isophote_engine::ImageId;
 
 /// The node.
@@ -12,8 +13,8 @@ pub static NODE: NodeSpec = NodeSpec {
     doc: "Smooths the picture with a Gaussian (2.21), cut off at three standard deviations and \
           normalised. Transparent pixels lend no colour to their neighbours.",
     section: "2.2.2",
-    inputs: &[Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The picture." }],
-    output: Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The smoothed picture." },
+    inputs: &[ports::COLOR],
+    output: ports::color_output("The smoothed picture."),
     own_params: &[Param::float("sigma", "Sigma", 2.0, [0.0, 80.0])
         .slider(0.0, 20.0)
         .pixels()

@@ -3,7 +3,8 @@
 
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
 use crate::nodes::structure::structure_tensor;
-use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
+use crate::ports;
+use crate::spec::{Choice, NodeSpec, Param, Scope};
 use isophote_engine::ImageId;
 
 /// The node.
@@ -16,15 +17,10 @@ pub static NODE: NodeSpec = NodeSpec {
           Lines grow shorter where the orientation is uncertain (6.3.1) or turns (6.3.2).",
     section: "2.9, 6.3",
     inputs: &[
-        Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The picture." },
-        Port {
-            id: "tensor",
-            kind: ImageKind::Tensor,
-            optional: true,
-            doc: "The orientation to follow; that of the picture itself when open.",
-        },
+        ports::COLOR,
+        ports::TENSOR,
     ],
-    output: Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The smoothed picture." },
+    output: ports::color_output("The smoothed picture."),
     own_params: &[
         Param::float("sigma", "Sigma", 6.0, [0.0, 40.0])
             .slider(0.0, 20.0)

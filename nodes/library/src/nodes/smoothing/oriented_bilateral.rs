@@ -6,7 +6,8 @@
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::oriented_bilateral::{self, Direction, Options, Sampling};
 use crate::nodes::structure::structure_tensor;
-use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
+use crate::ports;
+use crate::spec::{Choice, NodeSpec, Param, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -20,15 +21,10 @@ pub static NODE: NodeSpec = NodeSpec {
           stays as it is.",
     section: "3.4",
     inputs: &[
-        Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The picture." },
-        Port {
-            id: "tensor",
-            kind: ImageKind::Tensor,
-            optional: true,
-            doc: "The orientation of all iterations; that of the picture itself when open.",
-        },
+        ports::COLOR,
+        ports::TENSOR,
     ],
-    output: Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The abstracted picture." },
+    output: ports::color_output("The abstracted picture."),
     own_params: &[
         Param::float("sigma_dg", "Sigma along gradient", 3.0, [0.0, 40.0])
             .slider(0.0, 10.0)

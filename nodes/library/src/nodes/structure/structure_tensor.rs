@@ -9,6 +9,7 @@ use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::structure::gradient_tensor::{self, Derivative, Measure};
 use crate::kernels::structure::guide_tensor::{self, Guide};
 use crate::kernels::structure::jacobi_step;
+use crate::ports;
 use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
 use isophote_engine::{Class, ImageId, PlanBuilder};
 
@@ -23,7 +24,7 @@ pub static NODE: NodeSpec = NodeSpec {
           surroundings. Transparent pixels lend no colour to the gradient.",
     section: "2.2-2.4, 2.7.3",
     inputs: &[
-        Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The picture." },
+        ports::COLOR,
         Port {
             id: "normal",
             kind: ImageKind::Normal,

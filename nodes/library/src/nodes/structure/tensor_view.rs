@@ -3,6 +3,7 @@
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
 use crate::kernels::structure::tensor_display::{self, Show};
 use crate::kernels::structure::{contrast, noise};
+use crate::ports;
 use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
 use isophote_engine::ImageId;
 
@@ -21,7 +22,7 @@ pub static NODE: NodeSpec = NodeSpec {
         optional: false,
         doc: "The tensor field to show.",
     }],
-    output: Port { id: "color", kind: ImageKind::Color, optional: false, doc: "An opaque picture of it." },
+    output: ports::color_output("An opaque picture of it."),
     own_params: &[
         Param::choice(
             "show",

@@ -6,7 +6,8 @@ use crate::look::{self, ADVANCED, LOOK, Lines};
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::lines::flow_dog::{self, FlowDog};
 use crate::nodes::styles::cartoon::{self, Abstraction};
-use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
+use crate::ports;
+use crate::spec::{NodeSpec, Param, Scope};
 use isophote_engine::ImageId;
 
 /// The node.
@@ -18,12 +19,12 @@ pub static NODE: NodeSpec = NodeSpec {
           where given, of the breaks of normals, depth and object ids.",
     section: "1.2, 4.5",
     inputs: &[
-        Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The picture." },
+        ports::COLOR,
         flow_dog::NORMAL,
         flow_dog::DEPTH,
         flow_dog::OBJECT_ID,
     ],
-    output: Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The blueprint." },
+    output: ports::color_output("The blueprint."),
     own_params: &[
         look::LINE_WIDTH,
         look::LINE_AMOUNT,

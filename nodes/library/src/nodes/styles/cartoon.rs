@@ -8,7 +8,8 @@ use crate::nodes::colour::quantize_luminance as quantization;
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::lines::flow_dog::{self, FlowDog};
 use crate::nodes::smoothing::{flow_bilateral, oriented_bilateral};
-use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
+use crate::ports;
+use crate::spec::{Choice, NodeSpec, Param, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -22,12 +23,12 @@ pub static NODE: NodeSpec = NodeSpec {
           their own.",
     section: "4.6",
     inputs: &[
-        Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The picture." },
+        ports::COLOR,
         flow_dog::NORMAL,
         flow_dog::DEPTH,
         flow_dog::OBJECT_ID,
     ],
-    output: Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The cartoon." },
+    output: ports::color_output("The cartoon."),
     own_params: &[
         look::LINE_WIDTH,
         look::LINE_AMOUNT,

@@ -1,0 +1,20 @@
+//! Ports that many nodes share.
+
+use crate::spec::{ImageKind, Port};
+
+/// The picture that a node filters.
+pub(crate) const COLOR: Port =
+    Port { id: "color", kind: ImageKind::Color, optional: false, doc: "The picture." };
+
+/// The orientation that a node follows, or finds by itself.
+pub(crate) const TENSOR: Port = Port {
+    id: "tensor",
+    kind: ImageKind::Tensor,
+    optional: true,
+    doc: "The orientation to follow, in all iterations; the smoothed structure tensor of the picture when open.",
+};
+
+/// The picture that a node gives.
+pub(crate) const fn color_output(doc: &'static str) -> Port {
+    Port { id: "color", kind: ImageKind::Color, optional: false, doc }
+}
