@@ -3,6 +3,8 @@
 mod bench;
 mod demo;
 mod error;
+mod experiments;
+mod gallery;
 mod header;
 mod readme;
 mod scene;
@@ -29,6 +31,10 @@ enum Chore {
     Test(test::Options),
     /// Makes the golden images anew; look at them before committing
     Bless,
+    /// Runs the thesis' experiments and writes their tables
+    Experiments(experiments::Options),
+    /// Every node on pictures, as a page to look at
+    Gallery(gallery::Options),
     /// Runs the host's benchmark, built for speed
     Bench(bench::Options),
     /// Writes include/isophote.h from the Rust declarations
@@ -45,6 +51,8 @@ fn main() -> ExitCode {
         Chore::Demo(options) => demo::run(&options),
         Chore::Test(options) => test::run(&options),
         Chore::Bless => test::bless(),
+        Chore::Experiments(options) => experiments::run(&options),
+        Chore::Gallery(options) => gallery::run(&options),
         Chore::Bench(options) => bench::run(&options),
         Chore::Readme(options) => readme::run(&options),
         Chore::Header(options) => header::run(&options),
