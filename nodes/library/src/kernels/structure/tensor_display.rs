@@ -1,54 +1,258 @@
-//! A tensor field as a colour. Orientation: the angle of the tangent, doubled so that opposite
-//! directions are one, on a circle of hues whose saturation is the anisotropy; horizontal edges are
-//! red, 120 degrees of double angle are green, grey means no orientation. Anisotropy (2.137) as grey.
+//! A tensor field as a colour (§ 2.6).
+//!
+//! Orientation: the angle of the tangent, doubled so that opposite directions are one, on a circle of
+//! hues whose saturation is the anisotropy; horizontal edges are red, 120 degrees of double angle are
+//! green, grey means no orientation.
+//!
+//! All else is grey. Anisotropies are shown as they are. Gradient magnitude and corner measures have no
+//! upper end, so v is shown as v / (v + half), which never clips: middle grey is a gradient of 0.1 a
+//! pixel, and for corners a measure of 0.05^2. Measures that are fourth powers of gradients, those of
+//! Harris and Rohr, are shown by their roots. That of Harris has a sign: middle grey is 0, edges are
+//! darker and corners lighter.
 //!
 //! Cost: about 30 operations.
 
 use crate::kernels::support::map_pixels4;
-use crate::kernels::tensor_algebra::anisotropy;
-use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
+use crate::kernels::tensor_algebra;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::params! {
     /// Uniform block.
     pub struct Params for tensor_display {
-        /// 0 orientation, 1 anisotropy.
+        /// A [`Show`] by number.
         pub show: u32,
+        /// k of the Harris measure.
+        pub k: f32,
+        /// Anisotropy above which a place is no noise.
+        pub threshold: f32,
     }
 }
 
 crate::kernel!(tensor_display {
     cpu: run,
     cost: |_| 30.0,
-    tolerance: Tolerance { absolute: 2e-6, relative: 0.0, outliers: 0.0, reason: "a division and a dozen roundings of values up to 1" },
+    tolerance: Tolerance {
+        absolute: 1e-3,
+        relative: 0.0,
+        outliers: 0.005,
+        reason: "a determinant keeps the last bits of its products, a root magnifies them where the \
+                 anisotropy is near 1 or a corner measure near 0, and a place at the threshold of \
+                 significance goes either way",
+    },
 });
 
 /// What to show.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Show {
     /// Hue by the double angle of the tangent, saturation by anisotropy.
-    Orientation = 0,
-    /// Anisotropy as grey.
-    Anisotropy = 1,
+    Orientation,
+    /// Anisotropy (2.137).
+    Anisotropy,
+    /// Anisotropy of the roots of the eigenvalues (2.138).
+    AnisotropySqrt,
+    /// Squared anisotropy (2.139).
+    AnisotropySquared,
+    /// Gradient magnitude, sqrt(lambda1).
+    Magnitude,
+    /// Corner response (2.159) with this k.
+    Harris(f32),
+    /// det / tr (2.160).
+    Foerstner,
+    /// lambda2 (2.161).
+    TomasiKanade,
+    /// The determinant.
+    Rohr,
+    /// Anisotropy where it is above what noise gives (2.154), at this level of significance and for
+    /// so many independent samples; 0 elsewhere.
+    Significance {
+        /// Share of noise that passes.
+        alpha: f32,
+        /// Samples that a window is worth, 4 pi rho^2 for a Gaussian (2.158).
+        samples: f32,
+    },
+}
+
+/// Anisotropy that noise exceeds with probability `alpha` in windows worth `samples` (2.154).
+pub fn least_significant(alpha: f32, samples: f32) -> f32 {
+    // Tensors of one sample are all of anisotropy 1.
+    let exponent = 2.0 / (f64::from(samples) - 1.0).max(1e-6);
+    (1.0 - f64::from(alpha).powf(exponent)).sqrt() as f32
 }
 
 /// Adds the pass: tensor to opaque colour.
 pub fn color(plan: &mut PlanBuilder, tensor: ImageId, show: Show) -> ImageId {
-    plan.pass(&KERNEL, &[tensor], &Params { show: show as u32 }, Class::Colour, Support::Pixels(0))
+    let plain = |show: u32| Params { show, k: 0.0, threshold: 0.0 };
+    let params = match show {
+        Show::Orientation => plain(0),
+        Show::Anisotropy => plain(1),
+        Show::AnisotropySqrt => plain(2),
+        Show::AnisotropySquared => plain(3),
+        Show::Magnitude => plain(4),
+        Show::Harris(k) => Params { k, ..plain(5) },
+        Show::Foerstner => plain(6),
+        Show::TomasiKanade => plain(7),
+        Show::Rohr => plain(8),
+        Show::Significance { alpha, samples } => {
+            Params { threshold: least_significant(alpha, samples), ..plain(9) }
+        }
+    };
+    plan.pass(&KERNEL, &[tensor], &params, Class::Colour, Support::Pixels(0))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, |[e, f, g, _]| {
-        let c = |v: f32| f32x8::splat(simd, v);
-        if params.show != Show::Orientation as u32 {
-            let grey = anisotropy(e, f, g);
-            return [grey, grey, grey, c(1.0)];
+    dispatch!(pass.level, simd => map_pixels4(
+        simd,
+        pass,
+        band,
+        #[inline(always)]
+        |[e, f, g, _]| {
+            let one = f32x8::splat(simd, 1.0);
+            let [r, g, b] = match params.show {
+                0 => orientation(simd, e, f, g),
+                1..4 | 9 => [anisotropy(simd, &params, e, f, g); 3],
+                _ => [strength(simd, &params, [e, f, g]); 3],
+            };
+            [r, g, b, one]
+        },
+    ));
+}
+
+#[inline(always)]
+fn orientation<S: Simd>(simd: S, e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> [f32x8<S>; 3] {
+    let c = |v: f32| f32x8::splat(simd, v);
+    // Anisotropy times (cos 2 phi, sin 2 phi), phi the angle of the tangent.
+    let trace = (e + g).max(c(f32::MIN_POSITIVE));
+    let (x, y) = ((g - e) / trace, f * -2.0 / trace);
+    let (across, up) = (x * 0.25, y * 0.433_012_7);
+    [x * 0.5 + 0.5, c(0.5) - across + up, c(0.5) - across - up]
+}
+
+#[inline(always)]
+fn anisotropy<S: Simd>(simd: S, params: &Params, e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> f32x8<S> {
+    let a = tensor_algebra::anisotropy(e, f, g);
+    let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+    match params.show {
+        2 => a / (one + (one - a * a).max(zero).sqrt()),
+        3 => a * a,
+        9 => a.simd_gt(f32x8::splat(simd, params.threshold)).select(a, zero),
+        _ => a,
+    }
+}
+
+/// Values that are shown as middle grey: a gradient and, for corners, a squared one.
+const HALF_GRADIENT: f32 = 0.1;
+const HALF_SQUARE: f32 = 0.0025;
+
+#[inline(always)]
+fn strength<S: Simd>(simd: S, params: &Params, t: [f32x8<S>; 3]) -> f32x8<S> {
+    let c = |v: f32| f32x8::splat(simd, v);
+    // Products of four gradients must not overflow.
+    let mut bounded = t;
+    for v in &mut bounded {
+        *v = v.max(c(-1e9)).min(c(1e9));
+    }
+    let [e, f, g] = bounded;
+    let trace = e + g;
+    let lambda1 = trace * 0.5 + tensor_algebra::axis((e - g) * 0.5, f).0;
+    // What rounding leaves of the determinant of a tensor of rank one is no corner.
+    let determinant = (e * g - f * f - trace * 1e-6 * trace).max(c(0.0));
+    match params.show {
+        4 => {
+            let gradient = lambda1.max(c(0.0)).sqrt();
+            gradient / (gradient + HALF_GRADIENT)
         }
-        // Anisotropy times (cos 2 phi, sin 2 phi), phi the angle of the tangent.
-        let trace = (e + g).max(c(f32::MIN_POSITIVE));
-        let (x, y) = ((g - e) / trace, f * -2.0 / trace);
-        let (across, up) = (x * 0.25, y * 0.433_012_7);
-        [x * 0.5 + 0.5, c(0.5) - across + up, c(0.5) - across - up, c(1.0)]
-    }));
+        5 => {
+            let harris = determinant - trace * params.k * trace;
+            let square = harris.abs().sqrt();
+            let grey = square / (square + HALF_SQUARE) * 0.5;
+            harris.simd_lt(c(0.0)).select(-grey, grey) + 0.5
+        }
+        6 => {
+            let square = determinant / trace.max(c(f32::MIN_POSITIVE));
+            square / (square + HALF_SQUARE)
+        }
+        7 => {
+            let square = determinant / lambda1.max(c(f32::MIN_POSITIVE));
+            square / (square + HALF_SQUARE)
+        }
+        _ => {
+            let square = determinant.sqrt();
+            square / (square + HALF_SQUARE)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isophote_engine::cpu::{CallingThread, Control, CpuExecutor};
+    use isophote_engine::{Image, Rect};
+
+    /// The grey that a tensor is shown as.
+    fn grey([e, f, g]: [f32; 3], show: Show) -> f64 {
+        let mut plan = PlanBuilder::new(1, 1).unwrap();
+        let tensor = plan.input("tensor", 4, Class::Field);
+        let shown = color(&mut plan, tensor, show);
+        plan.output("color", shown);
+        let image = Image::from_vec(1, 1, 4, vec![e, f, g, 1.0]).unwrap();
+        let region = Rect::of_size(1, 1);
+        let result = CpuExecutor::new()
+            .run(&plan.finish().unwrap(), &[("tensor", &image)], region, &CallingThread, Control::default())
+            .unwrap()
+            .remove(0);
+        let pixel = result.pixel(0, 0);
+        assert!(pixel[0] == pixel[1] && pixel[1] == pixel[2] && pixel[3] == 1.0);
+        f64::from(pixel[0])
+    }
+
+    #[test]
+    fn measures_are_those_of_the_eigenvalues() {
+        let (l1, l2) = (0.03f64, 0.004f64);
+        let (sin, cos) = 0.7f64.sin_cos();
+        let tensor = [
+            l1 * cos * cos + l2 * sin * sin,
+            (l1 - l2) * sin * cos,
+            l1 * sin * sin + l2 * cos * cos,
+        ]
+        .map(|v| v as f32);
+        let a = (l1 - l2) / (l1 + l2);
+        let root = (l1.sqrt() - l2.sqrt()) / (l1.sqrt() + l2.sqrt());
+        let toned = |v: f64, half: f64| v / (v.abs() + half);
+        let harris = l1 * l2 - 0.04 * (l1 + l2).powi(2);
+        for (show, want) in [
+            (Show::Anisotropy, a),
+            (Show::AnisotropySqrt, root),
+            (Show::AnisotropySquared, a * a),
+            (Show::Magnitude, toned(l1.sqrt(), 0.1)),
+            (Show::Harris(0.04), 0.5 + 0.5 * toned(harris.signum() * harris.abs().sqrt(), 0.0025)),
+            (Show::Foerstner, toned(l1 * l2 / (l1 + l2), 0.0025)),
+            (Show::TomasiKanade, toned(l2, 0.0025)),
+            (Show::Rohr, toned((l1 * l2).sqrt(), 0.0025)),
+            (Show::Significance { alpha: 0.05, samples: 50.0 }, a),
+            (Show::Significance { alpha: 0.05, samples: 4.0 }, 0.0),
+        ] {
+            let got = grey(tensor, show);
+            assert!((got - want).abs() < 1e-4, "{show:?}: {got} for {want}");
+        }
+    }
+
+    #[test]
+    fn the_threshold_of_significance_is_the_published_one() {
+        assert!((least_significant(0.05, 169.0) - 0.1872).abs() < 5e-5);
+        assert!(least_significant(0.05, 1.0) >= 1.0 && least_significant(0.05, 0.0) >= 1.0);
+    }
+
+    #[test]
+    fn extreme_tensors_are_shown_between_black_and_white() {
+        for v in [0.0, 1e-38, 1.0, 1e30] {
+            for show in [Show::Magnitude, Show::Harris(0.04), Show::Foerstner, Show::TomasiKanade, Show::Rohr] {
+                for tensor in [[v, 0.0, v], [v, v, v], [0.0, 0.0, v]] {
+                    assert!((0.0..=1.0).contains(&grey(tensor, show)), "{show:?} of {tensor:?}");
+                }
+                assert!(show == Show::Magnitude || grey([v, v, v], show) <= 0.5, "an edge is no corner");
+            }
+        }
+    }
 }

@@ -14,8 +14,12 @@ pub static NODE: NodeSpec = NodeSpec {
     group: "structure",
     doc: "Shows a tensor field: noise smeared along its stream lines by line integral convolution; the \
           tangent's orientation as a hue that is the more saturated the more anisotropic the place is \
-          (horizontal edges are red); or the anisotropy as grey.",
-    section: "2.6, 2.9",
+          (horizontal edges are red); or, as grey, an anisotropy, the gradient's magnitude, a cornerness, \
+          or where the orientation is no chance result of noise. Measures without an upper end are shown \
+          as v / (v + half): a gradient of 0.1 a pixel, or for corners a measure of 0.05^2, is middle grey. \
+          The measures of Harris and Rohr, fourth powers of gradients, are shown by their roots; that of \
+          Harris is signed: edges are darker than middle grey, corners lighter.",
+    section: "2.6, 2.9.3",
     inputs: &[Port {
         id: "tensor",
         kind: ImageKind::Tensor,
@@ -32,13 +36,35 @@ pub static NODE: NodeSpec = NodeSpec {
                 Choice { id: "lic", label: "Line integral convolution" },
                 Choice { id: "orientation", label: "Orientation" },
                 Choice { id: "anisotropy", label: "Anisotropy" },
+                Choice { id: "anisotropy_sqrt", label: "Anisotropy of roots" },
+                Choice { id: "anisotropy_squared", label: "Squared anisotropy" },
+                Choice { id: "magnitude", label: "Gradient magnitude" },
+                Choice { id: "harris", label: "Harris corners" },
+                Choice { id: "foerstner", label: "Foerstner corners" },
+                Choice { id: "tomasi_kanade", label: "Tomasi-Kanade corners" },
+                Choice { id: "rohr", label: "Rohr corners" },
+                Choice { id: "significance", label: "Significance" },
             ],
         )
-        .doc("What to show: stream lines (2.186), the angle of the tangent, or the anisotropy (2.137)."),
+        .doc(
+            "What to show: stream lines (2.186), the angle of the tangent, the anisotropy (2.137), (2.138) or \
+             (2.139), sqrt(lambda1), the corner measure (2.159), (2.160), (2.161) or det, or the anisotropy \
+             where it is significant (2.154) and else black.",
+        ),
         Param::float("sigma", "Sigma", 6.0, [0.5, 40.0])
             .slider(1.0, 20.0)
             .pixels()
             .doc("Standard deviation of the convolution along the stream lines."),
+        Param::float("k", "Harris k", 0.04, [0.0, 0.25])
+            .slider(0.0, 0.1)
+            .doc("k of the Harris measure det - k tr^2 (2.159); usual are 0.04 to 0.06, from 0.25 on nothing is a corner."),
+        Param::float("alpha", "Significance level", 0.05, [0.0001, 0.5])
+            .slider(0.001, 0.2)
+            .doc("Share of pure noise that passes for structure, alpha of (2.154)."),
+        Param::float("rho", "Rho of the tensor", 2.0, [0.0, 40.0])
+            .slider(0.5, 10.0)
+            .pixels()
+            .doc("Standard deviation that the tensor was smoothed by: significance counts 4 pi rho^2 samples (2.158)."),
     ],
     build,
 };
@@ -49,14 +75,31 @@ const SPREAD: f32 = 0.22;
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let tensor = scope.required("tensor");
     match scope.choice("show") {
-        "orientation" => tensor_display::color(scope.plan, tensor, Show::Orientation),
-        "anisotropy" => tensor_display::color(scope.plan, tensor, Show::Anisotropy),
-        _ => {
+        "lic" => {
             let (sigma, scale) = (scope.float("sigma"), scope.scale());
             let grains = noise::white(scope.plan, scale, 0);
             let options = Options { sigma, adapt: Adapt::None, ..Options::default() };
             let lines = line_integral_convolution::color(scope.plan, grains, tensor, &options);
             contrast::stretch(scope.plan, lines, SPREAD / deviation(sigma))
+        }
+        measure => {
+            let show = match measure {
+                "orientation" => Show::Orientation,
+                "anisotropy_sqrt" => Show::AnisotropySqrt,
+                "anisotropy_squared" => Show::AnisotropySquared,
+                "magnitude" => Show::Magnitude,
+                "harris" => Show::Harris(scope.float("k")),
+                "foerstner" => Show::Foerstner,
+                "tomasi_kanade" => Show::TomasiKanade,
+                "rohr" => Show::Rohr,
+                "significance" => {
+                    let rho = scope.float("rho");
+                    let samples = 4.0 * std::f32::consts::PI * rho * rho;
+                    Show::Significance { alpha: scope.float("alpha"), samples }
+                }
+                _ => Show::Anisotropy,
+            };
+            tensor_display::color(scope.plan, tensor, show)
         }
     }
 }
