@@ -1,7 +1,7 @@
 // The structure tensor of each pixel's gradient (2.34), by a separable derivative operator.
 // Cost: (2 radius + 1)^2 loads and 4 radius (2 radius + 1) multiply-adds on vec4.
 #import grid
-#import tensor
+#import outer_product
 
 struct Params {
     radius: i32,
@@ -57,24 +57,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         gx += params.derivative[i >> 2u][i & 3] * (right.smoothed - left.smoothed);
         gy += params.smoothing[i >> 2u][i & 3] * (left.derived + right.derived);
     }
-    // The quotient rule without its division: coverage squared times the gradient of the colour.
-    let c = tap(p);
-    var x = (c.a * gx.rgb - c.rgb * gx.a) * params.scale;
-    var y = (c.a * gy.rgb - c.rgb * gy.a) * params.scale;
-    if (params.flags & 1u) != 0u {
-        x = vec3f(0.2126 * x.r + 0.7152 * x.g + 0.0722 * x.b, 0.0, 0.0);
-        y = vec3f(0.2126 * y.r + 0.7152 * y.g + 0.0722 * y.b, 0.0, 0.0);
-    }
-    var e = x * x;
-    var f = x * y;
-    var g = y * y;
-    if (params.flags & 2u) != 0u {
-        let inverse = 1.0 / sqrt(max(e + g, vec3f(1e-30)));
-        e *= inverse;
-        f *= inverse;
-        g *= inverse;
-    }
-    let t = vec3f(e.x + e.y + e.z, f.x + f.y + f.z, g.x + g.y + g.z);
-    let lambda1 = (t.x + t.z) * 0.5 + tensor_axis((t.x - t.z) * 0.5, t.y).radius;
-    textureStore(target_image, vec2i(id.xy), vec4f(t, select(0.0, 1.0, lambda1 > params.threshold)));
+    let t = outer_product(tap(p), gx, gy, params.scale, params.flags, params.threshold);
+    textureStore(target_image, vec2i(id.xy), t);
 }

@@ -3,7 +3,7 @@
 #import grid
 
 struct Params {
-    // A tensor is valid from this w on.
+    // A tensor is valid from this w on; below 0 all are.
     kept: f32,
 }
 
@@ -20,13 +20,15 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     // At odd sizes the last children do not exist; the clamped ones would count twice.
     let size = grid.inputs[0].zw;
     var sum = vec4f(0.0);
+    var count = 0.0;
     for (var y = p.y; y < min(p.y + 2, size.y); y++) {
         for (var x = p.x; x < min(p.x + 2, size.x); x++) {
             let t = fetch(source, 0u, vec2i(x, y));
             if t.w >= params.kept {
-                sum += vec4f(t.xyz, 1.0);
+                sum += t;
+                count += 1.0;
             }
         }
     }
-    textureStore(target_image, vec2i(id.xy), sum / max(sum.w, 1.0));
+    textureStore(target_image, vec2i(id.xy), sum / max(count, 1.0));
 }

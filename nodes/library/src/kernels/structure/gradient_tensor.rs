@@ -129,6 +129,18 @@ pub struct Measure {
     pub threshold: Option<f32>,
 }
 
+impl Measure {
+    /// `flags` of the uniform block.
+    pub(crate) fn flags(self) -> u32 {
+        u32::from(self.luma) | u32::from(self.normalize) << 1
+    }
+
+    /// lambda1 above which a tensor counts as valid.
+    pub(crate) fn least_lambda1(self) -> f32 {
+        least_lambda1(self.threshold)
+    }
+}
+
 /// lambda1 above which a tensor counts as valid; below any lambda1 when all do.
 pub(crate) fn least_lambda1(threshold: Option<f32>) -> f32 {
     threshold.map_or(-1.0, |t| t * t)
@@ -139,9 +151,9 @@ pub fn tensor(plan: &mut PlanBuilder, color: ImageId, operator: Derivative, meas
     let (radius, smoothing, derivative) = operator.tables();
     let params = Params {
         radius: radius as i32,
-        flags: u32::from(measure.luma) | u32::from(measure.normalize) << 1,
+        flags: measure.flags(),
         scale: measure.scale,
-        threshold: least_lambda1(measure.threshold),
+        threshold: measure.least_lambda1(),
         smoothing,
         derivative,
     };
@@ -203,7 +215,8 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
                     centre[c] = f32x8::from_slice(simd, &centres[c][at..at + 8]);
                     gradients[c] = gradient(simd, &weights, r, sums[c], at);
                 }
-                put_pixels4(outer(simd, params, centre, gradients), pixels);
+                let (flags, scale, threshold) = (params.flags, params.scale, params.threshold);
+                put_pixels4(outer(simd, flags, scale, threshold, centre, gradients), pixels);
             }
         }
     }
@@ -260,11 +273,13 @@ fn gradient<S: Simd>(
     [x, y]
 }
 
-/// The tensor (2.34) and its validity.
+/// The tensor (2.34) and its validity; twin of `shaders/shared/outer_product.wgsl`.
 #[inline(always)]
-fn outer<S: Simd>(
+pub(crate) fn outer<S: Simd>(
     simd: S,
-    params: &Params,
+    flags: u32,
+    scale: f32,
+    threshold: f32,
     centre: [f32x8<S>; 4],
     gradients: [[f32x8<S>; 2]; 4],
 ) -> [f32x8<S>; 4] {
@@ -273,23 +288,23 @@ fn outer<S: Simd>(
     // The quotient rule without its division: coverage squared times the gradient of the colour.
     let (mut x, mut y) = ([splat(0.0); 3], [splat(0.0); 3]);
     for c in 0..3 {
-        x[c] = (alpha * gradients[c][0] - centre[c] * gradients[3][0]) * params.scale;
-        y[c] = (alpha * gradients[c][1] - centre[c] * gradients[3][1]) * params.scale;
+        x[c] = (alpha * gradients[c][0] - centre[c] * gradients[3][0]) * scale;
+        y[c] = (alpha * gradients[c][1] - centre[c] * gradients[3][1]) * scale;
     }
-    if params.flags & 1 != 0 {
+    if flags & 1 != 0 {
         x = [x[0] * 0.2126 + x[1] * 0.7152 + x[2] * 0.0722, splat(0.0), splat(0.0)];
         y = [y[0] * 0.2126 + y[1] * 0.7152 + y[2] * 0.0722, splat(0.0), splat(0.0)];
     }
     let (mut e, mut f, mut g) = (splat(0.0), splat(0.0), splat(0.0));
     for c in 0..3 {
         let (mut xx, mut xy, mut yy) = (x[c] * x[c], x[c] * y[c], y[c] * y[c]);
-        if params.flags & 2 != 0 {
+        if flags & 2 != 0 {
             let inverse = splat(1.0) / (xx + yy).max(splat(1e-30)).sqrt();
             (xx, xy, yy) = (xx * inverse, xy * inverse, yy * inverse);
         }
         (e, f, g) = (e + xx, f + xy, g + yy);
     }
-    [e, f, g, validity(simd, params.threshold, e, f, g)]
+    [e, f, g, validity(simd, threshold, e, f, g)]
 }
 
 /// 1 where lambda1 is above `threshold`, else 0 (2.164).

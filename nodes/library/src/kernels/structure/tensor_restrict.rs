@@ -1,5 +1,6 @@
 //! One level of the pyramid of valid tensors up: the mean of the valid among four pixels, and whether
-//! there was any (§ 2.7.3, Listing 2.4). At odd sizes the missing children count for nothing.
+//! there was any (§ 2.7.3, Listing 2.4). At odd sizes the missing children count for nothing. With all
+//! counted as valid it is the mean of four.
 //!
 //! Cost: 4 additions and a division on four channels.
 
@@ -9,7 +10,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::params! {
     /// Uniform block.
     pub struct Params for tensor_restrict {
-        /// A tensor is valid from this w on.
+        /// A tensor is valid from this w on; below 0 all are.
         pub kept: f32,
     }
 }
@@ -27,8 +28,17 @@ crate::kernel!(tensor_restrict {
 
 /// Adds the pass: from the image's level to the next coarser one, ceil(n / 2) pixels on a side.
 pub fn restrict(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
+    coarser(plan, tensor, 1.0)
+}
+
+/// Adds the pass that takes the mean of all four, valid or not, also of w.
+pub fn mean(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
+    coarser(plan, tensor, -1.0)
+}
+
+fn coarser(plan: &mut PlanBuilder, tensor: ImageId, kept: f32) -> ImageId {
     let level = plan.desc(tensor).level + 1;
-    plan.pass_at(&KERNEL, &[tensor], &Params { kept: 1.0 }, &[Class::Field], Support::Pixels(0), level)
+    plan.pass_at(&KERNEL, &[tensor], &Params { kept }, &[Class::Field], Support::Pixels(0), level)
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
@@ -60,7 +70,6 @@ fn means<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
                 }
             }
             (sum / count.max(1.0)).store_slice(target);
-            target[3] = count.min(1.0);
         }
     }
 }

@@ -1,5 +1,5 @@
-//! The structure tensor (§ 2.2-2.4, 2.7.3): local orientation, smoothed, with what a renderer knows
-//! beside the colour as further channels, and filled where contrast is low.
+//! The structure tensor (§ 2.2-2.4, 2.7.3, 2.8): local orientation, smoothed, with what a renderer knows
+//! beside the colour as further channels, filled where contrast is low, over one or several scales.
 //!
 //! Other nodes get their tensor from [`of_color`] or [`connected`]; equal passes are shared by the
 //! plan.
@@ -8,7 +8,9 @@ use crate::kernels::colour::rgb_to_lab;
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::structure::gradient_tensor::{self, Derivative, Measure};
 use crate::kernels::structure::guide_tensor::{self, Guide};
-use crate::kernels::structure::jacobi_step;
+use crate::kernels::structure::{
+    colour_restrict, jacobi_step, oversampled_tensor, tensor_combine, tensor_restrict,
+};
 use crate::ports;
 use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
 use isophote_engine::{Class, ImageId, PlanBuilder};
@@ -21,8 +23,10 @@ pub static NODE: NodeSpec = NodeSpec {
     doc: "Local orientation of the picture: the outer product of the colour gradient with itself \
           (2.34), smoothed by a Gaussian. The minor eigenvector runs along edges. Normals, depth and \
           object numbers, where given, count as further channels; flat parts can be filled from their \
-          surroundings. Transparent pixels lend no colour to the gradient.",
-    section: "2.2-2.4, 2.7.3",
+          surroundings. Several levels make it robust against strong noise: coarser ones, with the same \
+          rho in their own pixels, take over where they are more anisotropic. Transparent pixels lend no \
+          colour to the gradient.",
+    section: "2.2-2.4, 2.7.3, 2.8",
     inputs: &[
         ports::COLOR,
         Port {
@@ -72,7 +76,7 @@ const PARAMS: &[Param] = &[
     Param::float("sigma_g", "Sigma of the derivative", 0.867, [0.2, 6.0])
         .slider(0.4, 3.0)
         .pixels()
-        .doc("Standard deviation of the Gaussian derivative (2.22); the other operators ignore it."),
+        .doc("Standard deviation of the Gaussian derivative (2.22); the other operators ignore it unless oversampled."),
     Param::float("rho", "Rho", 2.0, [0.0, 40.0])
         .slider(0.0, 10.0)
         .pixels()
@@ -103,6 +107,18 @@ const PARAMS: &[Param] = &[
     Param::int("relax_steps", "Relaxation steps", 1, [1, 3])
         .structural()
         .doc("Jacobi steps on each level of the pyramid (2.171)."),
+    Param::int("levels", "Levels", 1, [1, 8])
+        .structural()
+        .doc(
+            "Levels of the multi-scale estimation (2.172): each further one halves the picture, and its \
+             tensor, upsampled, joins by its anisotropy (2.173). Guides join on the finest.",
+        ),
+    Param::bool("oversample", "Oversample", false)
+        .structural()
+        .doc(
+            "Takes derivatives at twice the resolution (2.4.6), those of the Gaussian of sigma_g whatever \
+             the operator: exact also for the finest texture, at eight times the cost.",
+        ),
     Param::float("guide_weight", "Guide weight", 1.0, [0.0, 100.0])
         .slider(0.0, 4.0)
         .doc("Factor on the tensors of normals, depth and object numbers."),
@@ -134,6 +150,10 @@ pub struct TensorOptions {
     pub relax_threshold: f32,
     /// Jacobi steps per level.
     pub relax_steps: i32,
+    /// Levels of the multi-scale estimation (2.172), from 1 on.
+    pub levels: i32,
+    /// Take derivatives at twice the resolution, those of a Gaussian of this standard deviation.
+    pub oversample: Option<f32>,
     /// Factor on the tensors of the guides.
     pub guide_weight: f32,
 }
@@ -147,6 +167,8 @@ impl Default for TensorOptions {
             normalize: false,
             relax_threshold: 0.0,
             relax_steps: 1,
+            levels: 1,
+            oversample: None,
             guide_weight: 1.0,
         }
     }
@@ -200,22 +222,68 @@ pub fn of_color_and_guides(
     guides: &Guides,
     options: &TensorOptions,
 ) -> ImageId {
-    let relaxing = options.relax_threshold > 0.0;
-    let threshold = relaxing.then_some(options.relax_threshold);
+    let threshold = (options.relax_threshold > 0.0).then_some(options.relax_threshold);
     let (source, scale) = match options.space {
         Space::Lab => (rgb_to_lab::to_lab(plan, color, 1.0), 0.01),
         Space::Rgb | Space::Luminance => (color, 1.0),
     };
     let measure =
         Measure { scale, luma: options.space == Space::Luminance, normalize: options.normalize, threshold };
-    let mut tensor = gradient_tensor::tensor(plan, source, options.derivative, measure);
+    over_levels(plan, source, guides, options, measure, options.levels)
+}
+
+/// The result of this level and `levels` - 1 coarser ones (2.172).
+fn over_levels(
+    plan: &mut PlanBuilder,
+    source: ImageId,
+    guides: &Guides,
+    options: &TensorOptions,
+    measure: Measure,
+    levels: i32,
+) -> ImageId {
+    let own = smoothed(plan, source, guides, options, measure);
+    if levels <= 1 || plan.level_size(plan.desc(source).level) == [1, 1] {
+        return own;
+    }
+    let coarse = colour_restrict::restrict(plan, source);
+    let coarse = over_levels(plan, coarse, &Guides::default(), options, measure, levels - 1);
+    tensor_combine::combine(plan, own, coarse)
+}
+
+/// The smoothed tensor of one level.
+fn smoothed(
+    plan: &mut PlanBuilder,
+    source: ImageId,
+    guides: &Guides,
+    options: &TensorOptions,
+    measure: Measure,
+) -> ImageId {
+    let mut rho = options.rho;
+    let mut tensor = match options.oversample {
+        Some(sigma) => oversampled_tensor::tensor(plan, source, sigma, measure),
+        None => gradient_tensor::tensor(plan, source, options.derivative, measure),
+    };
+    let relax = |plan: &mut PlanBuilder, tensor| match measure.threshold {
+        Some(_) => jacobi_step::relax(plan, tensor, options.relax_steps),
+        None => tensor,
+    };
+    if options.oversample.is_some() {
+        // The mean of four adds 1/16 of a pixel to the variance of the window.
+        rho = (rho * rho - 0.0625).max(0.0).sqrt();
+        if guides.each().next().is_none() {
+            // Smoothing comes before the samples are thinned out, or they would alias.
+            let relaxed = relax(plan, tensor);
+            let wide = gaussian_blur::smooth(plan, relaxed, 2.0 * rho, Class::Field);
+            return tensor_restrict::mean(plan, wide);
+        }
+        // Guides have the picture's own pixels.
+        tensor = tensor_restrict::mean(plan, tensor);
+    }
     for (kind, guide) in guides.each() {
-        tensor = guide_tensor::add(plan, tensor, guide, kind, options.guide_weight, threshold);
+        tensor = guide_tensor::add(plan, tensor, guide, kind, options.guide_weight, measure.threshold);
     }
-    if relaxing {
-        tensor = jacobi_step::relax(plan, tensor, options.relax_steps);
-    }
-    gaussian_blur::smooth(plan, tensor, options.rho, Class::Field)
+    let relaxed = relax(plan, tensor);
+    gaussian_blur::smooth(plan, relaxed, rho, Class::Field)
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
@@ -242,6 +310,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         normalize: scope.bool("normalize"),
         relax_threshold: scope.float("relax_threshold"),
         relax_steps: scope.int("relax_steps"),
+        levels: scope.int("levels"),
+        oversample: scope.bool("oversample").then(|| scope.float("sigma_g")),
         guide_weight: scope.float("guide_weight"),
     };
     of_color_and_guides(scope.plan, color, &guides, &options)
@@ -351,7 +421,7 @@ mod tests {
         scene.images.push(("normal", image(61, 47, 4, |x, y, c| 2.0 * noise(2)(x, y, c) - 1.0)));
         scene.images.push(("depth", image(61, 47, 1, noise(3))));
         scene.images.push(("object_id", image(61, 47, 1, |x, y, c| (3.0 * noise(4)(x / 7, y / 5, c)).floor())));
-        let settings: [&[(&str, &str)]; 7] = [
+        let settings: [&[(&str, &str)]; 10] = [
             &[],
             &[("derivative", "central"), ("space", "lab"), ("rho", "0.7")],
             &[("derivative", "sobel"), ("space", "luminance"), ("normalize", "true")],
@@ -359,6 +429,9 @@ mod tests {
             &[("derivative", "gaussian"), ("sigma_g", "2.5"), ("rho", "0")],
             &[("relax_threshold", "1.1"), ("guide_weight", "0"), ("relax_steps", "3")],
             &[("relax_threshold", "9"), ("normalize", "true")],
+            &[("levels", "3")],
+            &[("oversample", "true"), ("relax_threshold", "0.9")],
+            &[("levels", "8"), ("oversample", "true"), ("rho", "0.2"), ("space", "lab")],
         ];
         for settings in settings {
             let planned = scene.planned(settings);

@@ -1,0 +1,31 @@
+// A colour at half the resolution: the mean of four pixels by their coverage. Cost: 4 loads.
+#import coverage
+
+struct Params {
+    // Coverage below this is none.
+    least: f32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var source: texture_2d<f32>;
+@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let p = 2 * pixel(id);
+    // At odd sizes the last children do not exist; the clamped ones would count twice.
+    let size = grid.inputs[0].zw;
+    var sum = vec4f(0.0);
+    var count = 0.0;
+    for (var y = p.y; y < min(p.y + 2, size.y); y++) {
+        for (var x = p.x; x < min(p.x + 2, size.x); x++) {
+            sum += fetch_covered(source, 0u, vec2i(x, y));
+            count += 1.0;
+        }
+    }
+    let color = select(vec3f(0.0), sum.rgb / sum.a, sum.a > params.least);
+    textureStore(target_image, vec2i(id.xy), vec4f(color, sum.a / count));
+}
