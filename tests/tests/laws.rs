@@ -147,7 +147,7 @@ fn every_declaration_is_complete_and_its_defaults_lie_in_range() {
 
 /// Ids that users' graphs, presets and scripts refer to. They are for ever: a node may gain parameters,
 /// and never lose or rename one.
-const PROMISED: [(&str, &[&str]); 12] = [
+const PROMISED: [(&str, &[&str]); 13] = [
     (
         "structure_tensor",
         &[
@@ -158,10 +158,13 @@ const PROMISED: [(&str, &[&str]); 12] = [
             "normalize",
             "relax_threshold",
             "relax_steps",
+            "levels",
+            "oversample",
             "guide_weight",
         ],
     ),
-    ("tensor_view", &["show", "sigma"]),
+    ("edge_tangent_flow", &["radius", "kernel", "iterations", "separable"]),
+    ("tensor_view", &["show", "sigma", "k", "alpha", "rho"]),
     ("gaussian", &["sigma", "mix"]),
     (
         "oriented_bilateral",

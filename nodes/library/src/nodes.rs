@@ -21,6 +21,7 @@ nodes! {
     }
     structure {
         structure_tensor,
+        edge_tangent_flow,
         tensor_view,
     }
     colour {

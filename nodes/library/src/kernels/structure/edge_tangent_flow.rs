@@ -1,0 +1,287 @@
+//! One pass of the edge tangent flow (2.134) over a disc or, for the separable form, a row or a column.
+//!
+//! It is computed on the tensors n n^T of unit vectors, which have no sign to get wrong: by (2.136) the
+//! sum over the neighbours of w_s w_m <n(y), n(x)> n(y) is the sum of w_s w_m n(y) n(y)^T, times n(x);
+//! and since w_m (2.135) is the sum of a term of y and one of x, two sums of the neighbours' tensors,
+//! plain and by their magnitude, are all it takes. Normals n stand for tangents t, which turn with them.
+//!
+//! A pixel without a gradient would keep its zero vector, and hole the field: it takes the axis that
+//! vectors would turn to in its place, the major eigenvector of the weighted sum, unless the neighbours
+//! leave that to chance.
+//!
+//! Cost: 7 multiply-adds per neighbour, pi radius^2 of them, and about 50 operations.
+
+use crate::kernels::rows::{Rows, strips};
+use crate::kernels::support::put_pixels4;
+use crate::kernels::tensor_algebra::axis;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+
+/// Entries of the table, the centre included.
+const TAPS: usize = 24;
+/// Largest reach, in pixels.
+const MAX_REACH: i32 = TAPS as i32 - 1;
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for edge_tangent_flow {
+        /// Largest distance in x and in y, pixels.
+        pub reach: [i32; 2],
+        /// Neighbours lie nearer than this: squared radius.
+        pub limit: f32,
+        /// 1: the last pass writes w, not the magnitude.
+        pub last: u32,
+        /// Spatial weight at distance 0, 1, ... along each axis.
+        pub weights: [[f32; 4]; TAPS / 4],
+    }
+}
+
+crate::kernel!(edge_tangent_flow {
+    cpu: run,
+    cost: |params| {
+        let p: Params = bytemuck::pod_read_unaligned(params);
+        let [x, y] = p.reach.map(f64::from);
+        7.0 * (2.0 * x + 1.0) * (2.0 * y + 1.0) + 50.0
+    },
+    tolerance: Tolerance {
+        absolute: 2e-3,
+        relative: 0.0,
+        outliers: 0.01,
+        reason: "where the vectors around point everywhere, or are all across the centre's, the sum is \
+                 small and its direction is that of the roundings",
+    },
+});
+
+/// Spatial weight w_s of the neighbours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Window {
+    /// 1 nearer than the radius.
+    Box,
+    /// A Gaussian that is cut at the radius, three standard deviations.
+    Gaussian,
+}
+
+/// The neighbours of a pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Neighbours {
+    /// All nearer than the radius.
+    Disc,
+    /// Those in the same row.
+    Row,
+    /// Those in the same column.
+    Column,
+}
+
+/// Adds a pass. `flow` is what [`start`](super::flow_start::start) or the pass before gave, `largest`
+/// its largest magnitude; the `last` pass gives tensors with their validity.
+pub fn pass(
+    plan: &mut PlanBuilder,
+    flow: ImageId,
+    largest: ImageId,
+    radius: f32,
+    window: Window,
+    neighbours: Neighbours,
+    last: bool,
+) -> ImageId {
+    // Nearer than the radius, strictly; a last bit must not decide about a whole number.
+    let reach = ((radius - 1e-3).ceil() as i32 - 1).clamp(0, MAX_REACH);
+    let sigma = f64::from(radius.max(0.1)) / 3.0;
+    let mut weights = [[0.0; 4]; TAPS / 4];
+    for i in 0..=reach as usize {
+        weights[i / 4][i % 4] = match window {
+            Window::Box => 1.0,
+            Window::Gaussian => (-((i * i) as f64) / (2.0 * sigma * sigma)).exp() as f32,
+        };
+    }
+    let params = Params {
+        reach: match neighbours {
+            Neighbours::Disc => [reach, reach],
+            Neighbours::Row => [reach, 0],
+            Neighbours::Column => [0, reach],
+        },
+        limit: radius.max(1e-2).powi(2) * (1.0 - 1e-5),
+        last: u32::from(last),
+        weights,
+    };
+    plan.pass(&KERNEL, &[flow, largest], &params, Class::Field, Support::Pixels(reach as u32))
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    dispatch!(pass.level, simd => rows(simd, pass, &params, band));
+}
+
+#[inline(always)]
+fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
+    let window = band.window;
+    let view = &pass.inputs[0];
+    let inverse = 1.0 / pass.inputs[1].pixel1(0, 0).max(f32::MIN_POSITIVE);
+    let [reach_x, reach_y] = params.reach;
+    // Neighbours of a row: how far they lie to either side, and the weights.
+    let weight = |i: i32| params.weights[i as usize / 4][i as usize % 4];
+    let half = |j: i32| (0..=reach_x).rev().find(|i| ((i * i + j * j) as f32) < params.limit);
+    let spans: Vec<(i32, i32, f32)> =
+        (-reach_y..=reach_y).filter_map(|j| half(j).map(|i| (j, i, weight(j.abs())))).collect();
+    let radius = reach_x.max(reach_y);
+    let zero = f32x8::splat(simd, 0.0);
+    let mut held = Rows::default();
+    for (x0, x1) in strips(window.x0, window.x1) {
+        held.start(x0, x1, radius, 4);
+        for y in window.y0 - radius..window.y0 + radius {
+            held.load4(simd, view, y, #[inline(always)] |v| v);
+        }
+        for y in window.y0..window.y1 {
+            held.load4(simd, view, y + radius, #[inline(always)] |v| v);
+            let start = 4 * (x0 - window.x0) as usize;
+            let target = &mut band.row_mut(0, y)[start..start + 4 * (x1 - x0) as usize];
+            for (block, pixels) in target.chunks_mut(32).enumerate() {
+                let centre = radius as usize + 8 * block;
+                let (mut plain, mut strong) = ([zero; 3], [zero; 3]);
+                for &(j, half, wy) in &spans {
+                    let len = 2 * half as usize + 8;
+                    let first = centre - half as usize;
+                    let e = &held.row(y + j, 0)[first..first + len];
+                    let f = &held.row(y + j, 1)[first..first + len];
+                    let g = &held.row(y + j, 2)[first..first + len];
+                    let m = &held.row(y + j, 3)[first..first + len];
+                    for i in 0..=2 * half as usize {
+                        let w = f32x8::splat(simd, wy * weight((i as i32 - half).abs()));
+                        let by_magnitude = f32x8::from_slice(simd, &m[i..i + 8]) * w;
+                        let e = f32x8::from_slice(simd, &e[i..i + 8]);
+                        let f = f32x8::from_slice(simd, &f[i..i + 8]);
+                        let g = f32x8::from_slice(simd, &g[i..i + 8]);
+                        plain = [e.mul_add(w, plain[0]), f.mul_add(w, plain[1]), g.mul_add(w, plain[2])];
+                        strong = [
+                            e.mul_add(by_magnitude, strong[0]),
+                            f.mul_add(by_magnitude, strong[1]),
+                            g.mul_add(by_magnitude, strong[2]),
+                        ];
+                    }
+                }
+                let mut own = [zero; 4];
+                for c in 0..4 {
+                    own[c] = f32x8::from_slice(simd, &held.row(y, c)[centre..centre + 8]);
+                }
+                put_pixels4(turned(simd, params, own, plain, strong, inverse), pixels);
+            }
+        }
+    }
+}
+
+/// The centre's tensor after the pass.
+#[inline(always)]
+fn turned<S: Simd>(
+    simd: S,
+    params: &Params,
+    own: [f32x8<S>; 4],
+    plain: [f32x8<S>; 3],
+    strong: [f32x8<S>; 3],
+    inverse: f32,
+) -> [f32x8<S>; 4] {
+    let c = |v: f32| f32x8::splat(simd, v);
+    // (2.135), twice: m(y) + (1 - m(x)).
+    let rest = c(1.0) - own[3] * inverse;
+    let mut m = plain;
+    for i in 0..3 {
+        m[i] = strong[i] * inverse + rest * plain[i];
+    }
+    let (radius, sum) = axis((m[0] - m[2]) * 0.5, m[1]);
+    let (_, [x, y]) = axis((own[0] - own[2]) * 0.5, own[1]);
+    let v = [m[0] * x + m[1] * y, m[1] * x + m[2] * y];
+    let length = v[0] * v[0] + v[1] * v[1];
+    let long = length.simd_gt(c(1e-24));
+    let factor = c(1.0) / length.sqrt();
+    // A pixel without a gradient takes the axis that vectors would turn to, where there is one.
+    let none = (own[0] + own[2]).simd_eq(c(0.0));
+    let undecided = none & radius.simd_lt((m[0] + m[2]) * 0.025);
+    let vx = none.select(sum[0], long.select(v[0] * factor, x));
+    let vy = none.select(sum[1], long.select(v[1] * factor, y));
+    let keeps = (m[0] + m[2]).simd_lt(c(1e-12)) | undecided;
+    let e = keeps.select(own[0], vx * vx);
+    let f = keeps.select(own[1], vx * vy);
+    let g = keeps.select(own[2], vy * vy);
+    let w = if params.last != 0 { (e + g).simd_gt(c(0.0)).select(c(1.0), c(0.0)) } else { own[3] };
+    [e, f, g, w]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernels::structure::flow_maximum;
+    use crate::kernels::tensor_algebra::scalar;
+    use isophote_engine::cpu::{CallingThread, Control, CpuExecutor};
+    use isophote_engine::{Image, Rect};
+
+    const SIDE: u32 = 23;
+
+    /// Tangents and magnitudes that vary at random, none in one corner.
+    fn flow() -> Vec<([f64; 2], f64)> {
+        let mut state = 5u32;
+        let mut next = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / 16_777_216.0
+        };
+        (0..SIDE * SIDE)
+            .map(|i| {
+                let (angle, magnitude) = (next() * std::f64::consts::PI, next());
+                if i % SIDE < 4 && i / SIDE < 4 { ([0.0; 2], 0.0) } else { ([angle.cos(), angle.sin()], magnitude) }
+            })
+            .collect()
+    }
+
+    /// (2.134) to (2.136) as they stand, at one pixel.
+    fn as_printed(flow: &[([f64; 2], f64)], x: i32, y: i32, radius: f64, window: Window) -> [f64; 2] {
+        let at = |x: i32, y: i32| {
+            let last = SIDE as i32 - 1;
+            flow[(y.clamp(0, last) * SIDE as i32 + x.clamp(0, last)) as usize]
+        };
+        let top = flow.iter().fold(0.0f64, |m, f| m.max(f.1));
+        let (t, magnitude) = at(x, y);
+        let mut sum = [0.0; 2];
+        for j in -20..=20i32 {
+            for i in -20..=20i32 {
+                let r2 = f64::from(i * i + j * j);
+                if r2 >= radius * radius {
+                    continue;
+                }
+                let (s, m) = at(x + i, y + j);
+                let spatial = match window {
+                    Window::Box => 1.0,
+                    Window::Gaussian => (-r2 / (2.0 * (radius / 3.0).powi(2))).exp(),
+                };
+                let w = spatial * 0.5 * ((m - magnitude) / top + 1.0) * (s[0] * t[0] + s[1] * t[1]);
+                sum = [sum[0] + w * s[0], sum[1] + w * s[1]];
+            }
+        }
+        sum
+    }
+
+    #[test]
+    fn a_pass_on_tensors_is_the_sum_over_vectors() {
+        let flow = flow();
+        // Tensors of the normals (-y, x).
+        let values = flow.iter().flat_map(|([x, y], m)| [y * y, -x * y, x * x, *m].map(|v| v as f32));
+        let image = Image::from_vec(SIDE, SIDE, 4, values.collect()).unwrap();
+        for (radius, window) in [(5.0, Window::Box), (3.4, Window::Box), (6.0, Window::Gaussian)] {
+            let mut plan = PlanBuilder::new(SIDE, SIDE).unwrap();
+            let input = plan.input("flow", 4, Class::Field);
+            let largest = flow_maximum::maximum(&mut plan, input);
+            let result = pass(&mut plan, input, largest, radius, window, Neighbours::Disc, true);
+            plan.output("tensor", result);
+            let region = Rect::of_size(SIDE, SIDE);
+            let got = CpuExecutor::new()
+                .run(&plan.finish().unwrap(), &[("flow", &image)], region, &CallingThread, Control::default())
+                .unwrap()
+                .remove(0);
+            for (x, y) in [(11, 11), (4, 2), (22, 22), (0, 17), (15, 6)] {
+                let want = as_printed(&flow, x, y, f64::from(radius), window);
+                let t = got.pixel(x, y);
+                let [tx, ty] = scalar::tangent(t[0], t[1], t[2]).map(f64::from);
+                let off = (tx * want[1] - ty * want[0]).abs() / want[0].hypot(want[1]);
+                assert!(off < 1e-4 && (t[0] + t[2] - 1.0).abs() < 1e-5 && t[3] == 1.0, "{x} {y}: {off}");
+            }
+            // Where there was no gradient, there is an orientation now.
+            assert!((got.pixel(3, 3)[0] + got.pixel(3, 3)[2] - 1.0).abs() < 1e-5);
+        }
+    }
+}

@@ -1,0 +1,27 @@
+// One level of a pyramid of maxima up. Cost: 4 loads.
+#import grid
+
+struct Params {
+    // The channel to look at.
+    channel: u32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var source: texture_2d<f32>;
+@group(0) @binding(3) var target_image: texture_storage_2d<r32float, write>;
+
+fn value(p: vec2i) -> f32 {
+    return fetch(source, 0u, p)[params.channel];
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    // At odd sizes the clamped children change nothing.
+    let p = 2 * pixel(id);
+    let upper = max(value(p), value(p + vec2i(1, 0)));
+    let lower = max(value(p + vec2i(0, 1)), value(p + vec2i(1, 1)));
+    textureStore(target_image, vec2i(id.xy), vec4f(max(upper, lower)));
+}

@@ -1,0 +1,29 @@
+// The start of the edge tangent flow: the tensor of a pixel's gradient as one of length 1, and the
+// gradient's magnitude (2.5). Cost: one load and about 20 operations.
+#import grid
+#import tensor
+
+struct Params {
+    // A magnitude below this is no gradient.
+    least: f32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var source: texture_2d<f32>;
+@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let t = fetch(source, 0u, pixel(id));
+    let axis = tensor_axis((t.x - t.z) * 0.5, t.y);
+    let magnitude = sqrt(max((t.x + t.z) * 0.5 + axis.radius, 0.0));
+    let n = axis.major;
+    var start = vec4f(n.x * n.x, n.x * n.y, n.y * n.y, magnitude);
+    if magnitude < params.least {
+        start = vec4f(0.0);
+    }
+    textureStore(target_image, vec2i(id.xy), start);
+}
