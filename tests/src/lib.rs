@@ -15,3 +15,4 @@ pub mod run;
 pub mod shaders;
 pub mod sweep;
 pub mod table;
+pub mod zone_plates;

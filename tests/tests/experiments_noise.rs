@@ -2,20 +2,17 @@
 //! number of samples that a Gaussian window is worth (Figure 2.23).
 
 use isophote::kernels::smoothing::gaussian_blur;
+use isophote::kernels::structure::tensor_display::least_significant;
 use isophote::kernels::tensor_algebra::scalar;
 use isophote_engine::{Class, Image, PlanBuilder};
 use isophote_tests::pictures::from_fn;
 use isophote_tests::random::Random;
 use isophote_tests::run;
+use isophote_tests::table::Table;
 
 /// Pr(A <= a) for tensors of m random gradients (2.153).
 fn distribution(a: f64, m: f64) -> f64 {
     1.0 - (1.0 - a * a).powf(0.5 * (m - 1.0))
-}
-
-/// Anisotropy above which noise is rejected at significance alpha (2.154).
-fn threshold(alpha: f64, m: f64) -> f64 {
-    (1.0 - alpha.powf(2.0 / (m - 1.0))).sqrt()
 }
 
 /// Independent unsmoothed tensors: those of white noise by central differences, three pixels apart,
@@ -54,7 +51,12 @@ fn of_windows(tensors: &[[f32; 3]], m: usize) -> Vec<f64> {
 #[test]
 fn the_anisotropy_of_noise_follows_its_distribution() {
     let tensors = independent_tensors();
-    println!("   m  windows  Kolmogorov-Smirnov  limit at 1 %");
+    let mut table = Table::new(
+        4,
+        "2.153, Fig. 2.22",
+        "Anisotropy of box windows of m random gradients against its distribution, Kolmogorov-Smirnov distance",
+        &["m", "windows", "distance", "limit at 1 %"],
+    );
     for m in [5, 9, 25, 49, 81, 169] {
         let found = of_windows(&tensors, m);
         let n = found.len() as f64;
@@ -67,7 +69,7 @@ fn the_anisotropy_of_noise_follows_its_distribution() {
             })
             .fold(0.0, f64::max);
         let limit = 1.628 / n.sqrt();
-        println!("{m:4}  {n:7}  {distance:18.4}  {limit:.4}");
+        table.row(&[m.to_string(), found.len().to_string(), format!("{distance:.4}"), format!("{limit:.4}")]);
         assert!(distance < limit, "m = {m}");
         // The test has teeth: other window sizes are rejected.
         let other = (1.5 * m as f64).max(m as f64 + 3.0);
@@ -78,18 +80,37 @@ fn the_anisotropy_of_noise_follows_its_distribution() {
             .fold(0.0, f64::max);
         assert!(wrong > limit, "m = {m} would pass for {other}");
     }
+    table.print();
 }
 
 #[test]
-fn five_percent_of_noise_is_above_the_threshold() {
-    let limit = threshold(0.05, 169.0);
-    assert!((limit - 0.1872).abs() < 5e-5, "{limit}");
-    let found = of_windows(&independent_tensors(), 169);
-    let share = found.iter().filter(|a| **a > limit).count() as f64 / found.len() as f64;
-    println!("threshold {limit:.4}: {:.2} % of {} windows of noise lie above it", 100.0 * share, found.len());
-    // Three standard deviations of a share of so many.
-    let deviation = (0.05 * 0.95 / found.len() as f64).sqrt();
-    assert!((share - 0.05).abs() < 3.0 * deviation, "{share}");
+fn the_threshold_lets_pass_the_share_of_noise_that_it_should() {
+    let tensors = independent_tensors();
+    let mut table = Table::new(
+        4,
+        "2.154",
+        "Anisotropy above which a window of m gradients is no noise, and the share of noise above it",
+        &["window", "alpha", "threshold", "share above"],
+    );
+    for (side, alpha) in [(5usize, 0.05), (7, 0.05), (9, 0.05), (13, 0.1), (13, 0.05), (13, 0.01)] {
+        let m = side * side;
+        let limit = f64::from(least_significant(alpha as f32, m as f32));
+        let found = of_windows(&tensors, m);
+        let share = found.iter().filter(|a| **a > limit).count() as f64 / found.len() as f64;
+        table.row(&[
+            format!("{side} x {side}"),
+            format!("{:.0} %", 100.0 * alpha),
+            format!("{limit:.4}"),
+            format!("{:.1} %", 100.0 * share),
+        ]);
+        if (side, alpha) == (13, 0.05) {
+            assert!((limit - 0.1872).abs() < 5e-5, "{limit}");
+        }
+        // Three standard deviations of a share of so many.
+        let deviation = (alpha * (1.0 - alpha) / found.len() as f64).sqrt();
+        assert!((share - alpha).abs() < 3.0 * deviation, "{share} for {alpha}");
+    }
+    table.print();
 }
 
 /// Anisotropies of random gradients under the library's own Gaussian window.
@@ -143,15 +164,26 @@ fn fitted(found: &[f64]) -> f64 {
 
 #[test]
 fn a_gaussian_window_is_worth_four_pi_sigma_squared_samples() {
-    println!("sigma  fitted m  4 pi sigma^2   ratio");
+    let mut table = Table::new(
+        4,
+        "2.158, Fig. 2.23",
+        "Samples that a Gaussian window is worth: m fitted to (2.152), cut-off 3 sigma",
+        &["sigma", "fitted m", "4 pi sigma^2", "ratio"],
+    );
     for sigma in 1..=5 {
         let seeds = 1..=(sigma * sigma).min(8) as u64;
         let found: Vec<f64> = seeds.flat_map(|seed| under_gaussian(sigma as f32, seed)).collect();
         let fitted = fitted(&found);
         let expected = 4.0 * std::f64::consts::PI * f64::from(sigma * sigma);
-        println!("{sigma:5}  {fitted:8.2}  {expected:12.2}  {:6.3}", fitted / expected);
+        table.row(&[
+            sigma.to_string(),
+            format!("{fitted:.1}"),
+            format!("{expected:.1}"),
+            format!("{:.2}", fitted / expected),
+        ]);
         // Under a window of few pixels the distribution is not quite of the family that is fitted.
         let bound = 0.02 + 0.07 / f64::from(sigma);
         assert!((fitted / expected - 1.0).abs() < bound, "sigma {sigma}: {fitted} for {expected}");
     }
+    table.print();
 }
