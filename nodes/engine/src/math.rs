@@ -144,9 +144,12 @@ pub fn store4<S: Simd, V: SimdBase<S, Element = f32>>([r, g, b, a]: [V; 4], rgba
     let (ga0, ga1) = g.interleave(a);
     let (p0, p1) = rb0.interleave(ga0);
     let (p2, p3) = rb1.interleave(ga1);
-    for (part, values) in [p0, p1, p2, p3].iter().zip(rgba.chunks_exact_mut(V::LEN)) {
-        part.store_slice(values);
-    }
+    // One by one: the compiler keeps an iterator over the parts out of the code for wide vectors.
+    let n = V::LEN;
+    p0.store_slice(&mut rgba[..n]);
+    p1.store_slice(&mut rgba[n..2 * n]);
+    p2.store_slice(&mut rgba[2 * n..3 * n]);
+    p3.store_slice(&mut rgba[3 * n..4 * n]);
 }
 
 /// One vector per channel from eight pixels.
