@@ -2,6 +2,7 @@
 // lines. All lengths and the texture's cells are those of the full-size picture, so that tiles and
 // proxies show the same sheet.
 // Cost: two loads, twelve hashes and about 100 multiply-adds.
+#import value_noise
 #import grid
 
 struct Params {
@@ -24,26 +25,6 @@ struct Params {
 @group(0) @binding(3) var edges: texture_2d<f32>;
 @group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
 
-fn hash(x: u32, y: u32) -> f32 {
-    var h = (x * 0x9e3779b1u) ^ (y * 0x85ebca77u);
-    h = (h ^ (h >> 15u)) * 0x2c1b3c6du;
-    h = (h ^ (h >> 12u)) * 0x297a2d39u;
-    h = h ^ (h >> 15u);
-    return f32(h >> 8u) * 5.9604645e-8;
-}
-
-// Smooth noise in 0..1 with cells of one unit.
-fn noise(p: vec2f, seed: u32) -> f32 {
-    let cell = floor(p);
-    let f = p - cell;
-    let s = f * f * (3.0 - 2.0 * f);
-    let x = u32(i32(cell.x)) + seed;
-    let y = u32(i32(cell.y));
-    let top = mix(hash(x, y), hash(x + 1u, y), s.x);
-    let bottom = mix(hash(x, y + 1u), hash(x + 1u, y + 1u), s.x);
-    return mix(top, bottom, s.y);
-}
-
 // How much of a pixel at `x` is covered by lines `width` wide, `spacing` apart.
 fn ruled(x: vec2f, spacing: f32, width: f32) -> f32 {
     let offset = x - spacing * (floor(x / spacing) + 0.5);
@@ -58,7 +39,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let x = centre(id);
     let q = x * params.inverse_scale;
-    let grain = 0.45 * noise(q * 0.4, 0u) + 0.3 * noise(q * 0.13, 1013u) + 0.25 * noise(q * 0.037, 2027u);
+    let grain = 0.45 * value_noise(q * 0.4, 0u) + 0.3 * value_noise(q * 0.13, 1013u) + 0.25 * value_noise(q * 0.037, 2027u);
     let v = fetch(lightness, 0u, pixel(id)).xy;
     let tone = clamp(v.x / max(v.y, 1e-6) * 0.01, 0.0, 1.0);
     let fill = params.fill * clamp(v.y, 0.0, 1.0);

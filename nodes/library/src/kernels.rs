@@ -13,6 +13,7 @@ pub mod rows;
 pub mod stream_line;
 pub mod support;
 pub mod tensor_algebra;
+pub mod value_noise;
 
 include!(concat!(env!("OUT_DIR"), "/kernels.rs"));
 
