@@ -147,7 +147,7 @@ fn every_declaration_is_complete_and_its_defaults_lie_in_range() {
 
 /// Ids that users' graphs, presets and scripts refer to. They are for ever: a node may gain parameters,
 /// and never lose or rename one.
-const PROMISED: [(&str, &[&str]); 13] = [
+const PROMISED: &[(&str, &[&str])] = &[
     (
         "structure_tensor",
         &[
@@ -166,6 +166,10 @@ const PROMISED: [(&str, &[&str]); 13] = [
     ("edge_tangent_flow", &["radius", "kernel", "iterations", "separable"]),
     ("tensor_view", &["show", "sigma", "k", "alpha", "rho"]),
     ("gaussian", &["sigma", "mix"]),
+    ("bilateral", &["kernel", "sigma_d", "sigma_r", "iterations", "space", "mix"]),
+    ("anisotropic_diffusion", &["scheme", "time_step", "iterations", "contrast", "rho", "sigma", "mix"]),
+    ("morphology", &["operator", "radius", "mix"]),
+    ("flow_dilation", &["length", "seed", "mix"]),
     (
         "oriented_bilateral",
         &["sigma_dg", "sigma_dt", "sigma_rg", "sigma_rt", "iterations", "sampling", "anisotropy", "mix"],

@@ -34,8 +34,12 @@ nodes! {
     }
     smoothing {
         gaussian,
+        bilateral,
         line_integral_convolution,
         oriented_bilateral,
         flow_bilateral,
+        anisotropic_diffusion,
+        morphology,
+        flow_dilation,
     }
 }

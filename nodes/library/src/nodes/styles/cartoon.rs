@@ -2,12 +2,13 @@
 
 use crate::kernels::colour::quantize_luminance::{Steepness, quantize};
 use crate::kernels::colour::{composite_lines, lab_to_rgb, lightness, rgb_to_lab, tone_curve};
+use crate::kernels::smoothing::bilateral::Options;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::look::{self, ADVANCED, Lines};
 use crate::nodes::colour::quantize_luminance as quantization;
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::lines::flow_dog::{self, FlowDog};
-use crate::nodes::smoothing::{flow_bilateral, oriented_bilateral};
+use crate::nodes::smoothing::{bilateral, flow_bilateral, oriented_bilateral};
 use crate::ports;
 use crate::spec::{Choice, NodeSpec, Param, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
@@ -77,12 +78,18 @@ pub(crate) const ABSTRACTION: Param = Param::choice(
     "abstraction",
     "Abstraction",
     0,
-    &[Choice { id: "oriented", label: "Oriented bilateral" }, Choice { id: "flow", label: "Flow bilateral" }],
+    &[
+        Choice { id: "oriented", label: "Oriented bilateral" },
+        Choice { id: "flow", label: "Flow bilateral" },
+        Choice { id: "full", label: "Full bilateral" },
+        Choice { id: "xy", label: "Separable bilateral" },
+    ],
 )
 .group(ADVANCED)
 .doc(
     "Bilateral filter: across and along the local orientation (3.4), or along stream lines (3.5), whose \
-     own scales then grow with `sigma_d` / 3 and `sigma_r` / 4.25.",
+     own scales then grow with `sigma_d` / 3 and `sigma_r` / 4.25; or without regard to it, by the full \
+     window (3.2) or along rows and then columns (3.3).",
 );
 pub(crate) const N_E: Param = Param::int("n_e", "Iterations for lines", 1, [0, 16])
     .slider(0.0, 8.0)
@@ -122,6 +129,8 @@ pub(crate) enum Abstraction {
     Oriented(oriented_bilateral::Passes),
     /// Along stream lines (3.5).
     Flow(flow_bilateral::Passes),
+    /// Isotropic (3.2), or separable along x and y (3.3).
+    Isotropic(bilateral::Passes),
 }
 
 impl Abstraction {
@@ -129,7 +138,12 @@ impl Abstraction {
     pub(crate) fn of(scope: &Scope<'_>) -> Self {
         let [d, r] = look::detail_factors(scope.float("detail"));
         let (sigma_d, sigma_r) = (scope.float("sigma_d") * d, scope.float("sigma_r") * r);
-        if scope.choice("abstraction") == "flow" {
+        let chosen = scope.choice("abstraction");
+        if chosen == "full" || chosen == "xy" {
+            let options = Options { sigma_d, sigma_r, cutoff: bilateral::CUTOFF };
+            return Self::Isotropic(bilateral::Passes { separable: chosen == "xy", options });
+        }
+        if chosen == "flow" {
             let mut passes = flow_bilateral::Passes::default();
             passes.gradient.sigma_d *= sigma_d / 3.0;
             passes.gradient.sigma_r *= sigma_r / 4.25;
@@ -155,6 +169,7 @@ impl Abstraction {
         (0..iterations).fold(lab, |lab, _| match self {
             Self::Oriented(passes) => oriented_bilateral::iteration(plan, lab, tensor, passes),
             Self::Flow(passes) => flow_bilateral::iteration(plan, lab, tensor, passes),
+            Self::Isotropic(passes) => bilateral::iteration(plan, lab, passes),
         })
     }
 }

@@ -1,0 +1,118 @@
+//! The colour at the place of the greatest noise along the stream line of a tensor field (§ 5.1): a
+//! one-dimensional dilation of noise, made visible by the picture (Papari and Petkov 2009, continuous
+//! glass patterns). Lines that share their greatest noise share its colour, which makes coherent
+//! strokes with sharp borders. Places less than half covered lend no colour, and coverage passes.
+//!
+//! Cost: 2 length steps per pixel, each one noise sample and two tensor samples with their tangents,
+//! about 130 operations.
+
+use crate::kernels::coverage::Covered;
+use crate::kernels::stream_line::{Stream, StreamField, centres};
+use crate::kernels::support::{get_pixels4, put_pixels4};
+use crate::kernels::tensor_algebra::{anisotropy, tangent};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::math::sample_linear4;
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for flow_dilation {
+        /// Arc length of each side of the line where the orientation is certain, pixels.
+        pub length: f32,
+    }
+}
+
+crate::kernel!(flow_dilation {
+    cpu: run,
+    cost: |params| {
+        let p: Params = bytemuck::pod_read_unaligned(params);
+        2.0 * f64::from(p.length.floor()) * 130.0 + 60.0
+    },
+    tolerance: Tolerance {
+        absolute: 2e-3,
+        relative: 1e-3,
+        outliers: 0.03,
+        reason: "stream lines add up roundings, and of two almost equal maxima the last bit decides \
+                 which is the greater, with another colour at each",
+    },
+});
+
+/// Looks `length` (1 + A)^2 / 4 pixels to both sides, A the anisotropy at the centre as in § 6.3.1, for the
+/// maximum of the first channel of `noise`.
+pub fn strokes(
+    plan: &mut PlanBuilder,
+    color: ImageId,
+    tensors: ImageId,
+    noise: ImageId,
+    length: f32,
+) -> ImageId {
+    let params = Params { length };
+    plan.pass(&KERNEL, &[color, tensors, noise], &params, Class::Colour, Support::Pixels(reach(&params) as u32))
+}
+
+/// The most pixels that a sample of a line reads away from the centre.
+fn reach(params: &Params) -> i32 {
+    params.length.floor() as i32 + 1
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    let covered = Covered::new(&pass.inputs[0], band, reach(&params));
+    let source = covered.view(&pass.inputs[0]);
+    let field = StreamField { tensors: pass.inputs[1], step: 1.0, midpoint: true };
+    dispatch!(pass.level, simd => {
+        let window = band.window;
+        for y in window.y0..window.y1 {
+            for x in (window.x0..window.x1).step_by(8) {
+                let last = window.x1 - 1;
+                let own = get_pixels4(simd, &pass.inputs[0], x, y, last);
+                let at = brightest(simd, &params, &field, &pass.inputs[2], centres(simd, x, y, last));
+                let [r, g, b, alpha] = sample_linear4(simd, &source, at[0], at[1]);
+                let seen = alpha.simd_ge(f32x8::splat(simd, 0.5));
+                let values = [
+                    seen.select(r / alpha, own[0]),
+                    seen.select(g / alpha, own[1]),
+                    seen.select(b / alpha, own[2]),
+                    own[3],
+                ];
+                put_pixels4(values, &mut band.row_mut(0, y)[4 * (x - window.x0) as usize..]);
+            }
+        }
+    });
+}
+
+/// The places of the greatest noise along the lines through (x, y): the pixel itself, then the side
+/// against the tangent, then the other one, whichever is first.
+#[inline(always)]
+fn brightest<S: Simd>(
+    simd: S,
+    params: &Params,
+    field: &StreamField<'_>,
+    noise: &View<'_>,
+    [x, y]: [f32x8<S>; 2],
+) -> [f32x8<S>; 2] {
+    let [e, f, g, _] = sample_linear4(simd, &field.tensors, x, y);
+    let certain = anisotropy(e, f, g) + 1.0;
+    let limit = certain * certain * (0.25 * params.length) + 1e-3;
+    let mut lines = Stream::both_sides(x, y, tangent(e, f, g));
+    let own = sample_linear4(simd, noise, x, y)[0];
+    let mut most = [own; 2];
+    let mut place = [[x, y]; 2];
+    let mut active = [limit.simd_ge(1.0); 2];
+    let mut u = 1.0;
+    while (active[0] | active[1]).any_true() {
+        field.advance_both(simd, &mut lines, active);
+        for (side, line) in lines.iter().enumerate() {
+            active[side] &= field.inside(simd, line);
+            let value = sample_linear4(simd, noise, line.x, line.y)[0];
+            let better = active[side] & value.simd_gt(most[side]);
+            most[side] = better.select(value, most[side]);
+            place[side] = [better.select(line.x, place[side][0]), better.select(line.y, place[side][1])];
+        }
+        u += 1.0;
+        let longer = limit.simd_ge(u);
+        active = [active[0] & longer, active[1] & longer];
+    }
+    let second = most[1].simd_gt(most[0]);
+    [second.select(place[1][0], place[0][0]), second.select(place[1][1], place[0][1])]
+}

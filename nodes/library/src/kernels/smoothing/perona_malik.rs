@@ -1,0 +1,145 @@
+//! One explicit step of Perona and Malik's diffusion (3.3) towards the four neighbours. The
+//! diffusivity (3.2) is that of the difference to the neighbour, as Euclidean distance of the three
+//! colour channels; neighbours count by their coverage.
+//!
+//! Diffusivities are at most 1, so for time steps up to 1/4 every step is a weighted mean: stable, and
+//! no value leaves the range of its neighbourhood.
+//!
+//! Cost: 60 operations (exponential: 100); memory takes longer.
+
+use crate::kernels::rows::{Rows, strips};
+use crate::kernels::support::put_pixels4;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::math::Elementary;
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for perona_malik {
+        /// Time step, up to 1/4.
+        pub time_step: f32,
+        /// 1 / K^2 or 1 / lambda^2 of 3.2.
+        pub falloff: f32,
+        /// 1: the exponential diffusivity of 3.2; 0: the rational one.
+        pub exponential: u32,
+    }
+}
+
+crate::kernel!(perona_malik {
+    cpu: run,
+    cost: |params| {
+        let p: Params = bytemuck::pod_read_unaligned(params);
+        if p.exponential != 0 { 100.0 } else { 60.0 }
+    },
+    tolerance: Tolerance {
+        absolute: 1e-6,
+        relative: 2e-6,
+        outliers: 0.0,
+        reason: "a weighted mean of five pixels",
+    },
+});
+
+/// The diffusivity g (3.2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Diffusivity {
+    /// 1 / (1 + s^2 / lambda^2), which favours wide regions.
+    Rational = 0,
+    /// exp(-s^2 / K^2), which favours edges of high contrast.
+    Exponential = 1,
+}
+
+/// A step by `time_step`; `contrast` is K or lambda, in the unit of the colour.
+pub fn step(
+    plan: &mut PlanBuilder,
+    color: ImageId,
+    time_step: f32,
+    contrast: f32,
+    diffusivity: Diffusivity,
+) -> ImageId {
+    let falloff = 1.0 / (contrast * contrast).max(1e-12);
+    let params = Params { time_step, falloff, exponential: diffusivity as u32 };
+    plan.pass(&KERNEL, &[color], &params, Class::Colour, Support::Pixels(1))
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    if params.exponential != 0 {
+        dispatch!(pass.level, simd => diffused::<_, true>(simd, pass, &params, band));
+    } else {
+        dispatch!(pass.level, simd => diffused::<_, false>(simd, pass, &params, band));
+    }
+}
+
+#[inline(always)]
+fn diffused<S: Simd, const EXPONENTIAL: bool>(
+    simd: S,
+    pass: &CpuPass<'_>,
+    params: &Params,
+    band: &mut Band<'_>,
+) {
+    let window = band.window;
+    let view = &pass.inputs[0];
+    let mut rows = Rows::default();
+    for (x0, x1) in strips(window.x0, window.x1) {
+        rows.start(x0, x1, 1, 4);
+        for y in window.y0 - 1..=window.y0 {
+            rows.load4(simd, view, y, #[inline(always)] |v| v);
+        }
+        for y in window.y0..window.y1 {
+            rows.load4(simd, view, y + 1, #[inline(always)] |v| v);
+            let row = |y: i32| [rows.row(y, 0), rows.row(y, 1), rows.row(y, 2), rows.row(y, 3)];
+            let (above, centre, below) = (row(y - 1), row(y), row(y + 1));
+            let target = &mut band.row_mut(0, y)[4 * (x0 - window.x0) as usize..4 * (x1 - window.x0) as usize];
+            for (i, target) in target.chunks_mut(32).enumerate() {
+                let at = 8 * i + 1;
+                let origin = load(simd, &centre, at);
+                let neighbours = [
+                    load(simd, &centre, at - 1),
+                    load(simd, &centre, at + 1),
+                    load(simd, &above, at),
+                    load(simd, &below, at),
+                ];
+                put_pixels4(block::<S, EXPONENTIAL>(simd, &origin, &neighbours, params), target);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, rows: &[&[f32]; 4], at: usize) -> [f32x8<S>; 4] {
+    [
+        f32x8::from_slice(simd, &rows[0][at..at + 8]),
+        f32x8::from_slice(simd, &rows[1][at..at + 8]),
+        f32x8::from_slice(simd, &rows[2][at..at + 8]),
+        f32x8::from_slice(simd, &rows[3][at..at + 8]),
+    ]
+}
+
+#[inline(always)]
+fn block<S: Simd, const EXPONENTIAL: bool>(
+    simd: S,
+    origin: &[f32x8<S>; 4],
+    neighbours: &[[f32x8<S>; 4]; 4],
+    params: &Params,
+) -> [f32x8<S>; 4] {
+    let zero = f32x8::splat(simd, 0.0);
+    let one = f32x8::splat(simd, 1.0);
+    let falloff = f32x8::splat(simd, params.falloff);
+    let mut sum = [zero; 3];
+    for v in neighbours {
+        let d = [v[0] - origin[0], v[1] - origin[1], v[2] - origin[2]];
+        let s = d[2].mul_add(d[2], d[1].mul_add(d[1], d[0] * d[0])) * falloff;
+        let g = if EXPONENTIAL { (-s.min(f32x8::splat(simd, 87.0))).exp() } else { one / (one + s) };
+        let g = g * v[3];
+        for c in 0..3 {
+            sum[c] = g.mul_add(d[c], sum[c]);
+        }
+    }
+    let time_step = f32x8::splat(simd, params.time_step);
+    [
+        time_step.mul_add(sum[0], origin[0]),
+        time_step.mul_add(sum[1], origin[1]),
+        time_step.mul_add(sum[2], origin[2]),
+        origin[3],
+    ]
+}

@@ -1,0 +1,105 @@
+//! Anisotropic diffusion (§ 3.1): Perona and Malik's, and Weickert's edge-enhancing and
+//! coherence-enhancing schemes.
+
+use crate::kernels::smoothing::diffusion_tensor::{self, Scheme};
+use crate::kernels::smoothing::perona_malik::{self, Diffusivity};
+use crate::kernels::smoothing::{diffusion_step, gaussian_blur};
+use crate::kernels::structure::gradient_tensor::{self, Derivative, Measure};
+use crate::ports;
+use crate::spec::{Choice, NodeSpec, Param, Scope};
+use isophote_engine::{Class, ImageId, PlanBuilder};
+
+/// The node.
+pub static NODE: NodeSpec = NodeSpec {
+    id: "anisotropic_diffusion",
+    label: "Anisotropic Diffusion",
+    group: "smoothing",
+    doc: "Diffuses colours and stops at edges: with Perona and Malik's diffusivity (3.2, 3.3), or with a \
+          diffusion tensor that smooths along edges but not across them (edge-enhancing), or along lines \
+          that it closes (coherence-enhancing). Every step is a weighted mean, so no value leaves the \
+          range of its neighbourhood. Transparent pixels lend no colour, and coverage stays as it is.",
+    section: "3.1",
+    inputs: &[ports::COLOR],
+    output: ports::color_output("The diffused picture."),
+    own_params: &[
+        Param::choice(
+            "scheme",
+            "Scheme",
+            0,
+            &[
+                Choice { id: "perona_malik", label: "Perona-Malik" },
+                Choice { id: "edge_enhancing", label: "Edge-enhancing" },
+                Choice { id: "coherence_enhancing", label: "Coherence-enhancing" },
+            ],
+        )
+        .doc("What stops or guides the diffusion."),
+        Param::int("iterations", "Iterations", 10, [0, 60])
+            .slider(0.0, 40.0)
+            .structural()
+            .doc("Steps. Without edges, their number times twice the time step is the variance of the smoothing in px^2."),
+        Param::float("time_step", "Time step", 0.2, [0.01, 0.25])
+            .doc("Length of a step. Above 1/4 explicit steps would not be stable."),
+        Param::float("contrast", "Contrast", 4.0, [0.01, 100.0]).slider(0.5, 20.0).doc(
+            "Difference of colour that counts as an edge, K or lambda of 3.2, in per cent of RGB: between \
+             neighbours (Perona-Malik), or per pixel. Of the coherence-enhancing scheme, the structure above \
+             which lines are drawn out.",
+        ),
+        Param::choice(
+            "diffusivity",
+            "Diffusivity",
+            0,
+            &[Choice { id: "rational", label: "Rational" }, Choice { id: "exponential", label: "Exponential" }],
+        )
+        .uniform()
+        .doc(
+            "Perona-Malik only: 1 / (1 + s^2 / lambda^2), which favours wide regions, or exp(-s^2 / K^2), \
+             which favours strong edges (3.2).",
+        ),
+        Param::float("sigma", "Sigma", 1.0, [0.0, 10.0])
+            .slider(0.0, 4.0)
+            .pixels()
+            .doc("Smoothing before gradients are taken, against noise; not used by Perona-Malik."),
+        Param::float("rho", "Rho", 3.0, [0.0, 20.0])
+            .slider(0.0, 8.0)
+            .pixels()
+            .doc("Smoothing of the structure tensor, the scale of lines; of the coherence-enhancing scheme only."),
+    ],
+    build,
+};
+
+fn build(scope: &mut Scope<'_>) -> ImageId {
+    let mut color = scope.required("color");
+    let (time_step, contrast) = (scope.float("time_step"), scope.float("contrast") * 0.01);
+    let iterations = scope.int("iterations");
+    let scheme = match scope.choice("scheme") {
+        "edge_enhancing" => Scheme::EdgeEnhancing,
+        "coherence_enhancing" => Scheme::CoherenceEnhancing,
+        _ => {
+            let exponential = scope.choice("diffusivity") == "exponential";
+            let diffusivity = if exponential { Diffusivity::Exponential } else { Diffusivity::Rational };
+            for _ in 0..iterations {
+                color = perona_malik::step(scope.plan, color, time_step, contrast, diffusivity);
+            }
+            return color;
+        }
+    };
+    let (sigma, rho) = (scope.float("sigma"), scope.float("rho"));
+    for _ in 0..iterations {
+        let tensors = structure(scope.plan, color, sigma, scheme, rho);
+        let weights = diffusion_tensor::weights(scope.plan, tensors, scheme, contrast);
+        color = diffusion_step::step(scope.plan, color, weights, time_step);
+    }
+    color
+}
+
+/// The structure tensor that guides a step. Edges are located by the gradient itself; lines by its
+/// mean over a neighbourhood.
+fn structure(plan: &mut PlanBuilder, color: ImageId, sigma: f32, scheme: Scheme, rho: f32) -> ImageId {
+    let smooth = gaussian_blur::color(plan, color, sigma);
+    let measure = Measure { scale: 1.0, luma: false, normalize: false, threshold: None };
+    let tensors = gradient_tensor::tensor(plan, smooth, Derivative::Scharr3, measure);
+    match scheme {
+        Scheme::EdgeEnhancing => tensors,
+        Scheme::CoherenceEnhancing => gaussian_blur::smooth(plan, tensors, rho, Class::Field),
+    }
+}

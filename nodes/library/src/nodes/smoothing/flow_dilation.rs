@@ -1,0 +1,49 @@
+//! Dilation of noise along stream lines (§ 5.1): brush-like strokes with sharp borders.
+
+use crate::kernels::smoothing::{flow_dilation, gaussian_blur};
+use crate::kernels::structure::noise;
+use crate::nodes::structure::structure_tensor;
+use crate::ports;
+use crate::spec::{NodeSpec, Param, Scope};
+use isophote_engine::{Class, ImageId};
+
+/// The node.
+pub static NODE: NodeSpec = NodeSpec {
+    id: "flow_dilation",
+    label: "Flow Dilation",
+    group: "smoothing",
+    doc: "Paints strokes of one colour along the edges: each pixel takes the colour from where noise is \
+          greatest on the stream line through it, as continuous glass patterns do. Transparent pixels \
+          lend no colour, and coverage stays as it is.",
+    section: "5.1",
+    inputs: &[
+        ports::COLOR,
+        ports::TENSOR,
+    ],
+    output: ports::color_output("The picture in strokes."),
+    own_params: &[
+        Param::float("length", "Length", 12.0, [0.0, 60.0])
+            .slider(0.0, 30.0)
+            .pixels()
+            .doc(
+                "Arc length that is searched on each side; strokes are up to twice as long. Shorter where \
+                 the orientation is uncertain: times (1 + A)^2 / 4 (6.3.1).",
+            ),
+        Param::float("width", "Width", 1.2, [0.0, 10.0])
+            .slider(0.0, 4.0)
+            .pixels()
+            .doc("Standard deviation of the smoothing of the noise: strokes are about three times as wide."),
+        Param::int("seed", "Seed", 1, [0, 9999]).slider(0.0, 100.0).doc("Another number, other strokes."),
+    ],
+    build,
+};
+
+fn build(scope: &mut Scope<'_>) -> ImageId {
+    let color = scope.required("color");
+    let tensors = structure_tensor::connected(scope, color);
+    let (length, width, seed) = (scope.float("length"), scope.float("width"), scope.int("seed"));
+    let scale = scope.scale();
+    let white = noise::white(scope.plan, scale, seed as u32);
+    let grains = gaussian_blur::smooth(scope.plan, white, width, Class::Colour);
+    flow_dilation::strokes(scope.plan, color, tensors, grains, length)
+}

@@ -1,0 +1,80 @@
+//! Morphological filters with a disc (§ 5.1).
+//!
+//! Dilation and erosion are those of each channel of gamma-encoded RGB. Only so are opening and closing
+//! dual under inversion of the picture, which § 5.1 relies on, and idempotent; an order by lightness
+//! would keep the colours of single pixels but tear channels' contours apart where colours are equally
+//! light.
+//!
+//! Other nodes use the operators by `apply`.
+
+use crate::kernels::smoothing::disc_extremum::{Extremum, within_disc};
+use crate::ports;
+use crate::spec::{Choice, NodeSpec, Param, Scope};
+use isophote_engine::{ImageId, PlanBuilder};
+
+/// The node.
+pub static NODE: NodeSpec = NodeSpec {
+    id: "morphology",
+    label: "Morphology",
+    group: "smoothing",
+    doc: "Greatest and least values within a disc, channel by channel. Opening removes light features \
+          smaller than the disc, closing dark ones; one after the other they smooth the picture. Closing \
+          first gives the lighter result that suits watercolour. Transparent pixels lend no colour, and \
+          coverage stays as it is.",
+    section: "5.1",
+    inputs: &[ports::COLOR],
+    output: ports::color_output("The filtered picture."),
+    own_params: &[
+        Param::choice(
+            "operator",
+            "Operator",
+            4,
+            &[
+                Choice { id: "dilate", label: "Dilate" },
+                Choice { id: "erode", label: "Erode" },
+                Choice { id: "open", label: "Open" },
+                Choice { id: "close", label: "Close" },
+                Choice { id: "open_close", label: "Open, then close" },
+                Choice { id: "close_open", label: "Close, then open" },
+            ],
+        )
+        .doc("Dilation and erosion, opening (erosion, then dilation), closing (the reverse), or both."),
+        Param::float("radius", "Radius", 3.0, [0.0, 30.0])
+            .slider(0.0, 12.0)
+            .pixels()
+            .doc("Radius of the disc; its pixels are those with x^2 + y^2 <= radius (radius + 1)."),
+    ],
+    build,
+};
+
+/// Light features smaller than the disc go.
+pub(crate) fn open(plan: &mut PlanBuilder, color: ImageId, radius: f32) -> ImageId {
+    let eroded = within_disc(plan, color, radius, Extremum::Least);
+    within_disc(plan, eroded, radius, Extremum::Greatest)
+}
+
+/// Dark features smaller than the disc go.
+pub(crate) fn close(plan: &mut PlanBuilder, color: ImageId, radius: f32) -> ImageId {
+    let dilated = within_disc(plan, color, radius, Extremum::Greatest);
+    within_disc(plan, dilated, radius, Extremum::Least)
+}
+
+fn build(scope: &mut Scope<'_>) -> ImageId {
+    let (color, radius) = (scope.required("color"), scope.float("radius"));
+    let operator = scope.choice("operator");
+    let plan = &mut *scope.plan;
+    match operator {
+        "dilate" => within_disc(plan, color, radius, Extremum::Greatest),
+        "erode" => within_disc(plan, color, radius, Extremum::Least),
+        "open" => open(plan, color, radius),
+        "close" => close(plan, color, radius),
+        "close_open" => {
+            let closed = close(plan, color, radius);
+            open(plan, closed, radius)
+        }
+        _ => {
+            let opened = open(plan, color, radius);
+            close(plan, opened, radius)
+        }
+    }
+}

@@ -1,0 +1,43 @@
+// The diffusion tensor of edge-enhancing or coherence-enhancing diffusion (§ 3.1) from a smoothed
+// structure tensor, as the weights of the step that follows.
+// Cost: one load, one eigenanalysis, one exponential.
+#import tensor
+#import grid
+
+struct Params {
+    // 1 / lambda^2 (edge-enhancing) or 1 / contrast^2 (coherence-enhancing).
+    falloff: f32,
+    // 1: coherence-enhancing; 0: edge-enhancing.
+    coherence: u32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var tensors: texture_2d<f32>;
+@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let eigen = tensor_eigen(fetch(tensors, 0u, pixel(id)));
+    var across = 1.0;
+    var along = 1.0;
+    if params.coherence != 0u {
+        // 0.001 + 0.999 exp(-C / (lambda1 - lambda2)^2); 1e18 is far beyond any exponent.
+        let q = min(params.falloff * (eigen.lambda1 - eigen.lambda2), 1e9);
+        across = 0.001;
+        along = 0.001 + 0.999 * exp(-min(1.0 / max(q * q, 1e-18), 87.0));
+    } else {
+        let s = min(params.falloff * eigen.lambda1, 1e8);
+        let s4 = (s * s) * (s * s);
+        across = 1.0 - exp(-min(3.31488 / max(s4, 1e-30), 87.0));
+    }
+    let n = eigen.major;
+    let a = across * n.x * n.x + along * n.y * n.y;
+    let b = (across - along) * n.x * n.y;
+    let c = across * n.y * n.y + along * n.x * n.x;
+    let size = abs(b);
+    let weights = vec4f(max(a - size, 0.0), max(c - size, 0.0), 0.5 * (size + b), 0.5 * (size - b));
+    textureStore(target_image, vec2i(id.xy), weights);
+}

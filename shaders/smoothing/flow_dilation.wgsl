@@ -1,0 +1,52 @@
+// The colour at the place of the greatest noise along the stream line of a tensor field (§ 5.1): glass
+// patterns of a picture.
+// Cost: per step one bilinear sample of the noise and two tensor samples with their tangents.
+#import coverage
+#import stream
+
+struct Params {
+    // Arc length of each side of the line where the orientation is certain, pixels.
+    length: f32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var source: texture_2d<f32>;
+@group(0) @binding(3) var tensors: texture_2d<f32>;
+@group(0) @binding(4) var noise: texture_2d<f32>;
+@group(0) @binding(5) var target_image: texture_storage_2d<rgba32float, write>;
+
+const INPUT_TENSORS = 1u;
+const INPUT_NOISE = 2u;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let origin = centre(id);
+    let tensor = fetch(tensors, INPUT_TENSORS, pixel(id));
+    // Shorter where the orientation is uncertain (6.3.1): there lines would cross edges.
+    let certain = 1.0 + tensor_anisotropy(tensor);
+    let limit = 0.25 * params.length * certain * certain + 1e-3;
+    let tangent = tensor_tangent(tensor);
+    var place = origin;
+    var most = fetch(noise, INPUT_NOISE, pixel(id)).x;
+    for (var side = -1.0; side <= 1.0; side += 2.0) {
+        var line = stream_begin(origin, side * tangent);
+        for (var u = 1.0; u <= limit; u += 1.0) {
+            stream_step(&line, tensors, INPUT_TENSORS, 1.0, true);
+            if stream_outside(0u, line.position) {
+                break;
+            }
+            let value = sample_linear(noise, INPUT_NOISE, line.position).x;
+            if value > most {
+                most = value;
+                place = line.position;
+            }
+        }
+    }
+    let own = fetch(source, 0u, pixel(id));
+    let found = sample_covered(source, 0u, place);
+    let color = select(own.rgb, found.rgb / found.a, found.a >= 0.5);
+    textureStore(target_image, vec2i(id.xy), vec4f(color, own.a));
+}
