@@ -237,7 +237,7 @@ const PROMISED: &[(&str, &[&str])] = &[
 #[test]
 fn promised_ids_are_there() {
     let mut missing = Vec::new();
-    for (node, params) in PROMISED {
+    for &(node, params) in PROMISED {
         match registry::find(node) {
             Ok(spec) => {
                 let lost = params.iter().filter(|p| spec.param(p).is_none());
