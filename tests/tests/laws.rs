@@ -232,6 +232,27 @@ const PROMISED: &[(&str, &[&str])] = &[
         ],
     ),
     ("blueprint", &["line_width", "line_color", "paper_color", "grid", "paper_texture", "fill", "mix"]),
+    ("shock", &["variant", "sigma_g", "sigma_i", "radius", "threshold", "iterations", "time_step", "mix"]),
+    (
+        "coherence_enhancing",
+        &[
+            "iterations",
+            "rho",
+            "relax_threshold",
+            "sigma_t",
+            "max_angle",
+            "adapt",
+            "shock",
+            "sigma_g",
+            "sigma_i",
+            "radius",
+            "threshold",
+            "sigma_a",
+            "mix",
+        ],
+    ),
+    ("warp_sharpen", &["sigma_w", "phi_w", "mix"]),
+    ("coherent", &["detail", "posterize", "saturation", "lights", "darks", "mix"]),
 ];
 
 #[test]
@@ -243,7 +264,7 @@ fn promised_ids_are_there() {
                 let lost = params.iter().filter(|p| spec.param(p).is_none());
                 missing.extend(lost.map(|p| format!("{node}.{p}")));
             }
-            Err(_) => missing.push(node.to_owned()),
+            Err(_) => missing.push((*node).to_owned()),
         }
     }
     assert!(missing.is_empty(), "missing: {}", missing.join(", "));

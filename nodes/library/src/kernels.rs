@@ -9,6 +9,8 @@ pub mod blocks;
 pub mod colour_space;
 pub mod coverage;
 pub mod edge_threshold;
+pub mod luma_lines;
+pub mod neighbours;
 pub mod rows;
 pub mod stream_line;
 pub mod support;

@@ -18,6 +18,7 @@ nodes! {
     styles {
         blueprint,
         cartoon,
+        coherent,
     }
     structure {
         structure_tensor,
@@ -27,10 +28,15 @@ nodes! {
     colour {
         composite_lines,
         quantize_luminance,
+        warp_sharpen,
     }
     lines {
         difference_of_gaussians,
         flow_dog,
+    }
+    coherence {
+        shock,
+        coherence_enhancing,
     }
     smoothing {
         gaussian,

@@ -1,0 +1,280 @@
+//! The smoothed structure tensor of a colour, where tensors of low contrast are taken from an earlier
+//! field before smoothing (§ 2.7.3, 6.2). Gradients by the 3x3 operator of (2.27), coverage as in
+//! `gradient_tensor`.
+//!
+//! One pass instead of four, since the coherence-enhancing filter asks for it twice in each iteration.
+//! The result counts as valid everywhere (w = 1): every tensor comes from somewhere.
+//!
+//! Cost: 30 operations for the sums of columns and rows of each channel, 40 for the tensor, and
+//! 4 radius + 2 multiply-adds for each of its three values.
+
+use crate::kernels::rows::{Rows, strips};
+use crate::kernels::smoothing::gaussian_blur;
+use crate::kernels::support::{gaussian_radius, gaussian_table, put_pixels4};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::math::load4;
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+
+/// Entries of the table of weights, the centre included.
+const TAPS: usize = 12;
+/// Largest radius: what the workgroups' memory holds.
+const MAX_RADIUS: u32 = 8;
+/// Weights of the derivative operator across the derivative (2.27).
+const OPERATOR: [f32; 2] = [162.32 / 256.0, 46.84 / 256.0];
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for carried_tensor {
+        /// Cut-off of the Gaussian, pixels, 0..=8.
+        pub radius: i32,
+        /// A tensor is valid above this lambda1 (2.164).
+        pub threshold: f32,
+        /// Weights of the derivative operator across the derivative: at the centre and beside it.
+        pub smoothing: [f32; 2],
+        /// Weights of the Gaussian at distance 0, 1, ...
+        pub weights: [[f32; 4]; TAPS / 4],
+    }
+}
+
+crate::kernel!(carried_tensor {
+    cpu: run,
+    cost: |params| {
+        let p: Params = bytemuck::pod_read_unaligned(params);
+        120.0 + 12.0 * f64::from(p.radius)
+    },
+    tolerance: Tolerance {
+        absolute: 2e-6,
+        relative: 1e-4,
+        outliers: 0.01,
+        reason: "differences of neighbours magnify the last bits of the colours, and a tensor at the \
+                 threshold of validity goes either way, which shows over the whole window",
+    },
+});
+
+/// The tensor of `color`, smoothed by `rho` pixels, with tensors from `earlier` where sqrt(lambda1)
+/// before smoothing is not above `threshold`.
+pub fn tensor(plan: &mut PlanBuilder, color: ImageId, earlier: ImageId, rho: f32, threshold: f32) -> ImageId {
+    let wanted = gaussian_radius(rho, 3.0);
+    // Wider windows are smoothed by passes of their own.
+    let radius = if wanted > MAX_RADIUS { 0 } else { wanted };
+    let mut weights = [[0.0; 4]; TAPS / 4];
+    weights.copy_from_slice(&gaussian_table(rho, radius)[..TAPS / 4]);
+    let params = Params { radius: radius as i32, threshold: threshold * threshold, smoothing: OPERATOR, weights };
+    let support = Support::Pixels(radius + 1);
+    let tensor = plan.pass(&KERNEL, &[color, earlier], &params, Class::Field, support);
+    if radius < wanted { gaussian_blur::smooth(plan, tensor, rho, Class::Field) } else { tensor }
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    // A radius known to the compiler unrolls the sums of the usual one.
+    match params.radius {
+        3 => dispatch!(pass.level, simd => tensors(simd, pass, &params, 3, band)),
+        r => dispatch!(pass.level, simd => tensors(simd, pass, &params, r as usize, band)),
+    }
+}
+
+/// Rows of one strip on their way through the pass.
+#[derive(Default)]
+struct Strip {
+    colors: Rows,
+    /// Whether the rows in `colors` are opaque.
+    opaque: [bool; 3],
+    /// The next row that `colors` takes in.
+    next: i32,
+    /// Smoothed and derived columns of a row, four channels each.
+    columns: Vec<f32>,
+    /// E, F and G of a row.
+    tensors: Vec<f32>,
+    /// The same smoothed along the row, for as many rows as the window is high.
+    ring: Vec<f32>,
+    scratch: Vec<f32>,
+}
+
+#[inline(always)]
+fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, r: usize, band: &mut Band<'_>) {
+    let (window, [width, height]) = (band.window, pass.inputs[0].full());
+    let mut weights = [0.0; TAPS];
+    for (i, weight) in weights.iter_mut().enumerate() {
+        *weight = params.weights[i / 4][i % 4];
+    }
+    let reach = r as i32;
+    let mut strip = Strip::default();
+    for (x0, x1) in strips(window.x0, window.x1) {
+        strip.colors.start(x0 - reach, x1 + reach, 1, 4);
+        let wide = strip.colors.stride();
+        let narrow = ((x1 - x0) as usize).next_multiple_of(8);
+        strip.columns.resize(8 * wide, 0.0);
+        strip.tensors.resize(3 * wide, 0.0);
+        strip.ring.resize((2 * r + 1) * 3 * narrow, 0.0);
+        // Rows beyond the picture are its last ones.
+        let row = |y: i32| y.clamp(0, height - 1);
+        strip.next = row(window.y0 - reach) - 1;
+        for y in window.y0 - reach..window.y1 + reach {
+            strip.gradients(simd, pass, params, [x0 - reach, x1 + reach], row(y));
+            strip.extend([x0 - reach, x1 + reach], width);
+            let slot = y.rem_euclid(2 * reach + 1) as usize * 3 * narrow;
+            for c in 0..3 {
+                let source = &strip.tensors[c * wide..(c + 1) * wide];
+                let target = &mut strip.ring[slot + c * narrow..slot + (c + 1) * narrow];
+                for (i, target) in target.chunks_exact_mut(8).enumerate() {
+                    let at = 8 * i + r;
+                    let mut sum = f32x8::from_slice(simd, &source[at..at + 8]) * weights[0];
+                    for k in 1..=r {
+                        let before = f32x8::from_slice(simd, &source[at - k..at - k + 8]);
+                        let after = f32x8::from_slice(simd, &source[at + k..at + k + 8]);
+                        sum = (before + after).mul_add(f32x8::splat(simd, weights[k]), sum);
+                    }
+                    sum.store_slice(target);
+                }
+            }
+            let done = y - reach;
+            if done >= window.y0 {
+                let start = 4 * (x0 - window.x0) as usize;
+                let target = &mut band.row_mut(0, done)[start..start + 4 * (x1 - x0) as usize];
+                strip.smooth_columns(simd, &weights, r, narrow, done, target);
+            }
+        }
+    }
+}
+
+impl Strip {
+    /// The tensors of row `y`, columns `x0..x1`; rows must come in order.
+    #[inline(always)]
+    fn gradients<S: Simd>(
+        &mut self,
+        simd: S,
+        pass: &CpuPass<'_>,
+        params: &Params,
+        [x0, x1]: [i32; 2],
+        y: i32,
+    ) {
+        let held = (x1 - x0 + 2) as usize;
+        while self.next <= y + 1 {
+            self.colors.load4(simd, &pass.inputs[0], self.next, #[inline(always)] |[r, g, b, a]| [r * a, g * a, b * a, a]);
+            let alphas = &self.colors.row(self.next, 3)[..held];
+            self.opaque[self.next.rem_euclid(3) as usize] = alphas.iter().fold(true, |all, a| all & (*a == 1.0));
+            self.next += 1;
+        }
+        // The coverage of opaque rows has no gradient: its products are exact, and left out.
+        let opaque = self.opaque == [true; 3];
+        let channels = if opaque { 3 } else { 4 };
+        let len = self.colors.stride();
+        for c in 0..channels {
+            let (above, here, below) =
+                (self.colors.row(y - 1, c), self.colors.row(y, c), self.colors.row(y + 1, c));
+            let (smoothed, derived) = self.columns[2 * c * len..2 * (c + 1) * len].split_at_mut(len);
+            for i in (0..len).step_by(8) {
+                let (above, here, below) = (
+                    f32x8::from_slice(simd, &above[i..i + 8]),
+                    f32x8::from_slice(simd, &here[i..i + 8]),
+                    f32x8::from_slice(simd, &below[i..i + 8]),
+                );
+                let across = f32x8::splat(simd, params.smoothing[1]);
+                (above + below).mul_add(across, here * params.smoothing[0]).store_slice(&mut smoothed[i..i + 8]);
+                ((below - above) * 0.5).store_slice(&mut derived[i..i + 8]);
+            }
+        }
+        let zero = f32x8::splat(simd, 0.0);
+        let (mut dx, mut dy) = ([zero; 4], [zero; 4]);
+        for i in (0..(x1 - x0) as usize).step_by(8) {
+            for c in 0..channels {
+                let smoothed = &self.columns[2 * c * len..(2 * c + 1) * len];
+                let derived = &self.columns[(2 * c + 1) * len..2 * (c + 1) * len];
+                let at = |row: &[f32], at: usize| f32x8::from_slice(simd, &row[at..at + 8]);
+                dx[c] = (at(smoothed, i + 2) - at(smoothed, i)) * 0.5;
+                let sides = at(derived, i) + at(derived, i + 2);
+                dy[c] = sides.mul_add(f32x8::splat(simd, params.smoothing[1]), at(derived, i + 1) * params.smoothing[0]);
+            }
+            if !opaque {
+                let at = |c: usize| f32x8::from_slice(simd, &self.colors.row(y, c)[i + 1..i + 9]);
+                let alpha = at(3);
+                for c in 0..3 {
+                    // The quotient rule without its division: coverage squared times the gradient of the colour.
+                    dx[c] = alpha * dx[c] - at(c) * dx[3];
+                    dy[c] = alpha * dy[c] - at(c) * dy[3];
+                }
+            }
+            let e = dx[0] * dx[0] + dx[1] * dx[1] + dx[2] * dx[2];
+            let f = dx[0] * dy[0] + dx[1] * dy[1] + dx[2] * dy[2];
+            let g = dy[0] * dy[0] + dy[1] * dy[1] + dy[2] * dy[2];
+            let d = (e - g) * 0.5;
+            let lambda1 = (e + g) * 0.5 + (d * d + f * f).sqrt();
+            let valid = lambda1.simd_gt(f32x8::splat(simd, params.threshold));
+            let mut tensor = [e, f, g];
+            if !valid.all_true() {
+                let earlier = pass.inputs[1].padded_row(y, x0 + i as i32, (x0 + i as i32 + 8).min(x1), &mut self.scratch);
+                let [e, f, g, _] = read4(simd, earlier);
+                let earlier = [e, f, g];
+                for c in 0..3 {
+                    tensor[c] = valid.select(tensor[c], earlier[c]);
+                }
+            }
+            for c in 0..3 {
+                tensor[c].store_slice(&mut self.tensors[c * len + i..c * len + i + 8]);
+            }
+        }
+    }
+
+    /// Repeats the first and last tensors of the picture in the columns beyond it.
+    #[inline(always)]
+    fn extend(&mut self, [x0, x1]: [i32; 2], width: i32) {
+        let len = self.colors.stride();
+        for row in self.tensors.chunks_exact_mut(len) {
+            if x0 < 0 {
+                let first = row[-x0 as usize];
+                row[..-x0 as usize].fill(first);
+            }
+            if x1 > width {
+                let last = (width - x0) as usize;
+                let value = row[last - 1];
+                row[last..(x1 - x0) as usize].fill(value);
+            }
+        }
+    }
+
+    /// The Gaussian along the columns about row `y`.
+    #[inline(always)]
+    fn smooth_columns<S: Simd>(
+        &self,
+        simd: S,
+        weights: &[f32; TAPS],
+        r: usize,
+        narrow: usize,
+        y: i32,
+        target: &mut [f32],
+    ) {
+        let one = f32x8::splat(simd, 1.0);
+        let slot = |k: i32| (y + k).rem_euclid(2 * r as i32 + 1) as usize * 3 * narrow;
+        let mut rows: [&[f32]; 2 * MAX_RADIUS as usize + 1] = [&[]; 2 * MAX_RADIUS as usize + 1];
+        for (k, row) in rows[..=2 * r].iter_mut().enumerate() {
+            let at = slot(k as i32 - r as i32);
+            *row = &self.ring[at..at + 3 * narrow];
+        }
+        for (i, pixels) in target.chunks_mut(32).enumerate() {
+            let mut tensor = [one; 4];
+            for c in 0..3 {
+                let at = c * narrow + 8 * i;
+                let mut sum = f32x8::from_slice(simd, &rows[r][at..at + 8]) * weights[0];
+                for k in 1..=r {
+                    let above = f32x8::from_slice(simd, &rows[r - k][at..at + 8]);
+                    let below = f32x8::from_slice(simd, &rows[r + k][at..at + 8]);
+                    sum = (above + below).mul_add(f32x8::splat(simd, weights[k]), sum);
+                }
+                tensor[c] = sum;
+            }
+            put_pixels4(tensor, pixels);
+        }
+    }
+}
+
+/// Up to eight tensors, padded with zeros.
+#[inline(always)]
+fn read4<S: Simd>(simd: S, values: &[f32]) -> [f32x8<S>; 4] {
+    if values.len() == 32 {
+        return load4(simd, values);
+    }
+    let mut padded = [0.0; 32];
+    padded[..values.len()].copy_from_slice(values);
+    load4(simd, &padded)
+}

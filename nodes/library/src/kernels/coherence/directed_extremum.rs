@@ -1,0 +1,182 @@
+//! The minimum or maximum of the gradient-directed shock filter (§ 6.4.3, Listing 6.2): where the second
+//! derivative is above the threshold, the pixel of least luma along the major eigenvector; where it is
+//! below its opposite, the one of greatest luma; elsewhere the pixel itself.
+//!
+//! The colour moves as a whole; coverage stays, and pixels that are covered less than half as much as
+//! the centre are passed over. Of equal ones the first stays, the nearer before the farther.
+//!
+//! Cost: four comparisons per step, and nothing at all where the threshold is not reached.
+
+use crate::kernels::blocks::{Block, fetch4, offsets, write4};
+use crate::kernels::luma_lines::{Line, LumaLines, STRIP};
+use crate::kernels::tensor_algebra::axis;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance};
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for directed_extremum {
+        /// Distance of the last pixel looked at, pixels.
+        pub radius: f32,
+        /// Responses up to this leave a pixel alone.
+        pub threshold: f32,
+    }
+}
+
+crate::kernel!(directed_extremum {
+    cpu: run,
+    cost: |params| {
+        let p: Params = bytemuck::pod_read_unaligned(params);
+        30.0 + 60.0 * f64::from(p.radius)
+    },
+    tolerance: Tolerance {
+        absolute: 1e-6,
+        relative: 1e-6,
+        outliers: 5e-3,
+        reason: "colours are moved, not computed; which one is decided by comparisons of luma, and by a line \
+                 that meets a pixel's border, on the last bit",
+    },
+});
+
+/// Erodes where `response` is above `threshold` and dilates where it is below -`threshold`, `radius`
+/// pixels far along the major eigenvectors of `tensors`.
+pub fn shocked(
+    plan: &mut PlanBuilder,
+    color: ImageId,
+    tensors: ImageId,
+    response: ImageId,
+    radius: f32,
+    threshold: f32,
+) -> ImageId {
+    let params = Params { radius, threshold };
+    let support = Support::Pixels(steps(&params) as u32);
+    plan.pass(&KERNEL, &[color, tensors, response], &params, Class::Colour, support)
+}
+
+/// Most steps to a side.
+fn steps(params: &Params) -> i32 {
+    (params.radius + 1e-3) as i32
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    dispatch!(pass.level, simd => strips(simd, pass, &params, band));
+}
+
+#[inline(always)]
+fn strips<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
+    let (window, radius) = (band.window, steps(params));
+    let mut lumas = LumaLines::default();
+    for x0 in (window.x0..window.x1).step_by(STRIP as usize) {
+        let strip = Rect { x0, x1: (x0 + STRIP).min(window.x1), ..window };
+        lumas.load(simd, &pass.inputs[0], strip, radius, false);
+        for y in window.y0..window.y1 {
+            let (start, end) = (4 * (x0 - window.x0) as usize, 4 * (strip.x1 - window.x0) as usize);
+            for (i, target) in band.row_mut(0, y)[start..end].chunks_mut(32).enumerate() {
+                let block = Block { x: x0 + 8 * i as i32, y, len: target.len() / 4 };
+                let z = block.read1(simd, &pass.inputs[2]);
+                let active = z.abs().simd_gt(f32x8::splat(simd, params.threshold));
+                if !active.any_true() {
+                    let at = pass.inputs[0].offset(block.x, y);
+                    target.copy_from_slice(&pass.inputs[0].data()[at..at + target.len()]);
+                    continue;
+                }
+                let colors = if lumas.is_opaque() {
+                    extreme::<_, true>(simd, pass, params, radius, &lumas, block, active, z)
+                } else {
+                    extreme::<_, false>(simd, pass, params, radius, &lumas, block, active, z)
+                };
+                write4(colors, target);
+            }
+        }
+    }
+}
+
+/// The best candidates of eight pixels so far.
+struct Best<S: Simd> {
+    /// Luma, negative where the minimum is looked for.
+    value: f32x8<S>,
+    /// Position, relative to the centre.
+    offset: [i32x8<S>; 2],
+    /// Least coverage of a candidate.
+    least_alpha: f32x8<S>,
+}
+
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "the inner function of one loop")]
+fn extreme<S: Simd, const OPAQUE: bool>(
+    simd: S,
+    pass: &CpuPass<'_>,
+    params: &Params,
+    radius: i32,
+    lumas: &LumaLines,
+    block: Block,
+    active: mask32x8<S>,
+    z: f32x8<S>,
+) -> [f32x8<S>; 4] {
+    let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+    let [e, f, g, _] = block.read4(simd, &pass.inputs[1]);
+    let (_, n) = axis((e - g) * 0.5, f);
+    let line = lumas.line(simd, block.x, block.y, n);
+    let steps = (line.major_share * (params.radius + 1e-3)).floor();
+    // Above the threshold lies the zone of a minimum: erode. Below its opposite: dilate.
+    let sign = z.simd_gt(zero).select(-one, one);
+    let mut alpha = one;
+    if !OPAQUE {
+        alpha = lumas.coverage(simd, block.x, block.y);
+    }
+    let luma = lumas.centre(simd, block.x, block.y);
+    let none = i32x8::splat(simd, 0);
+    let mut best = Best { value: luma * sign, offset: [none; 2], least_alpha: alpha * 0.5 };
+    for k in 1..=radius {
+        let active = active & steps.simd_ge(f32x8::splat(simd, k as f32));
+        if !active.any_true() {
+            break;
+        }
+        for along in [k, -k] {
+            let across = line.slope * along as f32;
+            // The pixels on both sides of the line; one and the same where it meets a centre.
+            let first: i32x8<S> = (across + 0.001).floor().to_int();
+            let second: i32x8<S> = (across + 0.999).floor().to_int();
+            let apart = second.simd_gt(first);
+            let [a, b] = lumas.pair(simd, &line, along, first);
+            let mut coverage = [one; 2];
+            if !OPAQUE {
+                coverage = lumas.pair_coverage(simd, &line, along, first);
+            }
+            let far = [apart.select(b, a), apart.select(coverage[1], coverage[0])];
+            best.compare::<OPAQUE>(&line, active, sign, far, along, second);
+            best.compare::<OPAQUE>(&line, active, sign, [a, coverage[0]], along, first);
+        }
+    }
+    let lanes = block.columns(simd);
+    let at = offsets(&pass.inputs[0], lanes + best.offset[0], best.offset[1] + block.y);
+    let [r, g, b, _] = fetch4(simd, &pass.inputs[0], at);
+    [r, g, b, if OPAQUE { one } else { alpha }]
+}
+
+impl<S: Simd> Best<S> {
+    /// Takes the pixel of this luma and coverage, `along` and `across` the line, where it
+    /// is better.
+    #[inline(always)]
+    fn compare<const OPAQUE: bool>(
+        &mut self,
+        line: &Line<S>,
+        active: mask32x8<S>,
+        sign: f32x8<S>,
+        [luma, alpha]: [f32x8<S>; 2],
+        along: i32,
+        across: i32x8<S>,
+    ) {
+        let mut eligible = active;
+        if !OPAQUE {
+            eligible &= alpha.simd_ge(self.least_alpha);
+        }
+        let value = luma * sign;
+        let better = value.simd_gt(self.value) & eligible;
+        let along = i32x8::splat(across.simd, along);
+        self.value = better.select(value, self.value);
+        self.offset[0] = better.select(line.along_x.select(along, across), self.offset[0]);
+        self.offset[1] = better.select(line.along_x.select(across, along), self.offset[1]);
+    }
+}

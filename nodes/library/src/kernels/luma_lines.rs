@@ -1,0 +1,173 @@
+//! The luma of a colour around a strip of pixels, laid out for taps along straight lines of any
+//! direction, one pixel at a time along the nearer axis (Fig. 3.9).
+//!
+//! The two pixels that a tap lies between are neighbours on the other axis. Luma is kept twice, row by
+//! row and as pairs of vertical neighbours, so that both are one 64-bit load whichever axis that is.
+
+use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
+use isophote_engine::math::{load_pairs, load4};
+use isophote_engine::{Rect, View};
+
+/// Weights of the Rec. 709 luma.
+const LUMA: [f32; 3] = [0.2126, 0.7152, 0.0722];
+
+/// Columns of a strip, few enough for its rows to stay in the first-level cache.
+pub const STRIP: i32 = 128;
+
+/// Luma, by itself or times coverage, and coverage, around a strip.
+#[derive(Debug, Default)]
+pub struct LumaLines {
+    x0: i32,
+    y0: i32,
+    width: usize,
+    rows: usize,
+    opaque: bool,
+    /// Where coverage begins, laid out as luma is, where not all is opaque.
+    coverage: usize,
+    data: Vec<f32>,
+    scratch: Vec<f32>,
+}
+
+/// Taps along eight lines through the centres of eight pixels.
+#[derive(Clone, Copy)]
+pub struct Line<S: Simd> {
+    /// Index of the centres.
+    at: i32x8<S>,
+    /// One pixel along the nearer axis.
+    major: i32x8<S>,
+    /// One pixel along the other axis.
+    minor: i32x8<S>,
+    /// Lanes that step along x.
+    pub along_x: mask32x8<S>,
+    /// Pixels on the other axis per pixel on the nearer one, -1..=1.
+    pub slope: f32x8<S>,
+    /// Absolute component of the direction on the nearer axis, 1 / sqrt(2)..=1.
+    pub major_share: f32x8<S>,
+}
+
+impl LumaLines {
+    /// Prepares for the pixels of `strip` and lines that reach `radius` pixels to either side.
+    ///
+    /// Pixels that the view does not hold are never taps with any weight; they repeat the last ones.
+    /// `weighted`: luma is multiplied by coverage, to be mixed.
+    #[inline(always)]
+    pub fn load<S: Simd>(&mut self, simd: S, view: &View<'_>, strip: Rect, radius: i32, weighted: bool) {
+        let margin = radius + 1;
+        (self.x0, self.y0) = (strip.x0 - margin, strip.y0 - margin);
+        // Lines of the last block read as if it were full.
+        self.width = (strip.width() as usize).next_multiple_of(8) + (2 * margin as usize).next_multiple_of(8);
+        self.rows = strip.height() as usize + 2 * margin as usize;
+        self.coverage = 3 * self.width * (self.rows + 1);
+        self.data.resize(self.coverage, 0.0);
+        let one = f32x8::splat(simd, 1.0);
+        let mut opaque = true;
+        self.plane(simd, view, 0, |[r, g, b, alpha]| {
+            opaque &= alpha.simd_eq(one).all_true();
+            let luma = r * LUMA[0] + g * LUMA[1] + b * LUMA[2];
+            if weighted { luma * alpha } else { luma }
+        });
+        self.opaque = opaque;
+        if !opaque {
+            self.data.resize(2 * self.coverage, 0.0);
+            self.plane(simd, view, self.coverage, |[.., alpha]| alpha);
+        }
+    }
+
+    /// Fills what begins at `start`: rows of `value`, then pairs.
+    #[inline(always)]
+    fn plane<S: Simd>(
+        &mut self,
+        simd: S,
+        view: &View<'_>,
+        start: usize,
+        mut value: impl FnMut([f32x8<S>; 4]) -> f32x8<S>,
+    ) {
+        let (held, width) = (view.window(), self.width);
+        let (rows, pairs) = self.data[start..start + self.coverage].split_at_mut(width * (self.rows + 1));
+        for (i, row) in rows.chunks_exact_mut(width).enumerate() {
+            let y = (self.y0 + i as i32).clamp(held.y0, held.y1 - 1);
+            let source = view.padded_row(y, self.x0, self.x0 + width as i32, &mut self.scratch);
+            for (pixels, target) in source.chunks_exact(32).zip(row.chunks_exact_mut(8)) {
+                value(load4(simd, pixels)).store_slice(target);
+            }
+        }
+        for (i, target) in pairs.chunks_exact_mut(2 * width).take(self.rows).enumerate() {
+            let (above, below) = rows[i * width..(i + 2) * width].split_at(width);
+            let both = above.chunks_exact(8).zip(below.chunks_exact(8));
+            for ((above, below), target) in both.zip(target.chunks_exact_mut(16)) {
+                let (low, high) = f32x8::from_slice(simd, above).interleave(f32x8::from_slice(simd, below));
+                low.store_slice(&mut target[..8]);
+                high.store_slice(&mut target[8..]);
+            }
+        }
+    }
+
+    /// True when every pixel around the strip is opaque.
+    pub fn is_opaque(&self) -> bool {
+        self.opaque
+    }
+
+    /// Luma of the eight pixels from (x, y) on, which lie in the strip or up to seven columns past it.
+    #[inline(always)]
+    pub fn centre<S: Simd>(&self, simd: S, x: i32, y: i32) -> f32x8<S> {
+        let at = (y - self.y0) as usize * self.width + (x - self.x0) as usize;
+        f32x8::from_slice(simd, &self.data[at..at + 8])
+    }
+
+    /// Coverage of the eight pixels from (x, y) on; only where not all is opaque.
+    #[inline(always)]
+    pub fn coverage<S: Simd>(&self, simd: S, x: i32, y: i32) -> f32x8<S> {
+        let at = self.coverage + (y - self.y0) as usize * self.width + (x - self.x0) as usize;
+        f32x8::from_slice(simd, &self.data[at..at + 8])
+    }
+
+    /// Lines through the eight pixels from (x, y) on in the directions `n`, unit vectors of either sign.
+    #[inline(always)]
+    pub fn line<S: Simd>(&self, simd: S, x: i32, y: i32, [nx, ny]: [f32x8<S>; 2]) -> Line<S> {
+        let along_x = nx.abs().simd_gt(ny.abs());
+        let major = along_x.select(nx, ny);
+        let lanes = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
+        let start = (y - self.y0) * self.width as i32 + x - self.x0;
+        let (column, width) = (lanes + start, self.width as i32);
+        Line {
+            at: along_x.select(column + column + (self.width * (self.rows + 1)) as i32, column),
+            major: along_x.select(i32x8::splat(simd, 2), i32x8::splat(simd, width)),
+            minor: along_x.select(i32x8::splat(simd, 2 * width), i32x8::splat(simd, 1)),
+            along_x,
+            slope: along_x.select(ny, nx) / major,
+            major_share: major.abs(),
+        }
+    }
+
+    /// The two pixels `along` steps on at `across` and `across` + 1 to the side.
+    #[inline(always)]
+    pub fn pair<S: Simd>(&self, simd: S, line: &Line<S>, along: i32, across: i32x8<S>) -> [f32x8<S>; 2] {
+        self.pair_from(simd, &self.data, line, along, across)
+    }
+
+    /// Coverage of what [`LumaLines::pair`] gives; only where not all is opaque.
+    #[inline(always)]
+    pub fn pair_coverage<S: Simd>(
+        &self,
+        simd: S,
+        line: &Line<S>,
+        along: i32,
+        across: i32x8<S>,
+    ) -> [f32x8<S>; 2] {
+        self.pair_from(simd, &self.data[self.coverage..], line, along, across)
+    }
+
+    #[inline(always)]
+    fn pair_from<S: Simd>(
+        &self,
+        simd: S,
+        data: &[f32],
+        line: &Line<S>,
+        along: i32,
+        across: i32x8<S>,
+    ) -> [f32x8<S>; 2] {
+        let at = line.at + line.major * along + line.minor * across;
+        let [low, high] = load_pairs(simd, data, at.to_array());
+        low.deinterleave(high).into()
+    }
+}

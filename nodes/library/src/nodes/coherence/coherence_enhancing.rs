@@ -1,0 +1,187 @@
+//! Coherence-enhancing filtering (§ 6, Fig. 6.3): smoothing along the stream lines of the structure
+//! tensor and sharpening across them, in turn.
+
+use crate::kernels::coherence::carried_tensor;
+use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
+use crate::nodes::coherence::shock::{self, Directed};
+use crate::nodes::structure::structure_tensor::{self, TensorOptions};
+use crate::ports;
+use crate::spec::{Choice, NodeSpec, Param, Scope};
+use isophote_engine::{ImageId, PlanBuilder};
+
+/// The node.
+pub static NODE: NodeSpec = NodeSpec {
+    id: "coherence_enhancing",
+    label: "Coherence-enhancing Filter",
+    group: "coherence",
+    doc: "Abstraction that makes directional features more coherent and keeps shapes, however small and \
+          round: adaptive smoothing along the stream lines of the structure tensor (6.3) and shock \
+          filtering across them (6.4), in turn; edges are smoothed along themselves at the end (6.5). \
+          Defaults are the thesis'.",
+    section: "6",
+    inputs: &[ports::COLOR],
+    output: ports::color_output("The filtered picture."),
+    own_params: &[
+        ITERATIONS,
+        RHO,
+        RELAX_THRESHOLD,
+        SIGMA_T,
+        MAX_ANGLE,
+        ADAPT,
+        SHOCK,
+        shock::SIGMA_G,
+        shock::SIGMA_I,
+        shock::RADIUS,
+        shock::THRESHOLD,
+        SIGMA_A,
+    ],
+    build,
+};
+
+pub(crate) const ITERATIONS: Param = Param::int("iterations", "Iterations", 5, [1, 50])
+    .slider(1.0, 15.0)
+    .structural()
+    .doc("Rounds of smoothing and sharpening (N): the strength of the abstraction.");
+pub(crate) const RHO: Param = Param::float("rho", "Rho", 1.0, [0.0, 20.0])
+    .slider(0.0, 6.0)
+    .pixels()
+    .structural()
+    .doc("Standard deviation of the Gaussian that smooths the structure tensor.");
+pub(crate) const RELAX_THRESHOLD: Param =
+    Param::float("relax_threshold", "Relaxation threshold", 0.0447, [0.0, 10.0])
+        .slider(0.0, 0.2)
+        .structural()
+        .doc(
+            "Where sqrt(lambda1) is not above this, the orientation is filled in from around it at first, and \
+             from the step before later on (2.7.3); 0 trusts every gradient.",
+        );
+pub(crate) const SIGMA_T: Param = Param::float("sigma_t", "Sigma t", 6.0, [0.0, 40.0])
+    .slider(0.0, 15.0)
+    .pixels()
+    .doc("Standard deviation of the smoothing along stream lines (sigma_s of 6.3.1).");
+pub(crate) const MAX_ANGLE: Param = Param::float("max_angle", "Largest turn", 22.5, [0.0, 90.0])
+    .degrees()
+    .doc("A stream line ends where it turns by more in one step; 0 for never.");
+pub(crate) const ADAPT: Param = Param::choice(
+    "adapt",
+    "Adapt length",
+    0,
+    &[Choice { id: "anisotropy", label: "By anisotropy" }, Choice { id: "angle", label: "By turning angle" }],
+)
+.uniform()
+.doc("Shortens stream lines where the orientation is uncertain (6.3.1), or as they turn (6.3.2).");
+pub(crate) const SHOCK: Param = Param::choice(
+    "shock",
+    "Shock filter",
+    0,
+    &[
+        Choice { id: "gradient_directed", label: "Gradient-directed" },
+        Choice { id: "coherence_enhancing", label: "Coherence-enhancing" },
+    ],
+)
+.doc("What sharpens: the local filter (6.4.3), or three steps of Weickert's equation (6.4.2), which only `sigma_i` controls.");
+pub(crate) const SIGMA_A: Param = Param::float("sigma_a", "Edge smoothing", 1.5, [0.0, 20.0])
+    .slider(0.0, 5.0)
+    .pixels()
+    .structural()
+    .doc("Standard deviation of the last smoothing along the edges, against the jagged steps of the shocks; 0 for none.");
+
+/// Steps of Weickert's equation in each iteration, and their length (§ 6.4.2).
+const PDE_STEPS: [f32; 3] = [0.4; 3];
+
+/// How a picture is filtered; lengths in pixels of the picture that is rendered.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Filter {
+    /// Rounds of smoothing and sharpening.
+    pub iterations: i32,
+    /// Smoothing of the tensor.
+    pub rho: f32,
+    /// sqrt(lambda1) that a tensor must exceed to be kept.
+    pub relax_threshold: f32,
+    /// The smoothing.
+    pub smoothing: Lic,
+    /// The sharpening.
+    pub shock: Directed,
+    /// Sharpen by Weickert's equation instead.
+    pub weickert: bool,
+    /// Standard deviation of the last smoothing.
+    pub sigma_a: f32,
+}
+
+impl Filter {
+    /// The values of the parameters of a node.
+    pub(crate) fn of(scope: &Scope<'_>) -> Self {
+        Self {
+            iterations: scope.int("iterations"),
+            rho: scope.float("rho"),
+            relax_threshold: scope.float("relax_threshold"),
+            smoothing: Lic {
+                sigma: scope.float("sigma_t"),
+                adapt: if scope.choice("adapt") == "angle" { Adapt::Angle } else { Adapt::Anisotropy },
+                max_angle: scope.float("max_angle"),
+                ..Lic::default()
+            },
+            shock: Directed::of(scope),
+            weickert: scope.choice("shock") == "coherence_enhancing",
+            sigma_a: scope.float("sigma_a"),
+        }
+    }
+
+    /// The tensor of `color`; where its gradient is too weak, the field is relaxed at first and taken from
+    /// `earlier` later (§ 6.2).
+    fn tensor(&self, plan: &mut PlanBuilder, color: ImageId, earlier: Option<ImageId>) -> ImageId {
+        match earlier {
+            Some(earlier) if self.relax_threshold > 0.0 => {
+                carried_tensor::tensor(plan, color, earlier, self.rho, self.relax_threshold)
+            }
+            _ => {
+                let options = TensorOptions {
+                    rho: self.rho,
+                    relax_threshold: self.relax_threshold,
+                    ..TensorOptions::default()
+                };
+                structure_tensor::of_color(plan, color, &options)
+            }
+        }
+    }
+
+    /// Smoothing and sharpening in turn; the picture and the last tensor.
+    pub(crate) fn iterate(&self, plan: &mut PlanBuilder, mut color: ImageId) -> (ImageId, Option<ImageId>) {
+        let mut tensor = None;
+        for _ in 0..self.iterations {
+            let along = self.tensor(plan, color, tensor);
+            color = line_integral_convolution::color(plan, color, along, &self.smoothing);
+            let mut across = self.tensor(plan, color, Some(along));
+            if self.weickert {
+                for (i, time_step) in PDE_STEPS.into_iter().enumerate() {
+                    if i > 0 {
+                        across = self.tensor(plan, color, Some(across));
+                    }
+                    color = shock::coherence_enhancing_step(plan, color, across, self.shock.sigma_i, time_step);
+                }
+            } else {
+                color = self.shock.apply(plan, color, across);
+            }
+            tensor = Some(across);
+        }
+        (color, tensor)
+    }
+
+    /// Smooths the edges along themselves, without adaption and along the last tensor (§ 6.5).
+    pub(crate) fn finish(&self, plan: &mut PlanBuilder, color: ImageId, tensor: Option<ImageId>) -> ImageId {
+        match tensor {
+            Some(tensor) if self.sigma_a > 0.0 => {
+                let last = Lic { sigma: self.sigma_a, adapt: Adapt::None, ..self.smoothing };
+                line_integral_convolution::color(plan, color, tensor, &last)
+            }
+            _ => color,
+        }
+    }
+}
+
+fn build(scope: &mut Scope<'_>) -> ImageId {
+    let color = scope.required("color");
+    let filter = Filter::of(scope);
+    let (filtered, tensor) = filter.iterate(scope.plan, color);
+    filter.finish(scope.plan, filtered, tensor)
+}

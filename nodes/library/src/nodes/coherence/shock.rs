@@ -1,0 +1,150 @@
+//! Shock filters (§ 6.4): sharp edges by eroding about minima and dilating about maxima.
+
+use crate::kernels::coherence::{directed_extremum, flow_log, laplacian, second_derivative, shock_step};
+use crate::kernels::smoothing::gaussian_blur;
+use crate::nodes::structure::structure_tensor::{self, TensorOptions};
+use crate::ports;
+use crate::spec::{Choice, NodeSpec, Param, Scope};
+use isophote_engine::{ImageId, PlanBuilder};
+
+/// The node.
+pub static NODE: NodeSpec = NodeSpec {
+    id: "shock",
+    label: "Shock Filter",
+    group: "coherence",
+    doc: "Sharpens edges without ringing: erodes about minima and dilates about maxima, so that no value \
+          leaves the range of its neighbours. The gradient-directed filter takes the least or greatest \
+          pixel along the local gradient (6.4.3) at once; the others solve a differential equation in \
+          small steps (6.3).",
+    section: "6.4",
+    inputs: &[
+        ports::COLOR,
+        ports::TENSOR,
+    ],
+    output: ports::color_output("The sharpened picture."),
+    own_params: &[
+        Param::choice(
+            "variant",
+            "Variant",
+            2,
+            &[
+                Choice { id: "osher_rudin", label: "Osher-Rudin" },
+                Choice { id: "coherence_enhancing", label: "Coherence-enhancing" },
+                Choice { id: "gradient_directed", label: "Gradient-directed" },
+            ],
+        )
+        .doc(
+            "The classical filter, by the Laplacian (6.4.1); Weickert's, by the second derivative along the \
+             gradient (6.4.2); or the local filter along the gradient (6.4.3).",
+        ),
+        SIGMA_G,
+        SIGMA_I,
+        RADIUS,
+        THRESHOLD,
+        Param::int("iterations", "Iterations", 3, [1, 100])
+            .slider(1.0, 20.0)
+            .structural()
+            .doc("Steps of the two variants that solve an equation."),
+        Param::float("time_step", "Time step", 0.4, [0.01, 0.5])
+            .doc("Length of a step of these variants; beyond 1/2 they would not be stable."),
+    ],
+    build,
+};
+
+pub(crate) const SIGMA_G: Param = Param::float("sigma_g", "Sigma g", 1.5, [0.2, 20.0])
+    .slider(0.3, 6.0)
+    .pixels()
+    .doc("Standard deviation of the second derivative along the gradient: larger ones pass over small features.");
+pub(crate) const SIGMA_I: Param = Param::float("sigma_i", "Sigma i", 0.0, [0.0, 20.0])
+    .slider(0.0, 6.0)
+    .pixels()
+    .structural()
+    .doc("Standard deviation of the Gaussian before the second derivative, for stronger abstraction; 0 for none.");
+pub(crate) const RADIUS: Param = Param::float("radius", "Radius", 2.0, [0.0, 20.0])
+    .slider(0.0, 6.0)
+    .pixels()
+    .doc("How far along the gradient the least or greatest pixel is looked for.");
+pub(crate) const THRESHOLD: Param = Param::float("threshold", "Threshold", 0.005, [0.0, 1.0])
+    .slider(0.0, 0.05)
+    .doc(
+        "Second derivative, in units of luma, up to which a pixel stays as it is (tau_s): keeps shocks out of \
+         smooth parts.",
+    );
+
+/// The gradient-directed filter; lengths in pixels of the picture that is rendered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Directed {
+    pub sigma_g: f32,
+    pub sigma_i: f32,
+    pub radius: f32,
+    pub threshold: f32,
+}
+
+impl Directed {
+    /// The values of the parameters of a node.
+    pub(crate) fn of(scope: &Scope<'_>) -> Self {
+        Self {
+            sigma_g: scope.float("sigma_g"),
+            sigma_i: scope.float("sigma_i"),
+            radius: scope.float("radius"),
+            threshold: scope.float("threshold"),
+        }
+    }
+
+    /// Sharpens `color` along the major eigenvectors of `tensor`.
+    pub(crate) fn apply(&self, plan: &mut PlanBuilder, color: ImageId, tensor: ImageId) -> ImageId {
+        let smooth = smoothed(plan, color, self.sigma_i);
+        let response = flow_log::response(plan, smooth, tensor, self.sigma_g);
+        directed_extremum::shocked(plan, color, tensor, response, self.radius, self.threshold)
+    }
+}
+
+/// What a second derivative is taken of.
+fn smoothed(plan: &mut PlanBuilder, color: ImageId, sigma_i: f32) -> ImageId {
+    if sigma_i > 0.0 { gaussian_blur::color(plan, color, sigma_i) } else { color }
+}
+
+/// One step of the coherence-enhancing shock filter (§ 6.4.2).
+pub(crate) fn coherence_enhancing_step(
+    plan: &mut PlanBuilder,
+    color: ImageId,
+    tensor: ImageId,
+    sigma_i: f32,
+    time_step: f32,
+) -> ImageId {
+    let smooth = smoothed(plan, color, sigma_i);
+    let detector = second_derivative::of_color(plan, smooth, tensor);
+    shock_step::step(plan, color, detector, time_step)
+}
+
+fn build(scope: &mut Scope<'_>) -> ImageId {
+    let mut color = scope.required("color");
+    let (sigma_i, time_step) = (scope.float("sigma_i"), scope.float("time_step"));
+    let iterations = scope.int("iterations");
+    match scope.choice("variant") {
+        "osher_rudin" => {
+            for _ in 0..iterations {
+                let smooth = smoothed(scope.plan, color, sigma_i);
+                let detector = laplacian::of_color(scope.plan, smooth);
+                color = shock_step::step(scope.plan, color, detector, time_step);
+            }
+            color
+        }
+        "coherence_enhancing" => {
+            let options = TensorOptions::at_scale(scope.scale());
+            for _ in 0..iterations {
+                // The orientation evolves with the picture, unless one is given.
+                let tensor = match scope.input("tensor") {
+                    Some(tensor) => tensor,
+                    None => structure_tensor::of_color(scope.plan, color, &options),
+                };
+                color = coherence_enhancing_step(scope.plan, color, tensor, sigma_i, time_step);
+            }
+            color
+        }
+        _ => {
+            let tensor = structure_tensor::connected(scope, color);
+            Directed::of(scope).apply(scope.plan, color, tensor)
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! Sharpening by warping (§ 4.6): the picture is pulled away from its edges, which narrows them.
+
+use crate::kernels::colour::{luma_gradient, warp};
+use crate::kernels::smoothing::gaussian_blur;
+use crate::ports;
+use crate::spec::{NodeSpec, Param, Scope};
+use isophote_engine::{Class, ImageId};
+
+/// The node.
+pub static NODE: NodeSpec = NodeSpec {
+    id: "warp_sharpen",
+    label: "Warp Sharpen",
+    group: "colour",
+    doc: "Sharpens edges by moving pixels towards them, as image-based warping does: samples are taken \
+          away from the ridges of the smoothed gradient magnitude, found by the Sobel operator (2.23). No \
+          value leaves the range of its surroundings.",
+    section: "4.6",
+    inputs: &[ports::COLOR],
+    output: ports::color_output("The sharpened picture."),
+    own_params: &[
+        Param::float("sigma_w", "Sigma w", 1.5, [0.1, 20.0])
+            .slider(0.5, 6.0)
+            .pixels()
+            .doc("Standard deviation of the Gaussian on the gradient magnitude: the width of the edges that are narrowed."),
+        Param::float("phi_w", "Phi w", 2.7, [0.0, 20.0])
+            .slider(0.0, 10.0)
+            .pixels()
+            .doc("How far a sharp edge from black to white moves what is beside it, which is also the farthest move."),
+    ],
+    build,
+};
+
+/// sqrt(2 pi e): sigma^2 times the greatest slope of a Gaussian is 1 over this.
+const SLOPE: f32 = 4.132_731;
+
+fn build(scope: &mut Scope<'_>) -> ImageId {
+    let color = scope.required("color");
+    let (sigma, phi) = (scope.float("sigma_w"), scope.float("phi_w"));
+    let edges = luma_gradient::magnitude(scope.plan, color);
+    let ridges = gaussian_blur::smooth(scope.plan, edges, sigma, Class::Field);
+    warp::against(scope.plan, color, ridges, phi * SLOPE * sigma * sigma, phi)
+}

@@ -1,0 +1,137 @@
+//! Experiments of § 6: shapes survive coherence-enhancing filtering (Fig. 6.15), which converges where
+//! the equations it replaces do not (Fig. 6.19), and shock filters keep to the range of their input.
+
+use isophote_engine::Image;
+use isophote_tests::compare::distance;
+use isophote_tests::pictures::{self, Kind, from_fn};
+use isophote_tests::run;
+use isophote_tests::table::Table;
+
+/// By how much the values of `image` leave the range of `of`, channel by channel.
+fn beyond(image: &Image, of: &Image) -> f32 {
+    let mut worst = 0.0f32;
+    for c in 0..3 {
+        let channel =
+            |image: &'_ Image| image.data().iter().skip(c).step_by(4).copied().collect::<Vec<f32>>();
+        let (ours, theirs) = (channel(image), channel(of));
+        let least = theirs.iter().copied().fold(f32::INFINITY, f32::min);
+        let greatest = theirs.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        for v in ours {
+            worst = worst.max(v - greatest).max(least - v);
+        }
+    }
+    worst
+}
+
+/// 2 image - Gaussian: unsharp masking of weight 1.
+fn unsharp(image: &Image) -> Image {
+    let mut result = run::node("gaussian", &[("sigma", "3")], image);
+    for (r, i) in result.data_mut().chunks_exact_mut(4).zip(image.data().chunks_exact(4)) {
+        for c in 0..3 {
+            r[c] = 2.0 * i[c] - r[c];
+        }
+    }
+    result
+}
+
+/// Largest slope between neighbours in a row.
+fn sharpness(image: &Image) -> f32 {
+    let row = image.row(image.height() as i32 / 2);
+    row.chunks_exact(4).zip(row.chunks_exact(4).skip(1)).map(|(a, b)| (b[0] - a[0]).abs()).fold(0.0, f32::max)
+}
+
+#[test]
+fn shock_filters_keep_to_the_range_of_their_input() {
+    let soft = run::node(
+        "gaussian",
+        &[("sigma", "2")],
+        &from_fn(64, 48, |x, _| {
+            let v = if x < 32 { 0.25 } else { 0.75 };
+            [v, v, 1.0 - v, 1.0]
+        }),
+    );
+    let pictures = [
+        ("soft edge", soft),
+        ("scenery", pictures::scenery(160, 120)),
+        ("noise", pictures::color(Kind::Noise, 96, 64)),
+    ];
+    let mut table = Table::new(
+        15,
+        "§ 6.4.1",
+        "How far values leave the range of the picture; steepest slope across a soft edge, before 0.10",
+        &["filter", "soft edge", "scenery", "noise", "slope"],
+    );
+    for variant in ["osher_rudin", "coherence_enhancing", "gradient_directed"] {
+        let filter = |image: &Image| run::node("shock", &[("variant", variant), ("iterations", "10")], image);
+        let results: Vec<Image> = pictures.iter().map(|(_, p)| filter(p)).collect();
+        let mut cells = vec![format!("shock, {variant}")];
+        for (result, (name, picture)) in results.iter().zip(&pictures) {
+            let outside = beyond(result, picture);
+            // A step may round, and nothing more.
+            assert!(outside <= 1e-6, "{variant} leaves the range of the {name} by {outside}");
+            cells.push(format!("{:.3}", outside.max(0.0)));
+        }
+        let slope = sharpness(&results[0]);
+        assert!(slope > 1.5 * sharpness(&pictures[0].1), "{variant} sharpens to {slope}");
+        cells.push(format!("{slope:.2}"));
+        table.row(&cells);
+    }
+    let results: Vec<Image> = pictures.iter().map(|(_, p)| unsharp(p)).collect();
+    let mut cells = vec!["unsharp masking".to_owned()];
+    for (result, (name, picture)) in results.iter().zip(&pictures) {
+        let outside = beyond(result, picture);
+        assert!(outside > 0.03, "unsharp masking of the {name} stays inside: {outside}");
+        cells.push(format!("{outside:.3}"));
+    }
+    cells.push(format!("{:.2}", sharpness(&results[0])));
+    table.row(&cells);
+    table.print();
+}
+
+/// Side of the square around one disc.
+const SQUARE: i32 = 48;
+/// Radii of the discs, pixels.
+const RADII: [f32; 4] = [4.0, 6.0, 9.0, 14.0];
+
+/// Dark discs on a light ground, with edges as soft as a lens makes them.
+fn discs() -> Image {
+    from_fn(SQUARE as u32 * RADII.len() as u32, SQUARE as u32, |x, y| {
+        let (dx, dy) = ((x % SQUARE) as f32 + 0.5 - 24.2, y as f32 + 0.5 - 23.9);
+        let distance = dx.hypot(dy) - RADII[(x / SQUARE) as usize];
+        let v = 0.2 + 0.6 * (0.5 + distance / 1.5).clamp(0.0, 1.0);
+        [v, v, v, 1.0]
+    })
+}
+
+/// Areas of the discs: how much darker than the ground their squares are.
+fn areas(image: &Image) -> [f64; RADII.len()] {
+    std::array::from_fn(|disc| {
+        let columns = disc as i32 * SQUARE..(disc as i32 + 1) * SQUARE;
+        let dark = columns.flat_map(|x| (0..SQUARE).map(move |y| (x, y)));
+        dark.map(|(x, y)| f64::from((0.8 - image.pixel(x, y)[0]) / 0.6)).sum()
+    })
+}
+
+#[test]
+fn discs_keep_their_area() {
+    let discs = discs();
+    let before = areas(&discs);
+    let after = |id: &str, params: &[(&str, &str)]| {
+        let after = areas(&run::node(id, params, &discs));
+        [0, 1, 2, 3].map(|i| after[i] / before[i] - 1.0)
+    };
+    let coherent = after("coherence_enhancing", &[("iterations", "10")]);
+    let mut table = Table::new(
+        14,
+        "Fig. 6.15",
+        "Change of the area of dark discs of some radii, in percent",
+        &["filter", "4 px", "6 px", "9 px", "14 px"],
+    );
+    let cells = |name: &str, changes: [f64; 4]| {
+        let percents = changes.map(|c| format!("{:+.1}", 100.0 * c));
+        [vec![name.to_owned()], percents.to_vec()].concat()
+    };
+    table.row(&cells("coherence-enhancing filter, 10 iterations", coherent));
+    table.print();
+    assert!(coherent.iter().all(|change| change.abs() < 0.02), "{coherent:?}");
+}
