@@ -6,7 +6,8 @@
 use crate::error::{Error, Result};
 use crate::image::{Image, Rect, View};
 use crate::kernel::{Band, CpuPass};
-use crate::plan::Plan;
+use crate::plan::{Pass, Plan};
+use crate::strips::Schedule;
 use fearless_simd::Level;
 use rayon::prelude::*;
 use std::sync::Mutex;
@@ -79,6 +80,13 @@ impl Control<'_> {
     }
 }
 
+/// Least rows of the result that all passes go through together: few enough for a plan's images to stay
+/// in a third-level cache, enough for threads to share and for passes to reach beyond.
+const STRIP: i32 = 64;
+
+/// Least rows of a band.
+const BAND: i32 = 16;
+
 /// What one pass took.
 #[derive(Clone, Debug)]
 pub struct PassTime {
@@ -94,6 +102,7 @@ pub struct PassTime {
 #[derive(Debug)]
 pub struct CpuExecutor {
     level: Level,
+    strip: Option<i32>,
     spare: Vec<Image>,
     times: Option<Vec<PassTime>>,
 }
@@ -112,7 +121,13 @@ impl CpuExecutor {
 
     /// An executor that uses the given instruction set (for tests and benchmarks).
     pub fn with_level(level: Level) -> Self {
-        Self { level, spare: Vec::new(), times: None }
+        Self { level, strip: None, spare: Vec::new(), times: None }
+    }
+
+    /// Goes through plans in strips of about `rows` rows (for tests and benchmarks); none lets the
+    /// executor choose.
+    pub fn set_strip(&mut self, rows: Option<u32>) {
+        self.strip = rows.map(|rows| i32::try_from(rows.max(1)).unwrap_or(i32::MAX));
     }
 
     /// Starts or stops recording the time of every pass.
@@ -123,6 +138,12 @@ impl CpuExecutor {
     /// Times of the last run, when recorded.
     pub fn times(&self) -> &[PassTime] {
         self.times.as_deref().unwrap_or(&[])
+    }
+
+    /// Keeps the memory of a result that is no longer wanted for the next run, whose first touch of new
+    /// memory would cost as much as a pass.
+    pub fn recycle(&mut self, image: Image) {
+        self.spare.push(image);
     }
 
     /// Gives back the memory kept for the next run.
@@ -152,51 +173,79 @@ impl CpuExecutor {
                 "region {region:?} is not inside the picture of {width}x{height}"
             )));
         }
+        // What earlier runs left is kept as far as this plan could use it.
+        self.spare.truncate(plan.images().len());
         let windows = plan.windows(region);
         let mut slots = Slots::bind(plan, inputs, &windows)?;
+        let rows = self.strip.unwrap_or(STRIP.max(BAND * threads.count() as i32 * 2));
+        let schedule = Schedule::new(plan, region, &windows, rows);
         let last_uses = plan.last_uses();
+        let needed = |pass: &Pass| !windows[pass.outputs[0].index()].is_empty();
+        let pixels = |pass: &Pass| windows[pass.outputs[0].index()].area();
         if let Some(times) = &mut self.times {
             times.clear();
+            times.extend(plan.passes().iter().filter(|p| needed(p)).map(|pass| PassTime {
+                kernel: pass.kernel.name.to_owned(),
+                time: Duration::ZERO,
+                pixels: pixels(pass),
+            }));
         }
-        let total = plan.passes().len().max(1) as f32;
-        for (index, pass) in plan.passes().iter().enumerate() {
-            if control.is_cancelled() {
-                slots.recycle(&mut self.spare);
-                return Err(Error::Cancelled);
-            }
-            let window = windows[pass.outputs[0].index()];
-            if window.is_empty() {
-                continue;
-            }
-            let started = Instant::now();
-            let mut outputs: Vec<Image> =
-                pass.outputs.iter().map(|o| self.take(window, plan.desc(*o).channels)).collect();
-            let level = plan.desc(pass.outputs[0]).level;
-            let full = plan.level_size(level);
-            let views: Vec<View<'_>> = pass
-                .inputs
-                .iter()
-                .map(|i| View::new(slots.image(i.index()), plan.level_size(plan.desc(*i).level)))
-                .collect();
-            let call = CpuPass { params: &pass.params, inputs: &views, level: self.level };
-            run_bands(pass.kernel.cpu, &call, window, full, &mut outputs, threads, control);
-            drop(views);
-            for (id, image) in pass.outputs.iter().zip(outputs) {
-                slots.owned[id.index()] = Some(image);
-            }
-            for id in &pass.inputs {
-                if last_uses[id.index()] == index
-                    && let Some(image) = slots.owned[id.index()].take()
-                {
-                    self.spare.push(image);
+        let total = plan.passes().iter().map(pixels).sum::<u64>().max(1) as f32;
+        let mut done = 0;
+        for (step, frontier) in schedule.frontiers.iter().enumerate() {
+            let last_step = step + 1 == schedule.frontiers.len();
+            let passes = plan.passes().iter().enumerate().filter(|(_, p)| needed(p));
+            for (place, (index, pass)) in passes.enumerate() {
+                if control.is_cancelled() {
+                    slots.recycle(&mut self.spare);
+                    return Err(Error::Cancelled);
                 }
-            }
-            if let Some(times) = &mut self.times {
-                let pixels = u64::from(window.width()) * u64::from(window.height());
-                times.push(PassTime { kernel: pass.kernel.name.to_owned(), time: started.elapsed(), pixels });
-            }
-            if let Some(progress) = control.progress {
-                progress((index + 1) as f32 / total);
+                let started = Instant::now();
+                let mut outputs = Vec::with_capacity(pass.outputs.len());
+                for output in &pass.outputs {
+                    let at = output.index();
+                    let mut image = match slots.owned[at].take() {
+                        Some(image) => image,
+                        None => {
+                            let window = windows[at];
+                            let y1 = window.y0 + schedule.capacity[at];
+                            self.take(Rect { y1, ..window }, plan.desc(*output).channels)
+                        }
+                    };
+                    if frontier[at] > image.window().y1 {
+                        image.slide(schedule.kept[step - 1][at], slots.filled[at]);
+                    }
+                    outputs.push(image);
+                }
+                let first = pass.outputs[0].index();
+                let from = slots.filled[first].max(windows[first].y0);
+                let window = Rect { y0: from, y1: frontier[first], ..windows[first] };
+                if !window.is_empty() {
+                    let views: Vec<View<'_>> =
+                        pass.inputs.iter().map(|i| slots.view(plan, i.index())).collect();
+                    let call = CpuPass { params: &pass.params, inputs: &views, level: self.level };
+                    let full = plan.level_size(plan.desc(pass.outputs[0]).level);
+                    run_bands(pass.kernel.cpu, &call, window, full, &mut outputs, threads, control);
+                }
+                for (id, image) in pass.outputs.iter().zip(outputs) {
+                    slots.owned[id.index()] = Some(image);
+                    slots.filled[id.index()] = frontier[first];
+                }
+                for id in &pass.inputs {
+                    if last_step
+                        && last_uses[id.index()] == index
+                        && let Some(image) = slots.owned[id.index()].take()
+                    {
+                        self.spare.push(image);
+                    }
+                }
+                if let Some(time) = self.times.as_mut().and_then(|times| times.get_mut(place)) {
+                    time.time += started.elapsed();
+                }
+                done += window.area();
+                if let Some(progress) = control.progress {
+                    progress(done as f32 / total);
+                }
             }
         }
         if control.is_cancelled() {
@@ -266,12 +315,24 @@ pub(crate) fn bind_inputs<'a>(
 struct Slots<'a> {
     borrowed: Vec<Option<&'a Image>>,
     owned: Vec<Option<Image>>,
+    /// The row down to which an owned image is computed, exclusive.
+    filled: Vec<i32>,
 }
 
 impl<'a> Slots<'a> {
     fn bind(plan: &Plan, inputs: &[(&str, &'a Image)], windows: &[Rect]) -> Result<Self> {
         let borrowed = bind_inputs(plan, inputs, windows)?;
-        Ok(Self { borrowed, owned: vec![None; plan.images().len()] })
+        let filled = windows.iter().map(|w| w.y0).collect();
+        Ok(Self { borrowed, owned: vec![None; plan.images().len()], filled })
+    }
+
+    /// What is computed of an image, for a pass to read.
+    fn view(&self, plan: &Plan, index: usize) -> View<'_> {
+        let full = plan.level_size(plan.images()[index].level);
+        match &self.owned[index] {
+            Some(image) => View::down_to(image, full, self.filled[index]),
+            None => View::new(self.image(index), full),
+        }
     }
 
     fn image(&self, index: usize) -> &Image {
@@ -307,7 +368,7 @@ fn run_bands(
 ) {
     let height = window.height() as usize;
     // Some bands per thread even out unequal rows; very thin ones would read their halo too often.
-    let bands = (threads.count() * 4).clamp(1, height.div_ceil(8).max(1));
+    let bands = (threads.count() * 4).clamp(1, height.div_ceil(BAND as usize).max(1));
     let rows = height.div_ceil(bands);
     let count = height.div_ceil(rows);
     let mut jobs: Vec<Mutex<Band<'_>>> = (0..count)
@@ -322,8 +383,10 @@ fn run_bands(
         })
         .collect();
     for image in outputs {
-        let stride = image.stride();
-        for (job, part) in jobs.iter_mut().zip(image.data_mut().chunks_mut(rows * stride)) {
+        let (stride, held) = (image.stride(), image.window());
+        let at = |y: i32| (y - held.y0) as usize * stride;
+        let target = &mut image.data_mut()[at(window.y0)..at(window.y1)];
+        for (job, part) in jobs.iter_mut().zip(target.chunks_mut(rows * stride)) {
             if let Ok(band) = job.get_mut() {
                 band.outputs.push(part);
             }

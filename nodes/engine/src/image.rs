@@ -36,6 +36,12 @@ impl Rect {
         if self.y1 > self.y0 { (self.y1 - self.y0) as u32 } else { 0 }
     }
 
+    /// Pixels covered.
+    #[inline]
+    pub const fn area(&self) -> u64 {
+        self.width() as u64 * self.height() as u64
+    }
+
     /// True when no pixel lies inside.
     #[inline]
     pub const fn is_empty(&self) -> bool {
@@ -144,6 +150,17 @@ impl Image {
         self.data.resize(len, 0.0);
     }
 
+    /// Lets go of the rows before `y0` and makes room for as many below: the memory stays the same, and the
+    /// rows from `y0` to `y1` keep their values.
+    pub(crate) fn slide(&mut self, y0: i32, y1: i32) {
+        let stride = self.stride();
+        let at = |y: i32| (y - self.window.y0) as usize * stride;
+        let kept = at(y0)..at(y1);
+        self.data.copy_within(kept, 0);
+        let height = self.window.height() as i32;
+        self.window = Rect { y0, y1: y0 + height, ..self.window };
+    }
+
     /// The part of the picture that is held.
     pub fn window(&self) -> Rect {
         self.window
@@ -250,32 +267,44 @@ pub struct View<'a> {
 
 impl<'a> View<'a> {
     /// A view of `image` as part of a picture of `full` pixels.
+    #[inline]
     pub fn new(image: &'a Image, full: [i32; 2]) -> Self {
         Self { data: &image.data, window: image.window, channels: image.channels, full }
     }
 
+    /// The same of the rows of `image` down to `y1`, exclusive.
+    pub(crate) fn down_to(image: &'a Image, full: [i32; 2], y1: i32) -> Self {
+        let window = Rect { y1: y1.min(image.window.y1), ..image.window };
+        let len = window.height() as usize * image.stride();
+        Self { data: &image.data[..len], window, channels: image.channels, full }
+    }
+
     /// Size of the whole picture, of which the window may be a part.
+    #[inline(always)]
     pub fn full(&self) -> [i32; 2] {
         self.full
     }
 
     /// The part of the picture that is held.
+    #[inline(always)]
     pub fn window(&self) -> Rect {
         self.window
     }
 
     /// Values a pixel.
+    #[inline(always)]
     pub fn channels(&self) -> usize {
         self.channels as usize
     }
 
     /// All values held, row by row, `stride` apart.
+    #[inline(always)]
     pub fn data(&self) -> &'a [f32] {
         self.data
     }
 
     /// Values from one row to the next.
-    #[inline]
+    #[inline(always)]
     pub fn stride(&self) -> usize {
         self.window.width() as usize * self.channels as usize
     }

@@ -15,6 +15,8 @@ pub mod peak;
 pub mod pixels;
 pub mod plan;
 pub mod program;
+mod sampling;
+mod strips;
 
 pub use error::{Error, Result};
 pub use fearless_simd;

@@ -153,19 +153,21 @@ impl Plan {
             for output in &pass.outputs {
                 windows[output.index()] = out;
             }
-            let out_level = self.desc(pass.outputs[0]).level;
             for input in &pass.inputs {
-                let level = self.desc(*input).level;
-                let needed = match pass.support {
-                    Support::Pixels(n) => {
-                        self.clip(rescale(out, out_level, level).grown(n.min(MAX_HALO) as i32), level)
-                    }
-                    Support::Global => self.whole(level),
-                };
+                let needed = self.read_by(pass, out, *input);
                 windows[input.index()] = windows[input.index()].union(&needed);
             }
         }
         windows
+    }
+
+    /// The pixels of `input` that `pass` reads to compute `out`.
+    pub(crate) fn read_by(&self, pass: &Pass, out: Rect, input: ImageId) -> Rect {
+        let (from, level) = (self.desc(pass.outputs[0]).level, self.desc(input).level);
+        match pass.support {
+            Support::Pixels(n) => self.clip(rescale(out, from, level).grown(n.min(MAX_HALO) as i32), level),
+            Support::Global => self.whole(level),
+        }
     }
 
     /// How far outside a region the inputs are read, in pixels of level 0, or `Global`. Holds for

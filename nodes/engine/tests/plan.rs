@@ -101,6 +101,47 @@ fn a_tile_equals_the_same_tile_of_the_whole() {
 }
 
 #[test]
+fn strips_compute_what_whole_passes_do() {
+    let mut b = PlanBuilder::new(37, 120).unwrap();
+    let source = b.input("source", 4, Class::Colour);
+    let soft = box_blur(&mut b, source, 2, 1.0);
+    let half = rescale(&mut b, soft, 1);
+    let back = rescale(&mut b, half, 0);
+    let softer = box_blur(&mut b, back, 1, 1.0);
+    let sharp = box_blur(&mut b, soft, 0, 2.0);
+    b.output("softer", softer);
+    b.output("sharp", sharp);
+    let plan = b.finish().unwrap();
+    let source = noise(37, 120, 4);
+    for region in [rect(0, 0, 37, 120), rect(3, 11, 30, 117)] {
+        let run = |strip: u32| {
+            let mut executor = CpuExecutor::new();
+            executor.set_strip(Some(strip));
+            executor.record_times(true);
+            let told = std::cell::RefCell::new(Vec::new());
+            let control = Control { cancelled: None, progress: Some(&|share| told.borrow_mut().push(share)) };
+            // The second run finds the memory of the first.
+            let mut results = Vec::new();
+            for _ in 0..2 {
+                told.borrow_mut().clear();
+                results =
+                    executor.run(&plan, &[("source", &source)], region, &CallingThread, control).unwrap();
+            }
+            assert_eq!(executor.times().len(), 5);
+            assert_eq!(executor.times()[4].pixels, region.area());
+            (results, told.into_inner())
+        };
+        let (whole, once) = run(u32::MAX);
+        assert_eq!(once.len(), 5);
+        for strip in [1, 8, 13, 40] {
+            let (strips, told) = run(strip);
+            assert_eq!(strips, whole, "{region:?} in strips of {strip}");
+            assert!(told.len() > 5 && told.is_sorted() && told.last() == Some(&1.0), "{told:?}");
+        }
+    }
+}
+
+#[test]
 fn an_output_of_another_level_returns_its_own_pixels() {
     let mut b = PlanBuilder::new(37, 21).unwrap();
     let source = b.input("source", 4, Class::Colour);

@@ -200,11 +200,17 @@ pub(super) unsafe extern "C" fn process(
         let job = Job { region, inputs: &inputs, threads: &threads, control: &control };
         // SAFETY: the host promised that the images' memory may be read.
         let computed = unsafe { job.run(&mut warm, device.as_deref()) };
+        let computed = computed.map(|(result, mended)| {
+            // SAFETY: the host promised that the target's memory may be written; all inputs were copied,
+            // so that it does not matter whether it is theirs.
+            unsafe { target.write(&result) };
+            if let (Some(cpu), None) = (&mut warm.cpu, &device) {
+                cpu.recycle(result);
+            }
+            mended
+        });
         warm.keep(object);
-        let (result, mended) = computed?;
-        // SAFETY: the host promised that the target's memory may be written; all inputs were copied, so
-        // that it does not matter whether it is theirs.
-        unsafe { target.write(&result) };
+        let mended = computed?;
         let done = IsophoteReport { mended, seconds: started.elapsed().as_secs_f64() };
         // SAFETY: the host promised that the report may be written, or is null.
         unsafe { args::put_if_wanted(report, done) };
