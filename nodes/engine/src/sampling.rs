@@ -1,0 +1,302 @@
+//! Bilinear samples of images at eight positions at once, for the CPU twins.
+//!
+//! Positions are absolute with pixel centres at +0.5 and clamp to the edge; the `inner` forms leave the
+//! clamping out and give the same bits where it would change nothing.
+
+use crate::image::View;
+use crate::math::{spread, transposed};
+use fearless_simd::{Simd, f32x4, f32x8, f64x4, i32x8, prelude::*};
+
+/// The pixels at two offsets, one in each half of a vector.
+#[inline(always)]
+pub fn load_pixels<S: Simd>(simd: S, low: &[f32], high: &[f32]) -> f32x8<S> {
+    f32x4::from_slice(simd, &low[..4]).combine(f32x4::from_slice(simd, &high[..4]))
+}
+
+/// Bilinear sample of a four-channel image at eight positions (absolute, pixel centres at +0.5,
+/// clamped to the edge), one vector per channel.
+///
+/// Each lane takes four 128-bit loads; hardware gathers would take sixteen times as many.
+#[inline(always)]
+pub fn sample_linear4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 4] {
+    let ([w, h], held, data) = (view.full(), view.window(), view.data());
+    let (columns, fx) = floor_and_share(x, w);
+    let (rows, fy) = floor_and_share(y, h);
+    let inside = columns.simd_ge(0) & columns.simd_lt(w - 1) & rows.simd_ge(0) & rows.simd_lt(h - 1);
+    let (fx, fy) = (spread(fx), spread(fy));
+    let mut pixels = [f32x8::splat(simd, 0.0); 4];
+    if inside.all_true() {
+        // Away from the edges the right neighbour is the next pixel: a fourth of the places to look up.
+        let stride = view.stride() as u32 as usize;
+        let at = ((rows - held.y0) * stride as i32 + (columns - held.x0) * 4).to_array();
+        for i in 0..4 {
+            let (low, high) = (at[i] as u32 as usize, at[i + 4] as u32 as usize);
+            let (low, high) = (&data[low..low + stride + 8], &data[high..high + stride + 8]);
+            let a = load_pixels(simd, low, high);
+            let b = load_pixels(simd, &low[4..], &high[4..]);
+            let c = load_pixels(simd, &low[stride..], &high[stride..]);
+            let d = load_pixels(simd, &low[stride + 4..], &high[stride + 4..]);
+            pixels[i] = bilinear([a, b, c, d], fx[i], fy[i]);
+        }
+    } else {
+        let taps = LinearTaps::new(simd, view, x, y);
+        for (i, pixel) in pixels.iter_mut().enumerate() {
+            let mut corners = [f32x8::splat(simd, 0.0); 4];
+            for (corner, at) in corners.iter_mut().zip(&taps.at) {
+                *corner = load_pixel(simd, data, at[i]).combine(load_pixel(simd, data, at[i + 4]));
+            }
+            *pixel = bilinear(corners, fx[i], fy[i]);
+        }
+    }
+    transposed(pixels)
+}
+
+/// [`sample_linear4`] where all eight positions keep a pixel's distance from the edges.
+#[inline(always)]
+pub fn sample_inner4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 4] {
+    let (at, stride, fx, fy) = inner_places(view, x, y);
+    let (data, fx, fy) = (view.data(), spread(fx), spread(fy));
+    // Two slices of one length share the check of the range.
+    let (upper, lower) = (&data[..data.len() - stride], &data[stride..]);
+    let mut pixels = [f32x8::splat(simd, 0.0); 4];
+    for i in 0..4 {
+        let (low, high) = (at[i] as u32 as usize, at[i + 4] as u32 as usize);
+        let (top, bottom) = (&upper[low..low + 8], &lower[low..low + 8]);
+        let (top_high, bottom_high) = (&upper[high..high + 8], &lower[high..high + 8]);
+        let a = load_pixels(simd, top, top_high);
+        let b = load_pixels(simd, &top[4..], &top_high[4..]);
+        let c = load_pixels(simd, bottom, bottom_high);
+        let d = load_pixels(simd, &bottom[4..], &bottom_high[4..]);
+        pixels[i] = bilinear([a, b, c, d], fx[i], fy[i]);
+    }
+    transposed(pixels)
+}
+
+/// [`sample_linear2`] where all eight positions keep a pixel's distance from the edges.
+#[inline(always)]
+pub fn sample_inner2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
+    let (at, stride, fx, fy) = inner_places(view, x, y);
+    let (data, fy) = (view.data(), spread(fy));
+    let (upper, lower) = (&data[..data.len() - stride], &data[stride..]);
+    let mut pixels = [f32x8::splat(simd, 0.0); 4];
+    for i in 0..4 {
+        let (low, high) = (at[i] as u32 as usize, at[i + 4] as u32 as usize);
+        let a = load_pixels(simd, &upper[low..low + 4], &upper[high..high + 4]);
+        let b = load_pixels(simd, &lower[low..low + 4], &lower[high..high + 4]);
+        pixels[i] = (b - a).mul_add(fy[i], a);
+    }
+    let [l0, l1, r0, r1] = transposed(pixels);
+    [(r0 - l0).mul_add(fx, l0), (r1 - l1).mul_add(fx, l1)]
+}
+
+/// Where the upper left of the four pixels around inner positions begin, values from row to row, and the
+/// shares of the right and of the lower ones.
+#[inline(always)]
+fn inner_places<S: Simd>(view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> ([i32; 8], usize, f32x8<S>, f32x8<S>) {
+    let (held, stride) = (view.window(), view.stride());
+    let (x, y) = (x - 0.5, y - 0.5);
+    let (left, top) = (x.floor(), y.floor());
+    let (column, row): (i32x8<S>, i32x8<S>) = (left.to_int(), top.to_int());
+    let at = (row - held.y0) * stride as i32 + (column - held.x0) * view.channels() as i32;
+    (at.to_array(), stride as u32 as usize, x - left, y - top)
+}
+
+#[inline(always)]
+fn bilinear<S: Simd>([a, b, c, d]: [f32x8<S>; 4], fx: f32x8<S>, fy: f32x8<S>) -> f32x8<S> {
+    let top = (b - a).mul_add(fx, a);
+    let bottom = (d - c).mul_add(fx, c);
+    (bottom - top).mul_add(fy, top)
+}
+
+/// The pixel before a position, on one axis of a picture of `full` pixels, and the next one's share.
+#[inline(always)]
+fn floor_and_share<S: Simd>(position: f32x8<S>, full: i32) -> (i32x8<S>, f32x8<S>) {
+    // Far outside, the integer conversion would saturate or wrap: keep positions near the picture.
+    let position = (position - 0.5).max(-2.0f32).min(full as f32 + 2.0);
+    let floor = position.floor();
+    (floor.to_int(), position - floor)
+}
+
+/// The four values from offset `at` on.
+#[inline(always)]
+pub fn load_pixel<S: Simd>(simd: S, data: &[f32], at: i32) -> f32x4<S> {
+    // Through u32 one comparison is enough to check the range.
+    let at = at as u32 as usize;
+    f32x4::from_slice(simd, &data[at..at + 4])
+}
+
+/// Bilinear sample of a one-channel image at eight positions; see [`sample_linear4`].
+#[inline(always)]
+pub fn sample_linear1<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> f32x8<S> {
+    let taps = LinearTaps::new(simd, view, x, y);
+    let data = view.data();
+    let mut corners = [[0.0f32; 8]; 4];
+    for (values, at) in corners.iter_mut().zip(&taps.at) {
+        for (value, at) in values.iter_mut().zip(at) {
+            *value = data[*at as usize];
+        }
+    }
+    let [a, b, c, d] = corners;
+    let (a, b) = (f32x8::simd_from(simd, a), f32x8::simd_from(simd, b));
+    let (c, d) = (f32x8::simd_from(simd, c), f32x8::simd_from(simd, d));
+    let (fx, fy) = (f32x8::simd_from(simd, taps.fx), f32x8::simd_from(simd, taps.fy));
+    let top = (b - a).mul_add(fx, a);
+    let bottom = (d - c).mul_add(fx, c);
+    (bottom - top).mul_add(fy, top)
+}
+
+/// Bilinear sample of a two-channel image at eight positions, one vector per channel; see
+/// [`sample_linear4`].
+///
+/// The two pixels of a row are neighbours in memory too, so a lane takes two 128-bit loads.
+#[inline(always)]
+pub fn sample_linear2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
+    let ([w, h], window) = (view.full(), view.window());
+    if w < 2 {
+        return sample_column2(simd, view, x, y);
+    }
+    let rows = Axis { full: h, start: window.y0, stride: view.stride() as i32 };
+    let (top, bottom, fy) = rows.taps(simd, y);
+    // At the right edge the left pixel is the last but one, with all the weight on the last.
+    let column = (x - 0.5).max(0.0f32).min((w - 1) as f32);
+    let left = column.floor().min((w - 2) as f32);
+    let fx = column - left;
+    let left = (left.to_int::<i32x8<S>>() - i32x8::splat(simd, window.x0)) * 2;
+    let fy = spread(fy);
+    let data = view.data();
+    let mut pixels = [f32x8::splat(simd, 0.0); 4];
+    let stride = view.stride() as u32 as usize;
+    if (bottom - top).simd_eq(stride as i32).all_true() {
+        let at = (top + left).to_array();
+        for i in 0..4 {
+            let (low, high) = (at[i] as u32 as usize, at[i + 4] as u32 as usize);
+            let (low, high) = (&data[low..low + stride + 4], &data[high..high + stride + 4]);
+            let (a, b) = (load_pixels(simd, low, high), load_pixels(simd, &low[stride..], &high[stride..]));
+            pixels[i] = (b - a).mul_add(fy[i], a);
+        }
+    } else {
+        let (top, bottom) = ((top + left).to_array(), (bottom + left).to_array());
+        for (i, pixel) in pixels.iter_mut().enumerate() {
+            let a = load_pixel(simd, data, top[i]).combine(load_pixel(simd, data, top[i + 4]));
+            let b = load_pixel(simd, data, bottom[i]).combine(load_pixel(simd, data, bottom[i + 4]));
+            *pixel = (b - a).mul_add(fy[i], a);
+        }
+    }
+    let [l0, l1, r0, r1] = transposed(pixels);
+    [(r0 - l0).mul_add(fx, l0), (r1 - l1).mul_add(fx, l1)]
+}
+
+/// [`sample_linear2`] of a picture one pixel wide, whose columns have no neighbour.
+#[inline(always)]
+fn sample_column2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
+    let taps = LinearTaps::new(simd, view, x, y);
+    let fy = f32x8::simd_from(simd, taps.fy);
+    let (a, b) = (load_pairs(simd, view.data(), taps.at[0]), load_pairs(simd, view.data(), taps.at[2]));
+    let (a0, a1) = a[0].deinterleave(a[1]);
+    let (b0, b1) = b[0].deinterleave(b[1]);
+    [(b0 - a0).mul_add(fy, a0), (b1 - a1).mul_add(fy, a1)]
+}
+
+/// Eight pairs of neighbouring values, from where `at` says, four pairs to a vector: one 64-bit load
+/// each.
+#[inline(always)]
+pub fn load_pairs<S: Simd>(simd: S, data: &[f32], at: [i32; 8]) -> [f32x8<S>; 2] {
+    let mut pairs = [0.0f64; 8];
+    for (pair, at) in pairs.iter_mut().zip(at) {
+        let values = &data[at as usize..at as usize + 2];
+        *pair = f64::from_bits(u64::from(values[0].to_bits()) | u64::from(values[1].to_bits()) << 32);
+    }
+    let [a, b, c, d, e, f, g, h] = pairs;
+    [f64x4::simd_from(simd, [a, b, c, d]).bitcast(), f64x4::simd_from(simd, [e, f, g, h]).bitcast()]
+}
+
+/// Offsets and weights of the four pixels around eight positions.
+struct LinearTaps {
+    at: [[i32; 8]; 4],
+    fx: [f32; 8],
+    fy: [f32; 8],
+}
+
+/// What one axis of an image says about positions on it.
+struct Axis {
+    full: i32,
+    start: i32,
+    stride: i32,
+}
+
+impl Axis {
+    /// Offsets of the pixels on both sides of a position, and the second one's share.
+    // A function, since the compiler does not inline closures dependably, and a call from a function
+    // for wide vectors into one without is what SIMD code can least afford.
+    #[inline(always)]
+    fn taps<S: Simd>(&self, simd: S, position: f32x8<S>) -> (i32x8<S>, i32x8<S>, f32x8<S>) {
+        let last = i32x8::splat(simd, self.full - 1);
+        let (zero, start) = (i32x8::splat(simd, 0), i32x8::splat(simd, self.start));
+        let stride = i32x8::splat(simd, self.stride);
+        let (i, share) = floor_and_share(position, self.full);
+        let first = (i.max(zero).min(last) - start) * stride;
+        let second = ((i + 1).max(zero).min(last) - start) * stride;
+        (first, second, share)
+    }
+}
+
+impl LinearTaps {
+    #[inline(always)]
+    fn new<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> Self {
+        let ([w, h], window) = (view.full(), view.window());
+        let columns = Axis { full: w, start: window.x0, stride: view.channels() as i32 };
+        let rows = Axis { full: h, start: window.y0, stride: view.stride() as i32 };
+        let (left, right, fx) = columns.taps(simd, x);
+        let (top, bottom, fy) = rows.taps(simd, y);
+        let at = [
+            (top + left).to_array(),
+            (top + right).to_array(),
+            (bottom + left).to_array(),
+            (bottom + right).to_array(),
+        ];
+        Self { at, fx: fx.to_array(), fy: fy.to_array() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::Image;
+    use fearless_simd::{Level, dispatch};
+
+    #[test]
+    fn sampling_interpolates_and_clamps() {
+        let image = Image::from_vec(2, 2, 1, vec![0.0, 1.0, 2.0, 3.0]).unwrap();
+        let view = View::new(&image, [2, 2]);
+        let got = dispatch!(Level::new(), simd => {
+            let x = f32x8::from_slice(simd, &[0.5, 1.0, 1.5, 1.0, -9.0, 99.0, 1.0, 0.75]);
+            let y = f32x8::from_slice(simd, &[0.5, 0.5, 1.5, 1.0, -9.0, 1.0, 1e9, 0.5]);
+            sample_linear1(simd, &view, x, y).to_array()
+        });
+        assert_eq!(got, [0.0, 0.5, 3.0, 1.5, 0.0, 2.0, 2.5, 0.25]);
+        let pairs = Image::from_vec(2, 2, 2, vec![0.0, 9.0, 1.0, 8.0, 2.0, 7.0, 3.0, 6.0]).unwrap();
+        let view = View::new(&pairs, [2, 2]);
+        let [first, second] = dispatch!(Level::new(), simd => {
+            let x = f32x8::from_slice(simd, &[0.5, 1.0, 1.5, 1.0, -9.0, 99.0, 1.0, 0.75]);
+            let y = f32x8::from_slice(simd, &[0.5, 0.5, 1.5, 1.0, -9.0, 1.0, 1e9, 0.5]);
+            sample_linear2(simd, &view, x, y).map(|v| v.to_array())
+        });
+        assert_eq!(first, got);
+        assert_eq!(second, got.map(|v| 9.0 - v));
+    }
+
+    #[test]
+    fn inner_samples_are_those_of_anywhere() {
+        let values = |channels: u32| (0..30 * 9 * channels).map(|i| ((i * 7919) % 1013) as f32 / 7.0);
+        let [two, four] =
+            [2, 4].map(|channels| Image::from_vec(30, 9, channels, values(channels).collect()).unwrap());
+        dispatch!(Level::new(), simd => {
+            let x = f32x8::from_slice(simd, &[1.5, 2.0, 28.4, 13.7, 9.01, 20.0, 3.5, 27.99]);
+            let y = f32x8::from_slice(simd, &[1.5, 7.4, 2.0, 3.3, 4.5, 5.99, 6.0, 7.1]);
+            let (two, four) = (View::new(&two, [30, 9]), View::new(&four, [30, 9]));
+            let bits = |v: f32x8<_>| v.to_array();
+            assert_eq!(sample_inner2(simd, &two, x, y).map(bits), sample_linear2(simd, &two, x, y).map(bits));
+            assert_eq!(sample_inner4(simd, &four, x, y).map(bits), sample_linear4(simd, &four, x, y).map(bits));
+        });
+    }
+}
