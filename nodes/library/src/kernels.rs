@@ -14,6 +14,7 @@ pub mod neighbours;
 pub mod rows;
 pub mod stream_line;
 pub mod support;
+pub mod symmetric;
 pub mod tensor_algebra;
 pub mod value_noise;
 

@@ -75,8 +75,8 @@ pub fn srgb_decode<S: Simd>([r, g, b]: Rgb<S>) -> Rgb<S> {
 #[inline(always)]
 fn decode<S: Simd>(v: f32x8<S>) -> f32x8<S> {
     let a = v.abs();
-    let curve = ((a + 0.055) / 1.055).powf(2.4);
-    a.simd_le(0.040_45).select(a / 12.92, curve).copysign(v)
+    let curve = ((a + 0.055) * (1.0 / 1.055)).powf(2.4);
+    a.simd_le(0.040_45).select(a * (1.0 / 12.92), curve).copysign(v)
 }
 
 /// f(t) of CIELAB: a cube root with a straight line towards 0.
@@ -89,15 +89,16 @@ pub fn lab_curve<S: Simd>(t: f32x8<S>) -> f32x8<S> {
 #[inline(always)]
 pub fn linear_to_lab<S: Simd>(c: Rgb<S>) -> Rgb<S> {
     let [x, y, z] = transform(&LINEAR_TO_XYZ, c);
-    let (x, y, z) = (lab_curve(x / WHITE_D65[0]), lab_curve(y / WHITE_D65[1]), lab_curve(z / WHITE_D65[2]));
+    let (x, z) = (x * (1.0 / WHITE_D65[0]), z * (1.0 / WHITE_D65[2]));
+    let (x, y, z) = (lab_curve(x), lab_curve(y), lab_curve(z));
     [y * 116.0 - 16.0, (x - y) * 500.0, (y - z) * 200.0]
 }
 
 /// CIELAB to linear Rec. 709.
 #[inline(always)]
 pub fn lab_to_linear<S: Simd>([l, a, b]: Rgb<S>) -> Rgb<S> {
-    let y = (l + 16.0) / 116.0;
-    let (x, z) = (y + a / 500.0, y - b / 200.0);
+    let y = (l + 16.0) * (1.0 / 116.0);
+    let (x, z) = (y + a * (1.0 / 500.0), y - b * (1.0 / 200.0));
     let xyz = [
         lab_curve_inverse(x) * WHITE_D65[0],
         lab_curve_inverse(y) * WHITE_D65[1],
@@ -108,5 +109,5 @@ pub fn lab_to_linear<S: Simd>([l, a, b]: Rgb<S>) -> Rgb<S> {
 
 #[inline(always)]
 fn lab_curve_inverse<S: Simd>(f: f32x8<S>) -> f32x8<S> {
-    f.simd_le(6.0 / 29.0).select((f - 16.0 / 116.0) / SLOPE_LAB, f * f * f)
+    f.simd_le(6.0 / 29.0).select((f - 16.0 / 116.0) * (1.0 / SLOPE_LAB), f * f * f)
 }

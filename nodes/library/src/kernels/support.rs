@@ -1,6 +1,6 @@
 //! What several kernels share: the layout check, Gaussian tables, blocks of pixels.
 
-use isophote_engine::fearless_simd::{Simd, f32x8};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::math::{load4, store4};
 use isophote_engine::{Band, CpuPass, View};
 
@@ -64,17 +64,19 @@ pub fn map_pixels4<S: Simd>(
         let at = view.offset(window.x0, y);
         let target = band.row_mut(0, y);
         let source = &view.data()[at..at + target.len()];
-        for (s, t) in source.chunks(32).zip(target.chunks_mut(32)) {
-            if s.len() == 32 {
-                store4(f(load4(simd, s)), t);
-            } else {
-                // The last pixels of a row go through the same arithmetic, padded with zeros.
-                let mut block = [0.0; 32];
-                block[..s.len()].copy_from_slice(s);
-                let mut result = [0.0; 32];
-                store4(f(load4(simd, &block)), &mut result);
-                t.copy_from_slice(&result[..t.len()]);
-            }
+        let mut at = 0;
+        while at + 32 <= source.len() {
+            store4(f(load4(simd, &source[at..at + 32])), &mut target[at..at + 32]);
+            at += 32;
+        }
+        if at < source.len() {
+            // The last pixels of a row go through the same arithmetic, padded with zeros.
+            let (source, target) = (&source[at..], &mut target[at..]);
+            let mut block = [0.0; 32];
+            block[..source.len()].copy_from_slice(source);
+            let mut result = [0.0; 32];
+            store4(f(load4(simd, &block)), &mut result);
+            target.copy_from_slice(&result[..target.len()]);
         }
     }
 }
@@ -92,6 +94,23 @@ pub fn get_pixels4<S: Simd>(simd: S, view: &View<'_>, x: i32, y: i32, last: i32)
         pixel.copy_from_slice(&view.pixel4((x + lane as i32).min(last), y));
     }
     load4(simd, &block)
+}
+
+/// Eight two-channel pixels of row `y` from column `x` on; columns past `last` repeat it.
+#[inline(always)]
+pub fn get_pixels2<S: Simd>(simd: S, view: &View<'_>, x: i32, y: i32, last: i32) -> [f32x8<S>; 2] {
+    let data = view.data();
+    let mut block = [0.0; 16];
+    if x + 7 <= last {
+        let at = view.offset(x, y);
+        block.copy_from_slice(&data[at..at + 16]);
+    } else {
+        for lane in 0..8 {
+            let at = view.offset((x + lane as i32).min(last), y);
+            block[2 * lane..2 * lane + 2].copy_from_slice(&data[at..at + 2]);
+        }
+    }
+    f32x8::from_slice(simd, &block[..8]).deinterleave(f32x8::from_slice(simd, &block[8..])).into()
 }
 
 /// Writes eight four-channel pixels to the start of `row`, or as many as it still has.

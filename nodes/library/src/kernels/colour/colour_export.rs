@@ -46,7 +46,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
             rgb = transform(&LINEAR_TO_ACESCG, rgb);
         }
         if params.premultiplied != 0 {
-            rgb = rgb.map(|v| v * a);
+            rgb = [rgb[0] * a, rgb[1] * a, rgb[2] * a];
         }
         [rgb[0], rgb[1], rgb[2], a]
     }));

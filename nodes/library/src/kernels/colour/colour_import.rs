@@ -7,7 +7,7 @@
 use crate::kernels::colour_space::{ACESCG_TO_LINEAR, srgb_encode, transform};
 use crate::kernels::support::map_pixels4;
 use crate::request::ColourSpace;
-use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::pixels::LARGEST_HALF;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -40,17 +40,18 @@ pub fn import(plan: &mut PlanBuilder, image: ImageId, space: ColourSpace, premul
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, #[inline(always)] |v| {
-        let c = |x: f32| f32x8::splat(simd, x);
-        let [r, g, b, a] = v.map(|v| {
-            let bounded = v.min(c(LARGEST_HALF)).max(c(-LARGEST_HALF));
-            v.is_nan().select(c(0.0), bounded)
-        });
-        let a = a.min(c(1.0)).max(c(0.0));
-        let mut rgb = [r, g, b];
+    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, #[inline(always)] |[r, g, b, a]| {
+        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+        let a = finite(a).min(one).max(zero);
+        let mut rgb = [finite(r), finite(g), finite(b)];
         if params.premultiplied != 0 {
             let covered = a.simd_gt(1e-6);
-            rgb = rgb.map(|v| covered.select(v / a, c(0.0)));
+            // Where all is opaque the division by 1 can be left out.
+            if !a.simd_ge(one).all_true() {
+                for v in &mut rgb {
+                    *v = covered.select(*v / a, zero);
+                }
+            }
         }
         if params.space == ColourSpace::AcesCg as u32 {
             rgb = transform(&ACESCG_TO_LINEAR, rgb);
@@ -60,4 +61,12 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         }
         [rgb[0], rgb[1], rgb[2], a]
     }));
+}
+
+/// Values cut to the largest half, 0 for what is not a number.
+// A function, since closures given to arrays stay calls, and every operation in them one.
+#[inline(always)]
+fn finite<S: Simd>(v: f32x8<S>) -> f32x8<S> {
+    let largest = f32x8::splat(v.simd, LARGEST_HALF);
+    v.is_nan().select(f32x8::splat(v.simd, 0.0), v.min(largest).max(-largest))
 }

@@ -2,12 +2,13 @@
 //! isotropic extended difference of Gaussians (4.7-4.10).
 //!
 //! Cost: one multiply-add per tap and value (four values a pixel), radius + 1 taps; two divisions
-//! and the threshold. Four interleaved pixels to a vector.
+//! and the threshold. Sixteen interleaved pixels at a time.
 
-use crate::kernels::blocks::{for_blocks, write1};
+use crate::kernels::blocks::{BLOCK, write1};
 use crate::kernels::edge_threshold::{LEAST_COVERAGE, Xdog, dog_response, edge_threshold, edge_uncovered};
 use crate::kernels::lines::dog_rows;
 use crate::kernels::support::GaussianTable;
+use crate::kernels::symmetric::{RUN, flat, sum};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, f32x16, prelude::*};
 use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -77,62 +78,49 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 
 #[inline(always)]
 fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
-    let view = &pass.inputs[0];
+    let (window, view) = (band.window, &pass.inputs[0]);
+    let (data, len) = (view.data(), 4 * window.width() as usize);
+    let (narrow, wide) = (flat(&params.narrow), flat(&params.wide));
     let r = params.radius;
-    for_blocks::<1>(band, #[inline(always)] |block, target| {
-        let mut sums = [0.0; 32];
-        let values = 4 * block.len;
-        let row = |dy: i32| {
-            let at = view.offset(block.x, block.y + dy);
-            &view.data()[at..at + values]
-        };
-        for (half, sum) in sums.chunks_exact_mut(16).enumerate() {
-            let v = 16 * half;
-            if v + 16 <= values {
-                let tap = smooth(
-                    simd,
-                    params,
-                    #[inline(always)]
-                    |dy| f32x16::from_slice(simd, &row(dy)[v..v + 16]),
-                );
-                tap.store_slice(sum);
-            } else if v < values {
-                let tap = smooth(
-                    simd,
-                    params,
-                    #[inline(always)]
-                    |dy| {
-                        let mut part = [0.0; 16];
-                        part[..values - v].copy_from_slice(&row(dy)[v..]);
-                        f32x16::simd_from(simd, part)
-                    },
-                );
-                tap.store_slice(sum);
+    let mut rows: Vec<&[f32]> = Vec::with_capacity((window.height() as i32 + 2 * r) as usize);
+    for y in window.y0 - r..window.y1 + r {
+        let at = view.offset(window.x0, y);
+        rows.push(&data[at..at + len]);
+    }
+    for (y, rows) in (window.y0..window.y1).zip(rows.windows(2 * r as usize + 1)) {
+        for (n, target) in band.row_mut(0, y).chunks_mut(RUN / 4).enumerate() {
+            // Lanes past the end of a row go through the same arithmetic and are not kept.
+            let mut sums = [0.0; RUN];
+            sum(
+                simd,
+                r as usize,
+                #[inline(always)]
+                |i| {
+                    let (n, w) = (narrow[i], wide[i]);
+                    f32x16::simd_from(simd, [n, n, w, w, n, n, w, w, n, n, w, w, n, n, w, w])
+                },
+                #[inline(always)]
+                |i| &rows[i][RUN * n..],
+                &mut sums[..4 * target.len()],
+            );
+            let mut at = 0;
+            while at < target.len() {
+                let len = BLOCK.min(target.len() - at);
+                let pixels = load4(simd, &sums[4 * at..4 * (at + BLOCK)]);
+                write1(edge(simd, params, pixels), &mut target[at..at + len]);
+                at += BLOCK;
             }
         }
-        let [nl, na, wl, wa]: [f32x8<S>; 4] = load4(simd, &sums);
-        let one = f32x8::splat(simd, 1.0);
-        let covered = na.min(wa).simd_gt(LEAST_COVERAGE);
-        let (na, wa) = (covered.select(na, one), covered.select(wa, one));
-        let u = dog_response(nl / na, wl / wa, params.base, params.edge);
-        let line = edge_threshold(u, params.threshold, params.epsilon, params.phi);
-        write1(covered.select(line, f32x8::splat(simd, edge_uncovered(params.threshold))), target);
-    });
-    debug_assert!(r >= 0);
-}
-
-/// Four pixels (narrow L, narrow alpha, wide L, wide alpha) smoothed along y.
-#[inline(always)]
-fn smooth<S: Simd>(simd: S, params: &Params, tap: impl Fn(i32) -> f32x16<S>) -> f32x16<S> {
-    let mut sum = tap(0) * weight(simd, params, 0);
-    for i in 1..=params.radius {
-        sum = (tap(-i) + tap(i)).mul_add(weight(simd, params, i as usize), sum);
     }
-    sum
 }
 
+/// The edge image of (narrow L, narrow alpha, wide L, wide alpha).
 #[inline(always)]
-fn weight<S: Simd>(simd: S, params: &Params, i: usize) -> f32x16<S> {
-    let (n, w) = (params.narrow[i / 4][i % 4], params.wide[i / 4][i % 4]);
-    f32x16::simd_from(simd, [n, n, w, w, n, n, w, w, n, n, w, w, n, n, w, w])
+fn edge<S: Simd>(simd: S, params: &Params, [nl, na, wl, wa]: [f32x8<S>; 4]) -> f32x8<S> {
+    let one = f32x8::splat(simd, 1.0);
+    let covered = na.min(wa).simd_gt(LEAST_COVERAGE);
+    let (na, wa) = (covered.select(na, one), covered.select(wa, one));
+    let u = dog_response(nl / na, wl / wa, params.base, params.edge);
+    let line = edge_threshold(u, params.threshold, params.epsilon, params.phi);
+    covered.select(line, f32x8::splat(simd, edge_uncovered(params.threshold)))
 }

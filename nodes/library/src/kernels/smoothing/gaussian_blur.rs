@@ -1,10 +1,11 @@
 //! One axis of a separable Gaussian on four channels (2.21); the smoothing of colours and tensors.
 //!
 //! Cost: radius + 1 multiply-adds per value. Rows and columns run the same arithmetic on
-//! interleaved values, four pixels to a vector.
+//! interleaved values, sixteen pixels at a time.
 
-use crate::kernels::support::{GaussianTable, gaussian_radius, gaussian_table};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x16, prelude::*};
+use crate::kernels::support::{GAUSSIAN_TAPS, GaussianTable, gaussian_radius, gaussian_table};
+use crate::kernels::symmetric::{RUN, flat, sum};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, f32x16, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::params! {
@@ -69,32 +70,18 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 #[inline(always)]
 fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let (mut scratch, mut covered) = (Vec::new(), Vec::new());
+    let weights = flat(&params.weights);
     let window = band.window;
     let r = params.radius;
     for y in window.y0..window.y1 {
         let mut source = pass.inputs[0].padded_row(y, window.x0 - r, window.x1 + r, &mut scratch);
-        if params.coverage & 1 != 0 {
-            premultiplied(source, &mut covered);
+        if params.coverage & 1 != 0 && premultiplied(source, &mut covered) {
             source = &covered;
         }
-        let target = band.row_mut(0, y);
-        // Tap i of value v lies 4 i values to either side.
-        let (centre, len) = (4 * r as usize, target.len());
-        let mut v = 0;
-        while v + 16 <= len {
-            weighted(simd, params, #[inline(always)] |i| block(simd, source, (centre as i32 + 4 * i) as usize + v))
-                .store_slice(&mut target[v..v + 16]);
-            v += 16;
+        for (n, target) in band.row_mut(0, y).chunks_mut(RUN).enumerate() {
+            // Tap i of value v lies 4 i values to either side.
+            smoothed(simd, params, &weights, #[inline(always)] |i| &source[4 * i + RUN * n..], target);
         }
-        // The same lanes, the same order: a shorter block is padded with zeros.
-        if v < len {
-            let rest = len - v;
-            let short = weighted(simd, params, #[inline(always)] |i| {
-                part(simd, &source[(centre as i32 + 4 * i) as usize + v..][..rest])
-            });
-            target[v..].copy_from_slice(&short.to_array()[..rest]);
-        }
-        finish(params, target);
     }
 }
 
@@ -103,73 +90,57 @@ fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
     let window = band.window;
     let view = &pass.inputs[0];
     let (data, len) = (view.data(), 4 * window.width() as usize);
-    let mut covered: Vec<Vec<f32>> = Vec::new();
-    if params.coverage & 1 != 0 {
-        covered.resize_with((window.height() as i32 + 2 * params.radius) as usize, Vec::new);
-        for (i, row) in covered.iter_mut().enumerate() {
-            let at = view.offset(window.x0, window.y0 - params.radius + i as i32);
-            premultiplied(&data[at..at + len], row);
+    let weights = flat(&params.weights);
+    let r = params.radius;
+    let count = window.height() as usize + 2 * r as usize;
+    let mut covered = vec![Vec::new(); if params.coverage & 1 != 0 { count } else { 0 }];
+    let mut rows: Vec<&[f32]> = Vec::with_capacity(count);
+    for y in window.y0 - r..window.y1 + r {
+        let at = view.offset(window.x0, y);
+        rows.push(&data[at..at + len]);
+    }
+    for (row, covered) in rows.iter_mut().zip(&mut covered) {
+        if premultiplied(row, covered) {
+            *row = covered;
         }
     }
-    for y in window.y0..window.y1 {
-        let row = |i: i32| {
-            if params.coverage & 1 != 0 {
-                return covered[(y - window.y0 + params.radius + i) as usize].as_slice();
-            }
-            let at = view.offset(window.x0, y + i);
-            &data[at..at + len]
-        };
-        let target = band.row_mut(0, y);
-        let mut v = 0;
-        while v + 16 <= len {
-            weighted(simd, params, #[inline(always)] |i| block(simd, row(i), v))
-                .store_slice(&mut target[v..v + 16]);
-            v += 16;
+    for (y, rows) in (window.y0..window.y1).zip(rows.windows(2 * r as usize + 1)) {
+        for (n, target) in band.row_mut(0, y).chunks_mut(RUN).enumerate() {
+            smoothed(simd, params, &weights, #[inline(always)] |i| &rows[i][RUN * n..], target);
         }
-        if v < len {
-            let rest = len - v;
-            let short = weighted(simd, params, #[inline(always)] |i| part(simd, &row(i)[v..]));
-            target[v..].copy_from_slice(&short.to_array()[..rest]);
-        }
-        finish(params, target);
     }
 }
 
+/// Up to a run of values.
 #[inline(always)]
-fn block<S: Simd>(simd: S, values: &[f32], at: usize) -> f32x16<S> {
-    f32x16::from_slice(simd, &values[at..at + 16])
-}
-
-/// A block that is shorter, padded with zeros.
-#[inline(always)]
-fn part<S: Simd>(simd: S, values: &[f32]) -> f32x16<S> {
-    let mut block = [0.0; 16];
-    block[..values.len()].copy_from_slice(values);
-    f32x16::simd_from(simd, block)
-}
-
-#[inline(always)]
-fn weighted<S: Simd>(simd: S, params: &Params, tap: impl Fn(i32) -> f32x16<S>) -> f32x16<S> {
-    let mut sum = tap(0) * f32x16::splat(simd, params.weights[0][0]);
-    for i in 1..=params.radius {
-        let weight = params.weights[i as usize / 4][i as usize % 4];
-        sum = (tap(-i) + tap(i)).mul_add(f32x16::splat(simd, weight), sum);
+fn smoothed<'s, S: Simd>(
+    simd: S,
+    params: &Params,
+    weights: &[f32; GAUSSIAN_TAPS],
+    tap: impl Fn(usize) -> &'s [f32],
+    target: &mut [f32],
+) {
+    sum(simd, params.radius as usize, #[inline(always)] |i| f32x16::splat(simd, weights[i]), tap, target);
+    if params.coverage & 2 != 0 {
+        for pixel in target.chunks_exact_mut(4) {
+            let alpha = pixel[3];
+            let seen = f32x4::from_slice(simd, pixel) / alpha.max(LEAST_COVERAGE);
+            let seen = if alpha > LEAST_COVERAGE { seen } else { f32x4::splat(simd, 0.0) };
+            seen.store_slice(pixel);
+            pixel[3] = alpha;
+        }
     }
-    sum
 }
 
-fn premultiplied(source: &[f32], target: &mut Vec<f32>) {
+/// Coverage below which a pixel counts as empty.
+const LEAST_COVERAGE: f32 = 1e-6;
+
+/// Multiplies colours by their alpha, unless all of them are 1: says whether there was need to.
+fn premultiplied(source: &[f32], target: &mut Vec<f32>) -> bool {
+    if source.chunks_exact(4).all(|p| p[3] == 1.0) {
+        return false;
+    }
     target.clear();
     target.extend(source.chunks_exact(4).flat_map(|p| [p[0] * p[3], p[1] * p[3], p[2] * p[3], p[3]]));
-}
-
-fn finish(params: &Params, row: &mut [f32]) {
-    if params.coverage & 2 != 0 {
-        for p in row.chunks_exact_mut(4) {
-            let alpha = p[3];
-            for c in &mut p[..3] {
-                *c = if alpha > 1e-6 { *c / alpha } else { 0.0 };
-            }
-        }
-    }
+    true
 }
