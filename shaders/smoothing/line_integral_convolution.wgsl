@@ -20,9 +20,12 @@ struct Params {
 @group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var tensors: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+// (E - G, F), see orientation_field.
+@group(0) @binding(4) var field: texture_2d<f32>;
+@group(0) @binding(5) var target_image: texture_storage_2d<rgba32float, write>;
 
 const INPUT_TENSORS = 1u;
+const INPUT_FIELD = 2u;
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -49,7 +52,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         var line = stream_begin(origin, side * tangent);
         var u = 0.0;
         while u + params.step <= limit {
-            stream_step(&line, tensors, INPUT_TENSORS, params.step, params.midpoint != 0u);
+            stream_step(&line, field, INPUT_FIELD, params.step, params.midpoint != 0u);
             var du = params.step;
             if params.adapt == 2u {
                 du = max(du, acos(min(line.turn, 1.0)) * radius / 3.14159265);

@@ -10,9 +10,10 @@
 //! and one (Euler) or two tensor samples with their tangents.
 
 use crate::kernels::coverage::Covered;
+use crate::kernels::lines::orientation_field;
 use crate::kernels::smoothing::oriented_bilateral::Sampling;
 use crate::kernels::stream_line::{Stream, StreamField, centres};
-use crate::kernels::support::{get_pixels4, put_pixels4};
+use crate::kernels::support::{get_pixels2, get_pixels4, put_pixels4};
 use crate::kernels::tensor_algebra::tangent;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::math::{Elementary, channels, load_pixel, sample_linear4};
@@ -81,7 +82,8 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: &
     };
     // No sample lies further away than the line is long, and a bilinear one reads a pixel more.
     let support = Support::Pixels(reach(&params) as u32);
-    plan.pass(&KERNEL, &[color, tensors], &params, Class::Colour, support)
+    let field = orientation_field::of_tensor(plan, tensors);
+    plan.pass(&KERNEL, &[color, field], &params, Class::Colour, support)
 }
 
 fn reach(params: &Params) -> i32 {
@@ -133,7 +135,7 @@ impl Filter<'_> {
     fn block<S: Simd>(&self, simd: S, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
         let params = &self.params;
         let zero = f32x8::splat(simd, 0.0);
-        let [e, f, g, _] = get_pixels4(simd, &self.field.tensors, x, y, last);
+        let [difference, f] = get_pixels2(simd, &self.field.tensors, x, y, last);
         let colour = get_pixels4(simd, &self.origins, x, y, last);
         let range = -0.721_347_52 / (params.sigma_r * params.sigma_r).max(1e-6);
         let domain = f32x8::splat(simd, -0.721_347_52 / (params.sigma_d * params.sigma_d).max(1e-6));
@@ -144,13 +146,14 @@ impl Filter<'_> {
         let alpha = colour[3];
         let first = [colour[0] * alpha, colour[1] * alpha, colour[2] * alpha, alpha];
         let mut sum = if at_crossings { [zero; 4] } else { first };
-        let mut lines = Stream::both_sides(px, py, tangent(e, f, g));
+        let mut lines = Stream::both_sides(px, py, tangent(difference, f, zero));
         let mut active = [mask32x8::splat(simd, true); 2];
         let (mut before, mut before_u) = ([first; 2], [zero; 2]);
         let mut u = 1.0;
         while u <= params.radius && (active[0] | active[1]).any_true() {
             self.field.advance_both(simd, &mut lines, active);
-            for (side, line) in lines.iter().enumerate() {
+            for side in 0..2 {
+                let line = &lines[side];
                 let mut sampled = active[side];
                 let mut back = zero;
                 if at_crossings {

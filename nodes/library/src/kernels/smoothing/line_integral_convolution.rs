@@ -6,10 +6,11 @@
 
 use crate::kernels::coverage::Covered;
 use crate::kernels::stream_line::{Stream, StreamField, acos, centres};
-use crate::kernels::support::put_pixels4;
+use crate::kernels::lines::orientation_field;
+use crate::kernels::support::{get_pixels4, put_pixels4};
 use crate::kernels::tensor_algebra::{anisotropy, tangent};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::math::{Elementary, sample_linear4};
+use isophote_engine::math::{Elementary, sample_inner4, sample_linear4};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::params! {
@@ -86,7 +87,8 @@ pub fn color(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: 
         midpoint: u32::from(options.midpoint),
         adapt: options.adapt as u32,
     };
-    plan.pass(&KERNEL, &[color, tensors], &params, Class::Colour, support(&params))
+    let field = orientation_field::of_tensor(plan, tensors);
+    plan.pass(&KERNEL, &[color, tensors, field], &params, Class::Colour, support(&params))
 }
 
 /// Shorter steps cost much and gain nothing over rounding.
@@ -105,68 +107,92 @@ fn support(params: &Params) -> Support {
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let covered = Covered::new(&pass.inputs[0], band, radius(params.sigma) as i32 + 1);
-    let source = covered.view(&pass.inputs[0]);
-    let field = StreamField { tensors: pass.inputs[1], step: params.step, midpoint: params.midpoint != 0 };
-    dispatch!(pass.level, simd => rows(simd, &params, &source, &field, band));
+    let lines = Lines {
+        params,
+        source: covered.view(&pass.inputs[0]),
+        tensors: pass.inputs[1],
+        field: StreamField { tensors: pass.inputs[2], step: params.step, midpoint: params.midpoint != 0 },
+    };
+    dispatch!(pass.level, simd => {
+        let window = band.window;
+        for y in window.y0..window.y1 {
+            for x in (window.x0..window.x1).step_by(8) {
+                let values = lines.convolved(simd, x, y, window.x1 - 1);
+                put_pixels4(values, &mut band.row_mut(0, y)[4 * (x - window.x0) as usize..]);
+            }
+        }
+    });
 }
 
-#[inline(always)]
-fn rows<S: Simd>(simd: S, params: &Params, source: &View<'_>, field: &StreamField<'_>, band: &mut Band<'_>) {
-    let window = band.window;
-    for y in window.y0..window.y1 {
-        for x in (window.x0..window.x1).step_by(8) {
-            let at = centres(simd, x, y, window.x1 - 1);
-            let values = convolved(simd, params, source, field, at);
-            put_pixels4(values, &mut band.row_mut(0, y)[4 * (x - window.x0) as usize..]);
-        }
-    }
+/// What all blocks of a band share.
+struct Lines<'a> {
+    params: Params,
+    /// Colours times coverage.
+    source: View<'a>,
+    tensors: View<'a>,
+    field: StreamField<'a>,
 }
 
-#[inline(always)]
-fn convolved<S: Simd>(
-    simd: S,
-    params: &Params,
-    source: &View<'_>,
-    field: &StreamField<'_>,
-    [x, y]: [f32x8<S>; 2],
-) -> [f32x8<S>; 4] {
-    let [e, f, g, _] = sample_linear4(simd, &field.tensors, x, y);
-    let mut sigma = f32x8::splat(simd, params.sigma);
-    if params.adapt == Adapt::Anisotropy as u32 {
-        let a = anisotropy(e, f, g) + 1.0;
-        sigma *= a * a * 0.25;
-    }
-    let radius = (sigma * 2.0 + 1e-3).floor();
-    let limit = radius + 1e-3;
-    let falloff = f32x8::splat(simd, -0.721_347_52) / (sigma * sigma).max(f32x8::splat(simd, 1e-6));
-    let step = f32x8::splat(simd, params.step);
-
-    let zero = f32x8::splat(simd, 0.0);
-    let mut sum = sample_linear4(simd, source, x, y);
-    let mut norm = f32x8::splat(simd, 1.0);
-    let mut lines = Stream::both_sides(x, y, tangent(e, f, g));
-    let mut u = [zero; 2];
-    let mut active = [step.simd_le(limit); 2];
-    while (active[0] | active[1]).any_true() {
-        field.advance_both(simd, &mut lines, active);
-        for (side, line) in lines.iter().enumerate() {
-            let mut du = step;
-            if params.adapt == Adapt::Angle as u32 {
-                du = du.max(acos(line.turn) * radius / std::f32::consts::PI);
-            }
-            u[side] += du;
-            active[side] &= u[side].simd_le(limit) & field.inside(simd, line);
-            active[side] &= line.turn.simd_ge(f32x8::splat(simd, params.least_turn));
-            let weight = active[side].select((falloff * u[side] * u[side]).exp2(), zero);
-            let tap = sample_linear4(simd, source, line.x, line.y);
-            for (sum, tap) in sum.iter_mut().zip(tap) {
-                *sum = weight.mul_add(tap, *sum);
-            }
-            norm += weight;
-            active[side] &= (u[side] + step).simd_le(limit);
+impl Lines<'_> {
+    #[inline(always)]
+    fn convolved<S: Simd>(&self, simd: S, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
+        let (params, field) = (&self.params, &self.field);
+        let [e, f, g, _] = get_pixels4(simd, &self.tensors, x, y, last);
+        let mut sigma = f32x8::splat(simd, params.sigma);
+        if params.adapt == Adapt::Anisotropy as u32 {
+            let a = anisotropy(e, f, g) + 1.0;
+            sigma *= a * a * 0.25;
         }
+        let radius = (sigma * 2.0 + 1e-3).floor();
+        let limit = radius + 1e-3;
+        let falloff = f32x8::splat(simd, -0.721_347_52) / (sigma * sigma).max(f32x8::splat(simd, 1e-6));
+        let step = f32x8::splat(simd, params.step);
+
+        let zero = f32x8::splat(simd, 0.0);
+        let mut sum = get_pixels4(simd, &self.source, x, y, last);
+        let mut norm = f32x8::splat(simd, 1.0);
+        let [px, py] = centres(simd, x, y, last);
+        let mut lines = Stream::both_sides(px, py, tangent(e, f, g));
+        let mut u = [zero; 2];
+        let mut active = [step.simd_le(limit); 2];
+        // Lines that have ended go on where there is no edge to stop them; they have no weight.
+        let inner = field.is_inner(x, y, 8, self::radius(params.sigma) as i32);
+        while (active[0] | active[1]).any_true() {
+            if inner {
+                field.advance_inner(simd, &mut lines);
+            } else {
+                field.advance_both(simd, &mut lines, active);
+            }
+            for side in 0..2 {
+                let line = &lines[side];
+                let mut du = step;
+                if params.adapt == Adapt::Angle as u32 {
+                    du = du.max(acos(line.turn) * radius / std::f32::consts::PI);
+                }
+                u[side] += du;
+                active[side] &= u[side].simd_le(limit);
+                if !inner {
+                    active[side] &= field.inside(simd, line);
+                }
+                active[side] &= line.turn.simd_ge(f32x8::splat(simd, params.least_turn));
+                let weight = active[side].select((falloff * u[side] * u[side]).exp2(), zero);
+                let [r, g, b, a] = if inner {
+                    sample_inner4(simd, &self.source, line.x, line.y)
+                } else {
+                    sample_linear4(simd, &self.source, line.x, line.y)
+                };
+                sum = [
+                    weight.mul_add(r, sum[0]),
+                    weight.mul_add(g, sum[1]),
+                    weight.mul_add(b, sum[2]),
+                    weight.mul_add(a, sum[3]),
+                ];
+                norm += weight;
+                active[side] &= (u[side] + step).simd_le(limit);
+            }
+        }
+        let [r, g, b, alpha] = sum;
+        let seen = alpha.simd_gt(f32x8::splat(simd, 1e-6));
+        [seen.select(r / alpha, zero), seen.select(g / alpha, zero), seen.select(b / alpha, zero), alpha / norm]
     }
-    let [r, g, b, alpha] = sum;
-    let seen = alpha.simd_gt(f32x8::splat(simd, 1e-6));
-    [seen.select(r / alpha, zero), seen.select(g / alpha, zero), seen.select(b / alpha, zero), alpha / norm]
 }

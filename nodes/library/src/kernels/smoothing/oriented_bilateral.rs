@@ -11,7 +11,7 @@ use crate::kernels::coverage::Covered;
 use crate::kernels::support::{get_pixels4, put_pixels4};
 use crate::kernels::tensor_algebra::{anisotropy, tangent};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, f32x8, i32x8, mask32x8, prelude::*};
-use isophote_engine::math::{Elementary, channels, load_pixel};
+use isophote_engine::math::{Elementary, channels, load_pixel, load_pixels, spread, transposed};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::params! {
@@ -119,15 +119,11 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         tensors: pass.inputs[1],
         opaque: covered.as_ref().is_some_and(Covered::is_opaque),
     };
-    dispatch!(pass.level, simd => {
-        let window = band.window;
-        for y in window.y0..window.y1 {
-            for x in (window.x0..window.x1).step_by(8) {
-                let values = block.filtered(simd, x, y, window.x1 - 1);
-                put_pixels4(values, &mut band.row_mut(0, y)[4 * (x - window.x0) as usize..]);
-            }
-        }
-    });
+    if block.opaque {
+        dispatch!(pass.level, simd => block.rows::<_, true>(simd, band));
+    } else {
+        dispatch!(pass.level, simd => block.rows::<_, false>(simd, band));
+    }
 }
 
 /// What all blocks of a band share.
@@ -156,9 +152,32 @@ struct Lines<S: Simd> {
     minor: i32x8<S>,
 }
 
-impl Blocks<'_> {
+impl<S: Simd> Lines<S> {
+    /// Offsets of the first of the two pixels around the taps `k` pixels along the axis, and the second
+    /// one's share.
     #[inline(always)]
-    fn filtered<S: Simd>(&self, simd: S, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
+    fn first(&self, k: f32x8<S>) -> (i32x8<S>, f32x8<S>) {
+        let o = self.slope * k;
+        let i = o.floor();
+        (self.start + self.major * k.to_int::<i32x8<S>>() + self.minor * i.to_int::<i32x8<S>>(), o - i)
+    }
+}
+
+impl Blocks<'_> {
+    /// All blocks; the compiler is told when all coverage is 1.
+    #[inline(always)]
+    fn rows<S: Simd, const OPAQUE: bool>(&self, simd: S, band: &mut Band<'_>) {
+        let window = band.window;
+        for y in window.y0..window.y1 {
+            for x in (window.x0..window.x1).step_by(8) {
+                let values = self.filtered::<S, OPAQUE>(simd, x, y, window.x1 - 1);
+                put_pixels4(values, &mut band.row_mut(0, y)[4 * (x - window.x0) as usize..]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn filtered<S: Simd, const OPAQUE: bool>(&self, simd: S, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
         let params = &self.params;
         let [e, f, g, _] = get_pixels4(simd, &self.tensors, x, y, last);
         let [tx, ty] = tangent(e, f, g);
@@ -194,43 +213,73 @@ impl Blocks<'_> {
             major: along_x.select(across, down),
             minor: along_x.select(down, across),
         };
-        // Away from the picture's edges no position needs to be clamped.
+        // Away from the picture's edges no position needs to be clamped; where all lines take the same axis,
+        // the second pixel of a tap is as far from the first in all lanes.
         let reach = reach(params);
         let [w, h] = self.source.full();
         let inner = x >= reach && y >= reach && x + 7 + reach < w && y + reach < h;
+        let gap = if !inner || params.manual != 0 {
+            None
+        } else if along_x.all_true() {
+            Some(stride as u32 as usize)
+        } else if along_x.any_true() {
+            None
+        } else {
+            Some(4)
+        };
         let mut k = 1.0;
         loop {
             let active = steps.simd_ge(f32x8::splat(simd, k));
             if !active.any_true() {
                 break;
             }
-            let domain = domain * (k * k);
+            // Lines that have ended count for nothing: far below what a float can add to the sum.
+            let domain = active.select(domain * (k * k), f32x8::splat(simd, -1e3));
             // Lines that have ended stay within the support.
             let reached = steps.min(f32x8::splat(simd, k));
-            for side in [-reached, reached] {
-                let (at, f) = if inner { self.inner(lines, side) } else { self.clamped(lines, side) };
-                if params.manual != 0 {
+            if params.manual != 0 {
+                for side in [-reached, reached] {
+                    let (at, f) = if inner { self.inner(lines, side) } else { self.clamped(lines, side) };
                     let (a, b) = (self.pixels(simd, at[0]), self.pixels(simd, at[1]));
                     for (tap, share) in [(a, f32x8::splat(simd, 1.0) - f), (b, f)] {
                         let weight = (distance2(&tap, &origin) * range + domain).exp2();
-                        let weight = active.select(weight * share * tap[3], f32x8::splat(simd, 0.0));
-                        for (sum, tap) in sum.iter_mut().zip(tap).take(3) {
-                            *sum = weight.mul_add(tap, *sum);
-                        }
+                        let weight = weight * share * tap[3];
+                        sum[0] = weight.mul_add(tap[0], sum[0]);
+                        sum[1] = weight.mul_add(tap[1], sum[1]);
+                        sum[2] = weight.mul_add(tap[2], sum[2]);
                         sum[3] += weight;
                     }
-                } else {
-                    let [r, g, b, a] = self.between(simd, at, f);
-                    let mut colour = [r, g, b, a];
-                    if !self.opaque {
-                        let seen = f32x8::splat(simd, 1.0) / a.max(f32x8::splat(simd, 1e-6));
-                        colour = [r * seen, g * seen, b * seen, a];
+                }
+            } else {
+                // Both sides go stage by stage: their exponentials are long chains that can wait together.
+                let mut taps = [origin; 2];
+                let sides = [-reached, reached];
+                for i in 0..2 {
+                    let side = sides[i];
+                    taps[i] = if let Some(gap) = gap {
+                        let (at, f) = lines.first(side);
+                        self.apart(simd, at.to_array(), gap, f)
+                    } else {
+                        let (at, f) = if inner { self.inner(lines, side) } else { self.clamped(lines, side) };
+                        self.between(simd, at, f)
+                    };
+                }
+                let mut exponents = [domain; 2];
+                for i in 0..2 {
+                    let mut colour = taps[i];
+                    if !OPAQUE {
+                        let seen = f32x8::splat(simd, 1.0) / colour[3].max(f32x8::splat(simd, 1e-6));
+                        colour = [colour[0] * seen, colour[1] * seen, colour[2] * seen, colour[3]];
                     }
-                    let weight = (distance2(&colour, &origin) * range + domain).exp2();
-                    let weight = active.select(weight, f32x8::splat(simd, 0.0));
-                    for (sum, tap) in sum.iter_mut().zip([r, g, b, a]) {
-                        *sum = weight.mul_add(tap, *sum);
-                    }
+                    exponents[i] += distance2(&colour, &origin) * range;
+                }
+                let weights = [exponents[0].exp2(), exponents[1].exp2()];
+                for i in 0..2 {
+                    let (weight, [r, g, b, a]) = (weights[i], taps[i]);
+                    sum[0] = weight.mul_add(r, sum[0]);
+                    sum[1] = weight.mul_add(g, sum[1]);
+                    sum[2] = weight.mul_add(b, sum[2]);
+                    sum[3] = if OPAQUE { sum[3] + weight } else { weight.mul_add(a, sum[3]) };
                 }
             }
             k += 1.0;
@@ -247,10 +296,8 @@ impl Blocks<'_> {
     /// Offsets of the two pixels around the taps `k` pixels along the axis, and the second one's share.
     #[inline(always)]
     fn inner<S: Simd>(&self, lines: Lines<S>, k: f32x8<S>) -> ([[i32; 8]; 2], f32x8<S>) {
-        let o = lines.slope * k;
-        let i = o.floor();
-        let at = lines.start + lines.major * k.to_int::<i32x8<S>>() + lines.minor * i.to_int::<i32x8<S>>();
-        ([at.to_array(), (at + lines.minor).to_array()], o - i)
+        let (at, f) = lines.first(k);
+        ([at.to_array(), (at + lines.minor).to_array()], f)
     }
 
     /// As [`Blocks::inner`], with positions clamped to the picture.
@@ -281,14 +328,30 @@ impl Blocks<'_> {
     /// Interpolated taps.
     #[inline(always)]
     fn between<S: Simd>(&self, simd: S, at: [[i32; 8]; 2], f: f32x8<S>) -> [f32x8<S>; 4] {
-        let (data, f) = (self.source.data(), f.to_array());
-        let mut pixels = [f32x4::splat(simd, 0.0); 8];
-        for (lane, pixel) in pixels.iter_mut().enumerate() {
-            let a = load_pixel(simd, data, at[0][lane]);
-            let b = load_pixel(simd, data, at[1][lane]);
-            *pixel = (b - a).mul_add(f32x4::splat(simd, f[lane]), a);
+        let (data, f) = (self.source.data(), spread(f));
+        let mut pixels = [f32x8::splat(simd, 0.0); 4];
+        for (i, pixel) in pixels.iter_mut().enumerate() {
+            let a = load_pixel(simd, data, at[0][i]).combine(load_pixel(simd, data, at[0][i + 4]));
+            let b = load_pixel(simd, data, at[1][i]).combine(load_pixel(simd, data, at[1][i + 4]));
+            *pixel = (b - a).mul_add(f[i], a);
         }
-        channels(pixels)
+        transposed(pixels)
+    }
+
+    /// Interpolated taps whose second pixels lie `gap` values behind the first: one place to look up.
+    #[inline(always)]
+    fn apart<S: Simd>(&self, simd: S, at: [i32; 8], gap: usize, f: f32x8<S>) -> [f32x8<S>; 4] {
+        let (data, f) = (self.source.data(), spread(f));
+        // Two slices of one length share the check of the range.
+        let (first, second) = (&data[..data.len() - gap], &data[gap..]);
+        let mut pixels = [f32x8::splat(simd, 0.0); 4];
+        for i in 0..4 {
+            let (low, high) = (at[i] as u32 as usize, at[i + 4] as u32 as usize);
+            let a = load_pixels(simd, &first[low..low + 4], &first[high..high + 4]);
+            let b = load_pixels(simd, &second[low..low + 4], &second[high..high + 4]);
+            pixels[i] = (b - a).mul_add(f[i], a);
+        }
+        transposed(pixels)
     }
 
     /// The pixels at eight offsets.
@@ -296,8 +359,8 @@ impl Blocks<'_> {
     fn pixels<S: Simd>(&self, simd: S, at: [i32; 8]) -> [f32x8<S>; 4] {
         let data = self.source.data();
         let mut pixels = [f32x4::splat(simd, 0.0); 8];
-        for (pixel, at) in pixels.iter_mut().zip(at) {
-            *pixel = load_pixel(simd, data, at);
+        for lane in 0..8 {
+            pixels[lane] = load_pixel(simd, data, at[lane]);
         }
         channels(pixels)
     }
