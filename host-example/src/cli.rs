@@ -177,7 +177,7 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
     }
 }
 
-/// Options of `bench`.
+/// Options of `bench`. Times are medians of warm runs and leave out reading and writing of pixels.
 #[derive(Args, Debug)]
 pub struct BenchArgs {
     /// Everything, as JSON.
@@ -189,9 +189,20 @@ pub struct BenchArgs {
     /// Size of the picture in pixels; without it 1280x720 and 1920x1080.
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<(u32, u32)>,
-    /// Only this node. May be repeated.
-    #[arg(long, value_name = "ID")]
+    /// Only this node, with other values than the defaults where they follow, such as
+    /// oriented_bilateral,iterations=1. May be repeated.
+    #[arg(long, value_name = "ID[,PARAM=VALUE]...")]
     pub node: Vec<String>,
+    /// Also writes what is measured to this file, for --compare.
+    #[arg(long, value_name = "FILE")]
+    pub save: Option<PathBuf>,
+    /// Sets every time against that of a run saved before: x0.50 is twice as fast. Load of the machine
+    /// changes times as much as code does, so that both runs should find it idle.
+    #[arg(long, value_name = "FILE")]
+    pub compare: Option<PathBuf>,
+    /// Prints a table in Markdown, beside what other programs take for the like where that was measured.
+    #[arg(long, conflicts_with = "json")]
+    pub markdown: bool,
     /// Runs whose median counts, after one that does not.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub runs: u32,

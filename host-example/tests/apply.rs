@@ -273,3 +273,22 @@ fn the_benchmark_reports_every_pass() {
         assert!(pass["share_of_peak_copy"].as_f64().is_some_and(|v| v > 0.0), "{pass}");
     }
 }
+
+#[test]
+fn the_benchmark_compares_itself_with_a_saved_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let saved = folder.path().join("before.json");
+    let bench = |node: &str, option: &str| {
+        let mut command = isophote();
+        command.args(["bench", "--backend", "cpu", "--size", "64x48", "--runs", "1", "--node", node, option]);
+        command.arg(&saved);
+        command
+    };
+    succeeds(&mut bench("gaussian,sigma=3", "--save"));
+    let (text, _) = succeeds(&mut bench("gaussian,sigma=3", "--compare"));
+    assert!(text.contains("gaussian,sigma=3 (cpu, 64x48)"), "{text}");
+    assert!(text.matches(" of before").count() > 3 && text.contains("geometric mean of 1"), "{text}");
+    let (text, _) = succeeds(bench("gaussian", "--compare").arg("--markdown"));
+    assert!(text.contains("| `gaussian` | cpu | 64x48 |"), "{text}");
+    assert!(text.contains("Nothing of this was measured before"), "{text}");
+}

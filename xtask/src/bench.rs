@@ -6,7 +6,8 @@ use crate::tools::{cargo, host, run as run_command};
 /// Options of `cargo xtask bench`.
 #[derive(clap::Args)]
 pub struct Options {
-    /// Handed on to `isophote bench`, such as --backend cpu --size 1920x1080 --node cartoon --json
+    /// Handed on to `isophote bench`, such as --backend cpu --size 1920x1080 --node cartoon --compare before.json;
+    /// `cargo xtask bench -- --help` shows all of them
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
     arguments: Vec<String>,
 }

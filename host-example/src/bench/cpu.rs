@@ -1,7 +1,7 @@
 //! A node on the CPU, through the library's `process`.
 
-use super::median;
 use super::report::{Entry, PassEntry};
+use super::{Subject, median};
 use crate::error::Result;
 use crate::loader::process::PassTime;
 use crate::loader::{Control, Input, Library};
@@ -9,9 +9,10 @@ use crate::pixels::{Pixels, Precision};
 use crate::stylize::style::Style;
 
 /// Measures one node.
-pub fn run(library: &Library, node: &str, picture: &Pixels, runs: u32) -> Result<Entry> {
+pub fn run(library: &Library, subject: &Subject, picture: &Pixels, runs: u32) -> Result<Entry> {
+    let node = &subject.node;
     let size = (picture.width(), picture.height());
-    let mut style = Style::any(library, node, &[])?;
+    let mut style = Style::any(library, node, &subject.settings)?;
     let request = library.request(size).map_err(|e| e.at("--size", "choose another size"))?;
     let mut target = Pixels::zeroed(size.0, size.1, 4, Precision::F32);
     let inputs = [Input { name: "color", pixels: picture }];
@@ -31,7 +32,7 @@ pub fn run(library: &Library, node: &str, picture: &Pixels, runs: u32) -> Result
     let passes = measured.first().map_or(&[][..], |(_, times)| times);
     let total = median(measured.iter().map(|(_, times)| times.iter().map(|t| t.seconds).sum()).collect());
     Ok(Entry {
-        node: node.to_owned(),
+        node: subject.label.clone(),
         backend: "cpu",
         size,
         seconds: total,

@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use isophote_engine::gpu::{Device, Executor, Prepared};
 
-use super::median;
 use super::report::{Entry, PassEntry};
+use super::{Subject, median};
 use crate::error::{Error, Result};
 use crate::loader::Library;
 use crate::pixels::Pixels;
@@ -33,9 +33,16 @@ impl Bench {
 
     /// Measures one node: the whole without timestamps, which cost something, then each pass with them, where
     /// the adapter has any.
-    pub fn run(&mut self, library: &Library, node: &str, picture: &Pixels, runs: u32) -> Result<Entry> {
+    pub fn run(
+        &mut self,
+        library: &Library,
+        subject: &Subject,
+        picture: &Pixels,
+        runs: u32,
+    ) -> Result<Entry> {
+        let node = &subject.node;
         let size = (picture.width(), picture.height());
-        let style = Style::any(library, node, &[])?;
+        let style = Style::any(library, node, &subject.settings)?;
         let request = library.request(size).map_err(|e| e.at("--size", "choose another size"))?;
         let plan = style.graph.plan(&request).map_err(|e| e.at(node, "leave it out with --node"))?;
         let program = plan.program().map_err(|e| e.at(node, "leave it out with --node"))?;
@@ -61,7 +68,7 @@ impl Bench {
         };
         let passes = measured.first().map_or(&[][..], Vec::as_slice);
         Ok(Entry {
-            node: node.to_owned(),
+            node: subject.label.clone(),
             backend: "gpu",
             size,
             seconds: median(totals),

@@ -4,19 +4,25 @@
 //! before. The CPU's are set against what the machine can do at most, measured in the same run; a small picture
 //! that stays in the caches may be copied faster than that.
 
+mod compare;
 mod cpu;
 mod gpu;
+mod peers;
 mod report;
+
+use std::path::Path;
 
 use isophote_engine::fearless_simd::Level;
 use isophote_engine::{cpu::Pool, peak};
 
-use self::report::{Machine, Report};
+use self::compare::Saved;
+use self::report::{Machine, Report, Shown};
 use crate::cli::{BenchArgs, BenchBackend};
 use crate::error::{Error, Result};
 use crate::loader::Library;
 use crate::pixels::{Pixels, Samples};
 use crate::render::gpu::Gpu;
+use crate::stylize::style::Setting;
 
 /// Sizes that are measured when none is given.
 const SIZES: [(u32, u32); 2] = [(1280, 720), (1920, 1080)];
@@ -28,7 +34,8 @@ const SIZES: [(u32, u32); 2] = [(1280, 720), (1920, 1080)];
 /// [`Error::Input`] for nodes that do not exist.
 pub fn run(args: &BenchArgs) -> Result<()> {
     let library = Library::open()?;
-    let nodes = nodes(&library, &args.node)?;
+    let subjects = subjects(&library, &args.node)?;
+    let before = args.compare.as_deref().map(Saved::read).transpose()?;
     let gpu = match args.backend {
         Some(BenchBackend::Cpu) => None,
         Some(BenchBackend::Gpu) => Some(Gpu::open()?),
@@ -43,38 +50,64 @@ pub fn run(args: &BenchArgs) -> Result<()> {
         gpu.as_ref().map(gpu::Bench::adapter),
     );
     drop(pool);
-    let mut report = Report::new(&library, machine, args.runs);
-    if !args.json {
-        report.print_heading();
-    }
+    let shown = match (args.json, args.markdown) {
+        (true, _) => Shown::Json,
+        (_, true) => Shown::Markdown,
+        _ => Shown::Table,
+    };
+    let mut report = Report::new(&library, machine, args.runs, shown, before);
+    report.print_heading();
     let sizes = args.size.map_or(SIZES.to_vec(), |size| vec![size]);
     for size in sizes {
         let picture = picture(size);
-        for node in &nodes {
+        for subject in &subjects {
             if on_cpu {
-                report.add(cpu::run(&library, node, &picture, args.runs)?, !args.json);
+                report.add(cpu::run(&library, subject, &picture, args.runs)?);
             }
             if let Some(gpu) = &mut gpu {
-                report.add(gpu.run(&library, node, &picture, args.runs)?, !args.json);
+                report.add(gpu.run(&library, subject, &picture, args.runs)?);
             }
         }
     }
-    if args.json { report.print_json() } else { Ok(()) }
+    if let Some(path) = &args.save {
+        save(path, &report)?;
+    }
+    report.print_end()
+}
+
+fn save(path: &Path, report: &Report) -> Result<()> {
+    std::fs::write(path, report.json()?).map_err(|e| Error::file(path, e, "choose another file"))
+}
+
+/// What is measured: a node, with other values than the defaults where they are given.
+#[derive(Debug)]
+pub struct Subject {
+    /// As it was written.
+    label: String,
+    /// Id of the node.
+    node: String,
+    settings: Vec<Setting>,
 }
 
 /// The nodes asked for, or all.
-fn nodes(library: &Library, wanted: &[String]) -> Result<Vec<String>> {
-    let mut nodes = Vec::new();
-    for id in wanted {
-        let node =
-            library.find_node(id).map_err(|e| e.at(format!("--node {id}"), "`isophote nodes` lists all"))?;
-        nodes.push(node.id.to_owned());
+fn subjects(library: &Library, wanted: &[String]) -> Result<Vec<Subject>> {
+    let mut subjects = Vec::new();
+    for label in wanted {
+        let fail = |e: String| Error::input(format!("--node {label}"), e, "such as gaussian,sigma=3");
+        let mut parts = label.split(',');
+        let id = parts.next().unwrap_or_default();
+        let node = library
+            .find_node(id)
+            .map_err(|e| e.at(format!("--node {label}"), "`isophote nodes` lists all"))?;
+        let settings = parts.map(str::parse).collect::<std::result::Result<_, String>>().map_err(fail)?;
+        subjects.push(Subject { label: label.clone(), node: node.id.to_owned(), settings });
     }
-    if nodes.is_empty() {
+    if subjects.is_empty() {
         let catalogue = library.catalogue().map_err(|e| e.at("the catalogue", "use another library"))?;
-        nodes.extend(catalogue.nodes.iter().map(|n| n.id.to_owned()));
+        let plain = |id: &str| Subject { label: id.to_owned(), node: id.to_owned(), settings: Vec::new() };
+        subjects.extend(catalogue.nodes.iter().map(|n| plain(n.id)));
     }
-    Ok(nodes)
+    Ok(subjects)
 }
 
 /// A picture that has what pictures have: slow changes, edges in all directions, fine detail.

@@ -1,8 +1,10 @@
-//! Measurements as a table or as JSON.
+//! Measurements as a table, in Markdown or as JSON.
 
 use isophote_engine::peak::Peak;
 use serde_json::{Value, json};
 
+use super::compare::{self, Saved};
+use super::peers;
 use crate::error::{Error, Result};
 use crate::loader::Library;
 
@@ -51,12 +53,26 @@ pub struct PassEntry {
     pub work: Option<(f64, f64)>,
 }
 
+/// How measurements are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shown {
+    /// As text, each as soon as it is there.
+    Table,
+    /// As a table in Markdown, each as soon as it is there.
+    Markdown,
+    /// As JSON, all at the end.
+    Json,
+}
+
 /// All measurements of a run.
 #[derive(Debug)]
 pub struct Report {
     version: &'static str,
     machine: Machine,
     runs: u32,
+    shown: Shown,
+    before: Option<Saved>,
+    ratios: Vec<f64>,
     entries: Vec<Entry>,
 }
 
@@ -82,38 +98,60 @@ impl Entry {
 }
 
 impl Report {
-    /// An empty report of medians of `runs`.
-    pub fn new(library: &Library, machine: Machine, runs: u32) -> Self {
-        Self { version: library.version(), machine, runs, entries: Vec::new() }
+    /// An empty report of medians of `runs`, compared with a run of `before`.
+    pub fn new(library: &Library, machine: Machine, runs: u32, shown: Shown, before: Option<Saved>) -> Self {
+        Self {
+            version: library.version(),
+            machine,
+            runs,
+            shown,
+            before,
+            ratios: Vec::new(),
+            entries: Vec::new(),
+        }
     }
 
-    /// Keeps an entry, and prints it where that is wanted.
-    pub fn add(&mut self, entry: Entry, print: bool) {
-        if print {
-            let peak = self.machine.peak;
-            let rate = entry.megapixels() / entry.seconds;
-            println!(
-                "\n{} ({}, {}x{}){}",
-                entry.node,
-                entry.backend,
-                entry.size.0,
-                entry.size.1,
-                columns(entry.seconds, rate, shares(peak, entry.seconds, entry.work()))
-            );
-            for pass in &entry.passes {
-                let rate = pass.pixels as f64 / 1e6 / pass.seconds;
-                println!(
-                    "  {:38}{}",
-                    pass.kernel,
-                    columns(pass.seconds, rate, shares(peak, pass.seconds, pass.work))
-                );
-            }
+    /// Keeps an entry, and prints it where it is not to be JSON.
+    pub fn add(&mut self, entry: Entry) {
+        let ratios = self.before.as_ref().and_then(|before| before.ratios(&entry));
+        let (whole, passes) = ratios.map_or((None, Vec::new()), |(whole, passes)| (Some(whole), passes));
+        self.ratios.extend(whole);
+        match self.shown {
+            Shown::Table => self.print_entry(&entry, whole, &passes),
+            Shown::Markdown => print_row(&entry, whole),
+            Shown::Json => {}
         }
         self.entries.push(entry);
     }
 
+    fn print_entry(&self, entry: &Entry, whole: Option<f64>, passes: &[f64]) {
+        let peak = self.machine.peak;
+        let rate = entry.megapixels() / entry.seconds;
+        println!(
+            "\n{} ({}, {}x{}){}{}",
+            entry.node,
+            entry.backend,
+            entry.size.0,
+            entry.size.1,
+            columns(entry.seconds, rate, shares(peak, entry.seconds, entry.work())),
+            ratio(whole)
+        );
+        for (at, pass) in entry.passes.iter().enumerate() {
+            let rate = pass.pixels as f64 / 1e6 / pass.seconds;
+            println!(
+                "  {:38}{}{}",
+                pass.kernel,
+                columns(pass.seconds, rate, shares(peak, pass.seconds, pass.work)),
+                ratio(passes.get(at).copied())
+            );
+        }
+    }
+
     /// What comes before the table.
     pub fn print_heading(&self) {
+        if self.shown == Shown::Json {
+            return;
+        }
         println!("Isophote {}, medians of {} warm runs", self.version, self.runs);
         if let Some(peak) = self.machine.peak {
             println!(
@@ -126,13 +164,42 @@ impl Report {
         if let Some(adapter) = &self.machine.adapter {
             println!("GPU: {adapter}");
         }
+        if let Some(before) = &self.before
+            && before.threads() != self.machine.threads as u64
+        {
+            eprintln!(
+                "warning: the saved run is of another machine, with {} threads instead of {}",
+                before.threads(),
+                self.machine.threads
+            );
+        }
+        if self.shown == Shown::Markdown {
+            println!("\n| node | on | size | ms | MP/s | before | other program | its ms | ratio |");
+            println!("|---|---|---|--:|--:|--:|---|--:|--:|");
+        }
+    }
+
+    /// What comes after the table: all as JSON, or what the comparison came to.
+    ///
+    /// # Errors
+    /// As [`Report::json`].
+    pub fn print_end(&self) -> Result<()> {
+        if self.shown == Shown::Json {
+            println!("{}", self.json()?);
+        } else if self.before.is_some() {
+            match compare::mean(&self.ratios) {
+                Some(mean) => println!("\nx{mean:.2} of before, geometric mean of {}", self.ratios.len()),
+                None => println!("\nNothing of this was measured before"),
+            }
+        }
+        Ok(())
     }
 
     /// Everything as JSON.
     ///
     /// # Errors
-    /// [`Error::Failure`] when standard output cannot be written.
-    pub fn print_json(&self) -> Result<()> {
+    /// [`Error::Failure`] when it cannot be written so.
+    pub fn json(&self) -> Result<String> {
         let peak = self.machine.peak;
         let value = json!({
             "version": self.version,
@@ -145,11 +212,32 @@ impl Report {
             })),
             "results": self.entries.iter().map(|e| entry(e, peak)).collect::<Vec<_>>(),
         });
-        let text = serde_json::to_string_pretty(&value)
-            .map_err(|e| Error::failure(format!("cannot be written as JSON: {e}"), "leave out --json"))?;
-        println!("{text}");
-        Ok(())
+        serde_json::to_string_pretty(&value)
+            .map_err(|e| Error::failure(format!("cannot be written as JSON: {e}"), "leave out --json"))
     }
+}
+
+fn ratio(ratio: Option<f64>) -> String {
+    ratio.map_or_else(String::new, |r| format!("  x{r:.2} of before"))
+}
+
+/// A row of the table in Markdown.
+fn print_row(entry: &Entry, whole: Option<f64>) {
+    let before = whole.map_or_else(String::new, |r| format!("x{r:.2}"));
+    let ms = entry.seconds * 1e3;
+    let peer = peers::of(&entry.node, entry.size).filter(|_| entry.backend == "cpu");
+    let peer = peer.map_or_else(
+        || " | | ".to_owned(),
+        |p| format!("{} | {} | x{:.2} ", p.program, p.milliseconds, ms / p.milliseconds),
+    );
+    println!(
+        "| `{}` | {} | {}x{} | {ms:.1} | {:.1} | {before} | {peer}|",
+        entry.node,
+        entry.backend,
+        entry.size.0,
+        entry.size.1,
+        entry.megapixels() / entry.seconds
+    );
 }
 
 fn columns(seconds: f64, rate: f64, shares: Option<[f64; 2]>) -> String {
