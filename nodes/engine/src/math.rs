@@ -104,14 +104,15 @@ macro_rules! elementary {
                 let exponent = (bits - $int::splat(simd, 0x3f35_04f3)) >> 23;
                 let mantissa: $float<S> = (bits - (exponent << 23)).bitcast();
                 let x = mantissa - $float::splat(simd, 1.0);
-                let p = $float::splat(simd, -1.457_429_53e-1);
-                let p = p.mul_add(x, $float::splat(simd, 2.368_897_8e-1));
-                let p = p.mul_add(x, $float::splat(simd, -2.500_693e-1));
-                let p = p.mul_add(x, $float::splat(simd, 2.867_075_5e-1));
-                let p = p.mul_add(x, $float::splat(simd, -3.600_871_9e-1));
-                let p = p.mul_add(x, $float::splat(simd, 4.809_394_5e-1));
-                let p = p.mul_add(x, $float::splat(simd, -7.213_571_7e-1));
-                let p = p.mul_add(x, $float::splat(simd, 1.442_694_8));
+                // In pairs, as above.
+                let xx = x * x;
+                let p0 = x.mul_add($float::splat(simd, -7.213_571_7e-1), $float::splat(simd, 1.442_694_8));
+                let p1 = x.mul_add($float::splat(simd, -3.600_871_9e-1), $float::splat(simd, 4.809_394_5e-1));
+                let p2 = x.mul_add($float::splat(simd, -2.500_693e-1), $float::splat(simd, 2.867_075_5e-1));
+                let p3 =
+                    x.mul_add($float::splat(simd, -1.457_429_53e-1), $float::splat(simd, 2.368_897_8e-1));
+                let (low, high) = (xx.mul_add(p1, p0), xx.mul_add(p3, p2));
+                let p = (xx * xx).mul_add(high, low);
                 let log2 = p.mul_add(x, exponent.to_float::<$float<S>>());
                 let power = (log2 * $float::splat(simd, y)).exp2();
                 self.simd_gt(zero).select(power, zero)
