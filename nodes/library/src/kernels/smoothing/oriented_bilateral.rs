@@ -227,43 +227,37 @@ impl Blocks<'_> {
         } else {
             Some(4)
         };
-        let mut k = 1.0;
-        loop {
-            let active = steps.simd_ge(f32x8::splat(simd, k));
-            if !active.any_true() {
-                break;
-            }
-            // Lines that have ended count for nothing: far below what a float can add to the sum.
-            let domain = active.select(domain * (k * k), f32x8::splat(simd, -1e3));
-            // Lines that have ended stay within the support.
-            let reached = steps.min(f32x8::splat(simd, k));
-            if params.manual != 0 {
-                for side in [-reached, reached] {
+        if params.manual != 0 {
+            let mut k = 1.0;
+            while steps.simd_ge(k).any_true() {
+                let domain = domain_at(domain, steps, k);
+                for side in sides(steps, k) {
                     let (at, f) = if inner { self.inner(lines, side) } else { self.clamped(lines, side) };
                     let (a, b) = (self.pixels(simd, at[0]), self.pixels(simd, at[1]));
                     for (tap, share) in [(a, f32x8::splat(simd, 1.0) - f), (b, f)] {
-                        let weight = (distance2(&tap, &origin) * range + domain).exp2();
-                        let weight = weight * share * tap[3];
+                        let weight = (distance2(&tap, &origin) * range + domain).exp2() * share * tap[3];
                         sum[0] = weight.mul_add(tap[0], sum[0]);
                         sum[1] = weight.mul_add(tap[1], sum[1]);
                         sum[2] = weight.mul_add(tap[2], sum[2]);
                         sum[3] += weight;
                     }
                 }
-            } else {
-                // Both sides go stage by stage: their exponentials are long chains that can wait together.
-                let mut taps = [origin; 2];
-                let sides = [-reached, reached];
-                for i in 0..2 {
-                    let side = sides[i];
-                    taps[i] = if let Some(gap) = gap {
-                        let (at, f) = lines.first(side);
-                        self.apart(simd, at.to_array(), gap, f)
-                    } else {
-                        let (at, f) = if inner { self.inner(lines, side) } else { self.clamped(lines, side) };
-                        self.between(simd, at, f)
-                    };
-                }
+                k += 1.0;
+            }
+        } else {
+            let mut k = 1.0;
+            let mut taps = self.taps(simd, lines, sides(steps, k), inner, gap);
+            let mut more = steps.simd_ge(k).any_true();
+            while more {
+                // The next taps are fetched before these are weighted: exponentials are long chains of
+                // operations, and the fetches fill the time.
+                more = steps.simd_ge(k + 1.0).any_true();
+                let next = if more {
+                    self.taps(simd, lines, sides(steps, k + 1.0), inner, gap)
+                } else {
+                    taps
+                };
+                let domain = domain_at(domain, steps, k);
                 let mut exponents = [domain; 2];
                 for i in 0..2 {
                     let mut colour = taps[i];
@@ -281,8 +275,9 @@ impl Blocks<'_> {
                     sum[2] = weight.mul_add(b, sum[2]);
                     sum[3] = if OPAQUE { sum[3] + weight } else { weight.mul_add(a, sum[3]) };
                 }
+                taps = next;
+                k += 1.0;
             }
-            k += 1.0;
         }
         let seen = sum[3].simd_gt(f32x8::splat(simd, 1e-6));
         [
@@ -291,6 +286,31 @@ impl Blocks<'_> {
             seen.select(sum[2] / sum[3], origin[2]),
             alpha,
         ]
+    }
+
+    /// Interpolated taps on both sides.
+    #[inline(always)]
+    fn taps<S: Simd>(
+        &self,
+        simd: S,
+        lines: Lines<S>,
+        sides: [f32x8<S>; 2],
+        inner: bool,
+        gap: Option<usize>,
+    ) -> [[f32x8<S>; 4]; 2] {
+        let mut taps = [[f32x8::splat(simd, 0.0); 4]; 2];
+        if let Some(gap) = gap {
+            for i in 0..2 {
+                let (at, f) = lines.first(sides[i]);
+                taps[i] = self.apart(simd, at.to_array(), gap, f);
+            }
+        } else {
+            for i in 0..2 {
+                let (at, f) = if inner { self.inner(lines, sides[i]) } else { self.clamped(lines, sides[i]) };
+                taps[i] = self.between(simd, at, f);
+            }
+        }
+        taps
     }
 
     /// Offsets of the two pixels around the taps `k` pixels along the axis, and the second one's share.
@@ -364,6 +384,20 @@ impl Blocks<'_> {
         }
         channels(pixels)
     }
+}
+
+/// Positions of tap `k` on both sides; lines that have ended stay within the support.
+#[inline(always)]
+fn sides<S: Simd>(steps: f32x8<S>, k: f32) -> [f32x8<S>; 2] {
+    let reached = steps.min(k);
+    [-reached, reached]
+}
+
+/// Exponent of the domain weight of tap `k`. Lines that have ended count for nothing: far below what a
+/// float can add to the sum.
+#[inline(always)]
+fn domain_at<S: Simd>(domain: f32x8<S>, steps: f32x8<S>, k: f32) -> f32x8<S> {
+    steps.simd_ge(k).select(domain * (k * k), f32x8::splat(steps.simd, -1e3))
 }
 
 /// Squared Euclidean distance of the three colour channels.
