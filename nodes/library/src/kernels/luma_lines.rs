@@ -3,6 +3,8 @@
 //!
 //! The two pixels that a tap lies between are neighbours on the other axis. Luma is kept twice, row by
 //! row and as pairs of vertical neighbours, so that both are one 64-bit load whichever axis that is.
+//! Where neighbouring lines run almost alike, as they do along an edge, their taps lie side by side on a
+//! few rows, and are read as whole vectors instead.
 
 use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::math::{load_pairs, load4};
@@ -43,6 +45,29 @@ pub struct Line<S: Simd> {
     pub slope: f32x8<S>,
     /// Absolute component of the direction on the nearer axis, 1 / sqrt(2)..=1.
     pub major_share: f32x8<S>,
+    /// Index of the first centre, row by row.
+    start: i32,
+    /// What one pixel along the nearer axis and one on the other add to it; nothing where the lines differ
+    /// in their nearer axis.
+    steps: Option<[i32; 2]>,
+    /// Least and greatest slope.
+    slopes: [f32; 2],
+}
+
+/// Rows that are read as vectors at most, beside the first pair.
+const MOST_ROWS: i32 = 3;
+
+impl<S: Simd> Line<S> {
+    /// Least and greatest of floor(along slope + offset) over the lines.
+    #[inline(always)]
+    fn span(&self, along: i32, offset: f32) -> [i32; 2] {
+        let [least, greatest] = self.slopes;
+        let [low, high] = if along < 0 { [greatest, least] } else { [least, greatest] };
+        [low, high].map(
+            #[inline(always)]
+            |slope| (along as f32 * slope + offset).floor() as i32,
+        )
+    }
 }
 
 impl LumaLines {
@@ -129,20 +154,43 @@ impl LumaLines {
         let lanes = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
         let start = (y - self.y0) * self.width as i32 + x - self.x0;
         let (column, width) = (lanes + start, self.width as i32);
+        let slope = along_x.select(ny, nx) / major;
+        let mut slopes = [f32::INFINITY, f32::NEG_INFINITY];
+        for slope in slope.to_array() {
+            slopes = [slopes[0].min(slope), slopes[1].max(slope)];
+        }
+        let steps = if along_x.all_true() {
+            Some([1, width])
+        } else if along_x.any_true() {
+            None
+        } else {
+            Some([width, 1])
+        };
         Line {
             at: along_x.select(column + column + (self.width * (self.rows + 1)) as i32, column),
             major: along_x.select(i32x8::splat(simd, 2), i32x8::splat(simd, width)),
             minor: along_x.select(i32x8::splat(simd, 2 * width), i32x8::splat(simd, 1)),
             along_x,
-            slope: along_x.select(ny, nx) / major,
+            slope,
             major_share: major.abs(),
+            start,
+            steps,
+            slopes,
         }
     }
 
-    /// The two pixels `along` steps on at `across` and `across` + 1 to the side.
+    /// The two pixels `along` steps on at `across` = floor(along slope + `offset`) and `across` + 1 to
+    /// the side.
     #[inline(always)]
-    pub fn pair<S: Simd>(&self, simd: S, line: &Line<S>, along: i32, across: i32x8<S>) -> [f32x8<S>; 2] {
-        self.pair_from(simd, &self.data, line, along, across)
+    pub fn pair<S: Simd>(
+        &self,
+        simd: S,
+        line: &Line<S>,
+        along: i32,
+        across: i32x8<S>,
+        offset: f32,
+    ) -> [f32x8<S>; 2] {
+        pair(simd, &self.data, line, along, across, offset)
     }
 
     /// Coverage of what [`LumaLines::pair`] gives; only where not all is opaque.
@@ -153,21 +201,44 @@ impl LumaLines {
         line: &Line<S>,
         along: i32,
         across: i32x8<S>,
+        offset: f32,
     ) -> [f32x8<S>; 2] {
-        self.pair_from(simd, &self.data[self.coverage..], line, along, across)
+        pair(simd, &self.data[self.coverage..], line, along, across, offset)
     }
+}
 
-    #[inline(always)]
-    fn pair_from<S: Simd>(
-        &self,
-        simd: S,
-        data: &[f32],
-        line: &Line<S>,
-        along: i32,
-        across: i32x8<S>,
-    ) -> [f32x8<S>; 2] {
-        let at = line.at + line.major * along + line.minor * across;
-        let [low, high] = load_pairs(simd, data, at.to_array());
-        low.deinterleave(high).into()
+#[inline(always)]
+fn pair<S: Simd>(
+    simd: S,
+    data: &[f32],
+    line: &Line<S>,
+    along: i32,
+    across: i32x8<S>,
+    offset: f32,
+) -> [f32x8<S>; 2] {
+    let [low, high] = line.span(along, offset);
+    if let Some([major, minor]) = line.steps
+        && high - low <= MOST_ROWS
+    {
+        let at = line.start + along * major;
+        let (mut first, mut second) =
+            (row(simd, data, at + low * minor), row(simd, data, at + (low + 1) * minor));
+        for i in low + 1..=high {
+            let beyond = across.simd_ge(i);
+            let next = row(simd, data, at + (i + 1) * minor);
+            first = beyond.select(row(simd, data, at + i * minor), first);
+            second = beyond.select(next, second);
+        }
+        return [first, second];
     }
+    let at = line.at + line.major * along + line.minor * across;
+    let [low, high] = load_pairs(simd, data, at.to_array());
+    low.deinterleave(high).into()
+}
+
+/// Eight values from index `at` on.
+#[inline(always)]
+fn row<S: Simd>(simd: S, data: &[f32], at: i32) -> f32x8<S> {
+    let at = at as u32 as usize;
+    f32x8::from_slice(simd, &data[at..at + 8])
 }

@@ -139,10 +139,10 @@ fn extreme<S: Simd, const OPAQUE: bool>(
             let first: i32x8<S> = (across + 0.001).floor().to_int();
             let second: i32x8<S> = (across + 0.999).floor().to_int();
             let apart = second.simd_gt(first);
-            let [a, b] = lumas.pair(simd, &line, along, first);
+            let [a, b] = lumas.pair(simd, &line, along, first, 0.001);
             let mut coverage = [one; 2];
             if !OPAQUE {
-                coverage = lumas.pair_coverage(simd, &line, along, first);
+                coverage = lumas.pair_coverage(simd, &line, along, first, 0.001);
             }
             let far = [apart.select(b, a), apart.select(coverage[1], coverage[0])];
             best.compare::<OPAQUE>(&line, active, sign, far, along, second);

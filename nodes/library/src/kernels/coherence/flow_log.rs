@@ -123,12 +123,12 @@ fn along<S: Simd, const OPAQUE: bool>(
         for (along, across) in [(k, across), (-k, -across)] {
             let i = across.floor();
             let share = across - i;
-            let [a, b] = lumas.pair(simd, &line, along, i.to_int());
+            let [a, b] = lumas.pair(simd, &line, along, i.to_int(), 0.0);
             let tap = (b - a).mul_add(share, a);
             if OPAQUE {
                 both += tap - centre;
             } else {
-                let [a, b] = lumas.pair_coverage(simd, &line, along, i.to_int());
+                let [a, b] = lumas.pair_coverage(simd, &line, along, i.to_int(), 0.0);
                 both += tap - (b - a).mul_add(share, a) * centre;
             }
         }
