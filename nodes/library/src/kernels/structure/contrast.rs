@@ -28,9 +28,18 @@ pub fn stretch(plan: &mut PlanBuilder, color: ImageId, gain: f32) -> ImageId {
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, |[r, g, b, a]| {
-        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        let [r, g, b] = [r, g, b].map(|v| ((v - 0.5) * params.gain + 0.5).max(zero).min(one));
-        [r, g, b, a]
-    }));
+    dispatch!(pass.level, simd => map_pixels4(
+        simd,
+        pass,
+        band,
+        #[inline(always)]
+        |[r, g, b, a]| {
+            let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+            let mut rgb = [r, g, b];
+            for v in &mut rgb {
+                *v = ((*v - 0.5) * params.gain + 0.5).max(zero).min(one);
+            }
+            [rgb[0], rgb[1], rgb[2], a]
+        },
+    ));
 }

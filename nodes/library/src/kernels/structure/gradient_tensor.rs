@@ -187,16 +187,15 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
     let mut rows = Rows::default();
     // Column sums of one row: smoothed and derived, four channels each.
     let mut columns: Vec<f32> = Vec::new();
-    let premultiply = |[x, y, z, a]: [f32x8<S>; 4]| [x * a, y * a, z * a, a];
     for (x0, x1) in strips(window.x0, window.x1) {
         rows.start(x0, x1, radius, 4);
         let len = rows.stride();
         columns.resize(8 * len, 0.0);
         for y in window.y0 - radius..window.y0 + radius {
-            rows.load4(simd, view, y, premultiply);
+            rows.load4(simd, view, y, covered);
         }
         for y in window.y0..window.y1 {
-            rows.load4(simd, view, y + radius, premultiply);
+            rows.load4(simd, view, y + radius, covered);
             for (channel, sums) in columns.chunks_exact_mut(2 * len).enumerate() {
                 sum_columns(simd, &rows, &weights, r, y, channel, sums);
             }
@@ -222,6 +221,17 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
     }
 }
 
+/// Colour times coverage, and coverage.
+#[inline(always)]
+fn covered<S: Simd>([x, y, z, a]: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
+    [x * a, y * a, z * a, a]
+}
+
+#[inline(always)]
+fn block<S: Simd>(simd: S, row: &[f32], at: usize) -> f32x8<S> {
+    f32x8::from_slice(simd, &row[at..at + 8])
+}
+
 /// Smooths and derives along the columns: one channel of row `y`, first all smoothed, then all derived.
 #[inline(always)]
 fn sum_columns<S: Simd>(
@@ -240,11 +250,10 @@ fn sum_columns<S: Simd>(
     }
     let blocks = smoothed.chunks_exact_mut(8).zip(derived.chunks_exact_mut(8));
     for (i, (smoothed, derived)) in blocks.enumerate() {
-        let tap = |k: usize| f32x8::from_slice(simd, &taps[k][8 * i..8 * i + 8]);
-        let mut s = tap(radius) * weights.smoothing[0];
+        let mut s = block(simd, taps[radius], 8 * i) * weights.smoothing[0];
         let mut d = f32x8::splat(simd, 0.0);
         for j in 1..=radius {
-            let (above, below) = (tap(radius - j), tap(radius + j));
+            let (above, below) = (block(simd, taps[radius - j], 8 * i), block(simd, taps[radius + j], 8 * i));
             s = (above + below).mul_add(f32x8::splat(simd, weights.smoothing[j]), s);
             d = (below - above).mul_add(f32x8::splat(simd, weights.derivative[j]), d);
         }
@@ -262,11 +271,10 @@ fn gradient<S: Simd>(
     [smoothed, derived]: [&[f32]; 2],
     at: usize,
 ) -> [f32x8<S>; 2] {
-    let load = |row: &[f32], at: usize| f32x8::from_slice(simd, &row[at..at + 8]);
-    let (mut x, mut y) = (f32x8::splat(simd, 0.0), load(derived, at) * weights.smoothing[0]);
+    let (mut x, mut y) = (f32x8::splat(simd, 0.0), block(simd, derived, at) * weights.smoothing[0]);
     for i in 1..=radius {
-        let difference = load(smoothed, at + i) - load(smoothed, at - i);
-        let sum = load(derived, at - i) + load(derived, at + i);
+        let difference = block(simd, smoothed, at + i) - block(simd, smoothed, at - i);
+        let sum = block(simd, derived, at - i) + block(simd, derived, at + i);
         x = difference.mul_add(f32x8::splat(simd, weights.derivative[i]), x);
         y = sum.mul_add(f32x8::splat(simd, weights.smoothing[i]), y);
     }
@@ -283,23 +291,23 @@ pub(crate) fn outer<S: Simd>(
     centre: [f32x8<S>; 4],
     gradients: [[f32x8<S>; 2]; 4],
 ) -> [f32x8<S>; 4] {
-    let splat = |v: f32| f32x8::splat(simd, v);
+    let zero = f32x8::splat(simd, 0.0);
     let [.., alpha] = centre;
     // The quotient rule without its division: coverage squared times the gradient of the colour.
-    let (mut x, mut y) = ([splat(0.0); 3], [splat(0.0); 3]);
+    let (mut x, mut y) = ([zero; 3], [zero; 3]);
     for c in 0..3 {
         x[c] = (alpha * gradients[c][0] - centre[c] * gradients[3][0]) * scale;
         y[c] = (alpha * gradients[c][1] - centre[c] * gradients[3][1]) * scale;
     }
     if flags & 1 != 0 {
-        x = [x[0] * 0.2126 + x[1] * 0.7152 + x[2] * 0.0722, splat(0.0), splat(0.0)];
-        y = [y[0] * 0.2126 + y[1] * 0.7152 + y[2] * 0.0722, splat(0.0), splat(0.0)];
+        x = [x[0] * 0.2126 + x[1] * 0.7152 + x[2] * 0.0722, zero, zero];
+        y = [y[0] * 0.2126 + y[1] * 0.7152 + y[2] * 0.0722, zero, zero];
     }
-    let (mut e, mut f, mut g) = (splat(0.0), splat(0.0), splat(0.0));
+    let (mut e, mut f, mut g) = (zero, zero, zero);
     for c in 0..3 {
         let (mut xx, mut xy, mut yy) = (x[c] * x[c], x[c] * y[c], y[c] * y[c]);
         if flags & 2 != 0 {
-            let inverse = splat(1.0) / (xx + yy).max(splat(1e-30)).sqrt();
+            let inverse = f32x8::splat(simd, 1.0) / (xx + yy).max(f32x8::splat(simd, 1e-30)).sqrt();
             (xx, xy, yy) = (xx * inverse, xy * inverse, yy * inverse);
         }
         (e, f, g) = (e + xx, f + xy, g + yy);

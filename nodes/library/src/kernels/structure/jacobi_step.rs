@@ -67,17 +67,21 @@ fn average<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
         let (above, below) = (row(y - 1), row(y + 1));
         let centre = view.padded_row(y, window.x0 - 1, window.x1 + 1, &mut scratch);
         for (x, target) in band.row_mut(0, y).chunks_exact_mut(4).enumerate() {
-            let load = |row: &[f32], x: usize| f32x4::from_slice(simd, &row[4 * x..4 * x + 4]);
             if centre[4 * x + 7] >= params.kept {
-                load(centre, x + 1).store_slice(target);
+                load(simd, centre, x + 1).store_slice(target);
                 continue;
             }
-            let across = load(centre, x + 2) + load(centre, x);
-            let along = load(below, x) + load(above, x);
+            let across = load(simd, centre, x + 2) + load(simd, centre, x);
+            let along = load(simd, below, x) + load(simd, above, x);
             ((across + along) * 0.25).store_slice(target);
             target[3] = 0.0;
         }
     }
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, row: &[f32], x: usize) -> f32x4<S> {
+    f32x4::from_slice(simd, &row[4 * x..4 * x + 4])
 }
 
 #[cfg(test)]

@@ -93,7 +93,11 @@ fn tables(sigma: f32) -> (i32, Table, Table) {
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => tensors(simd, pass, &params, band));
+    // A radius known to the compiler, that of the default, unrolls the sums.
+    match params.radius {
+        3 => dispatch!(pass.level, simd => tensors(simd, pass, &params, 3, band)),
+        r => dispatch!(pass.level, simd => tensors(simd, pass, &params, r, band)),
+    }
 }
 
 /// The two tables, flat, for one of the two positions in a pixel.
@@ -117,25 +121,25 @@ impl Weights {
 }
 
 #[inline(always)]
-fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
+fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, band: &mut Band<'_>) {
     let window = band.window;
     let view = &pass.inputs[0];
-    let r = params.radius as usize;
+    let r = radius as usize;
     let phases = [Weights::new(params, false), Weights::new(params, true)];
     let zero = f32x8::splat(simd, 0.0);
     let mut rows = Rows::default();
     // Column sums of one row: smoothed and derived, four channels each; and the row's tensors.
     let (mut columns, mut wide): (Vec<f32>, Vec<f32>) = (Vec::new(), Vec::new());
     for (x0, x1) in strips(window.x0 >> 1, (window.x1 + 1) >> 1) {
-        rows.start(x0, x1, params.radius, 4);
+        rows.start(x0, x1, radius, 4);
         let len = rows.stride();
         columns.resize(8 * len, 0.0);
         let blocks = ((x1 - x0) as usize).div_ceil(8);
         wide.resize(64 * blocks, 0.0);
-        let mut next = (window.y0 >> 1) - params.radius;
+        let mut next = (window.y0 >> 1) - radius;
         for y in window.y0..window.y1 {
             let row = y >> 1;
-            while next <= row + params.radius {
+            while next <= row + radius {
                 rows.load4(
                     simd,
                     view,
@@ -148,11 +152,12 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
             for (channel, sums) in columns.chunks_exact_mut(2 * len).enumerate() {
                 sum_columns(simd, &rows, &phases[(y & 1) as usize], r, row, channel, sums);
             }
+            let centres: [&[f32]; 4] = std::array::from_fn(|c| rows.row(row, c));
             for i in 0..blocks {
                 let at = r + 8 * i;
                 let mut centre = [zero; 4];
                 for c in 0..4 {
-                    centre[c] = f32x8::from_slice(simd, &rows.row(row, c)[at..at + 8]);
+                    centre[c] = f32x8::from_slice(simd, &centres[c][at..at + 8]);
                 }
                 let mut both = [[zero; 4]; 2];
                 for phase in 0..2 {
@@ -193,13 +198,16 @@ fn sum_columns<S: Simd>(
     sums: &mut [f32],
 ) {
     let (smoothed, derived) = sums.split_at_mut(rows.stride());
+    let mut taps: [&[f32]; TAPS] = [&[]; TAPS];
+    for (k, tap) in taps[..=2 * radius].iter_mut().enumerate() {
+        *tap = rows.row(y + k as i32 - radius as i32, channel);
+    }
     let blocks = smoothed.chunks_exact_mut(8).zip(derived.chunks_exact_mut(8));
     for (i, (smoothed, derived)) in blocks.enumerate() {
         let (mut s, mut d) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 0.0));
-        let middle = f32x8::from_slice(simd, &rows.row(y, channel)[8 * i..8 * i + 8]);
-        for k in 0..=2 * radius {
-            let row = rows.row(y + k as i32 - radius as i32, channel);
-            let tap = f32x8::from_slice(simd, &row[8 * i..8 * i + 8]);
+        let middle = f32x8::from_slice(simd, &taps[radius][8 * i..8 * i + 8]);
+        for (k, tap) in taps[..=2 * radius].iter().enumerate() {
+            let tap = f32x8::from_slice(simd, &tap[8 * i..8 * i + 8]);
             s = tap.mul_add(f32x8::splat(simd, weights.smoothing[k]), s);
             d = (tap - middle).mul_add(f32x8::splat(simd, weights.derivative[k]), d);
         }
@@ -218,9 +226,11 @@ fn gradient<S: Simd>(
     at: usize,
 ) -> [f32x8<S>; 2] {
     let (mut x, mut y) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 0.0));
-    let middle = f32x8::from_slice(simd, &smoothed[at + radius..at + radius + 8]);
+    let last = at + 2 * radius + 8;
+    let (smoothed, derived) = (&smoothed[at..last], &derived[at..last]);
+    let middle = f32x8::from_slice(simd, &smoothed[radius..radius + 8]);
     for k in 0..=2 * radius {
-        let (s, d) = (&smoothed[at + k..at + k + 8], &derived[at + k..at + k + 8]);
+        let (s, d) = (&smoothed[k..k + 8], &derived[k..k + 8]);
         let s = f32x8::from_slice(simd, s) - middle;
         x = s.mul_add(f32x8::splat(simd, weights.derivative[k]), x);
         y = f32x8::from_slice(simd, d).mul_add(f32x8::splat(simd, weights.smoothing[k]), y);

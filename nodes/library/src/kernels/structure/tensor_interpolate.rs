@@ -57,9 +57,8 @@ fn fill<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
                 continue;
             }
             let i = 4 * (corner(x) - first) as usize;
-            let load = |row: &[f32], i: usize| f32x4::from_slice(simd, &row[i..i + 4]);
-            let (a, b) = (load(above, i), load(above, i + 4));
-            let (c, d) = (load(below, i), load(below, i + 4));
+            let (a, b) = (load(simd, above, i), load(simd, above, i + 4));
+            let (c, d) = (load(simd, below, i), load(simd, below, i + 4));
             let fx = f32x4::splat(simd, fraction(x));
             let top = (b - a).mul_add(fx, a);
             let bottom = (d - c).mul_add(fx, c);
@@ -67,4 +66,9 @@ fn fill<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
             target[3] = 0.0;
         }
     }
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, row: &[f32], i: usize) -> f32x4<S> {
+    f32x4::from_slice(simd, &row[i..i + 4])
 }

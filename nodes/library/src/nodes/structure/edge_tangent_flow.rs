@@ -42,7 +42,7 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::int("iterations", "Iterations", 3, [1, 10]).structural().doc("Times that the tangents are averaged."),
         Param::bool("separable", "Separable", false)
             .structural()
-            .doc("Averages over the row and then over the column: much faster, less exact."),
+            .doc("Averages over the row and then over the column: faster for large radii, less exact."),
     ],
     build,
 };

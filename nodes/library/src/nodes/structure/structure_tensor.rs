@@ -117,7 +117,7 @@ const PARAMS: &[Param] = &[
         .structural()
         .doc(
             "Takes derivatives at twice the resolution (2.4.6), those of the Gaussian of sigma_g whatever \
-             the operator: exact also for the finest texture, at eight times the cost.",
+             the operator: exact also for the finest texture, at about ten times the cost.",
         ),
     Param::float("guide_weight", "Guide weight", 1.0, [0.0, 100.0])
         .slider(0.0, 4.0)
