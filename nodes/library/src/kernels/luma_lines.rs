@@ -86,15 +86,27 @@ impl LumaLines {
         self.data.resize(self.coverage, 0.0);
         let one = f32x8::splat(simd, 1.0);
         let mut opaque = true;
-        self.plane(simd, view, 0, |[r, g, b, alpha]| {
-            opaque &= alpha.simd_eq(one).all_true();
-            let luma = r * LUMA[0] + g * LUMA[1] + b * LUMA[2];
-            if weighted { luma * alpha } else { luma }
-        });
+        self.plane(
+            simd,
+            view,
+            0,
+            #[inline(always)]
+            |[r, g, b, alpha]| {
+                opaque &= alpha.simd_eq(one).all_true();
+                let luma = r * LUMA[0] + g * LUMA[1] + b * LUMA[2];
+                if weighted { luma * alpha } else { luma }
+            },
+        );
         self.opaque = opaque;
         if !opaque {
             self.data.resize(2 * self.coverage, 0.0);
-            self.plane(simd, view, self.coverage, |[.., alpha]| alpha);
+            self.plane(
+                simd,
+                view,
+                self.coverage,
+                #[inline(always)]
+                |[.., alpha]| alpha,
+            );
         }
     }
 

@@ -181,18 +181,17 @@ impl Strip {
             for c in 0..channels {
                 let smoothed = &self.columns[2 * c * len..(2 * c + 1) * len];
                 let derived = &self.columns[(2 * c + 1) * len..2 * (c + 1) * len];
-                let at = |row: &[f32], at: usize| f32x8::from_slice(simd, &row[at..at + 8]);
-                dx[c] = (at(smoothed, i + 2) - at(smoothed, i)) * 0.5;
-                let sides = at(derived, i) + at(derived, i + 2);
-                dy[c] = sides.mul_add(f32x8::splat(simd, params.smoothing[1]), at(derived, i + 1) * params.smoothing[0]);
+                dx[c] = (eight(simd, smoothed, i + 2) - eight(simd, smoothed, i)) * 0.5;
+                let sides = eight(simd, derived, i) + eight(simd, derived, i + 2);
+                dy[c] = sides.mul_add(f32x8::splat(simd, params.smoothing[1]), eight(simd, derived, i + 1) * params.smoothing[0]);
             }
             if !opaque {
-                let at = |c: usize| f32x8::from_slice(simd, &self.colors.row(y, c)[i + 1..i + 9]);
-                let alpha = at(3);
+                let alpha = eight(simd, self.colors.row(y, 3), i + 1);
                 for c in 0..3 {
+                    let color = eight(simd, self.colors.row(y, c), i + 1);
                     // The quotient rule without its division: coverage squared times the gradient of the colour.
-                    dx[c] = alpha * dx[c] - at(c) * dx[3];
-                    dy[c] = alpha * dy[c] - at(c) * dy[3];
+                    dx[c] = alpha * dx[c] - color * dx[3];
+                    dy[c] = alpha * dy[c] - color * dy[3];
                 }
             }
             let e = dx[0] * dx[0] + dx[1] * dx[1] + dx[2] * dx[2];
@@ -277,4 +276,10 @@ fn read4<S: Simd>(simd: S, values: &[f32]) -> [f32x8<S>; 4] {
     let mut padded = [0.0; 32];
     padded[..values.len()].copy_from_slice(values);
     load4(simd, &padded)
+}
+
+/// Eight values from index `at` on.
+#[inline(always)]
+fn eight<S: Simd>(simd: S, values: &[f32], at: usize) -> f32x8<S> {
+    f32x8::from_slice(simd, &values[at..at + 8])
 }
