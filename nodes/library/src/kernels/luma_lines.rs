@@ -6,8 +6,8 @@
 //! Where neighbouring lines run almost alike, as they do along an edge, their taps lie side by side on a
 //! few rows, and are read as whole vectors instead.
 
-use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
-use isophote_engine::math::{load_pairs, load4};
+use isophote_engine::fearless_simd::{Simd, f32x8, f64x4, i32x8, mask32x8, prelude::*};
+use isophote_engine::math::load4;
 use isophote_engine::{Rect, View};
 
 /// Weights of the Rec. 709 luma.
@@ -62,11 +62,9 @@ impl<S: Simd> Line<S> {
     #[inline(always)]
     fn span(&self, along: i32, offset: f32) -> [i32; 2] {
         let [least, greatest] = self.slopes;
-        let [low, high] = if along < 0 { [greatest, least] } else { [least, greatest] };
-        [low, high].map(
-            #[inline(always)]
-            |slope| (along as f32 * slope + offset).floor() as i32,
-        )
+        let (low, high) = if along < 0 { (greatest, least) } else { (least, greatest) };
+        let along = along as f32;
+        [(along * low + offset).floor() as i32, (along * high + offset).floor() as i32]
     }
 }
 
@@ -244,8 +242,20 @@ fn pair<S: Simd>(
         return [first, second];
     }
     let at = line.at + line.major * along + line.minor * across;
-    let [low, high] = load_pairs(simd, data, at.to_array());
+    let at = at.to_array();
+    let low = [two(data, at[0]), two(data, at[1]), two(data, at[2]), two(data, at[3])];
+    let high = [two(data, at[4]), two(data, at[5]), two(data, at[6]), two(data, at[7])];
+    let (low, high) = (f64x4::simd_from(simd, low), f64x4::simd_from(simd, high));
+    let (low, high): (f32x8<S>, f32x8<S>) = (low.bitcast(), high.bitcast());
     low.deinterleave(high).into()
+}
+
+/// Two neighbouring values in one register: collected in memory, they would stall the wide load.
+#[inline(always)]
+fn two(data: &[f32], at: i32) -> f64 {
+    let at = at as u32 as usize;
+    let values = &data[at..at + 2];
+    f64::from_bits(u64::from(values[0].to_bits()) | u64::from(values[1].to_bits()) << 32)
 }
 
 /// Eight values from index `at` on.
