@@ -120,7 +120,6 @@ fn discs_keep_their_area() {
         let after = areas(&run::node(id, params, &discs));
         [0, 1, 2, 3].map(|i| after[i] / before[i] - 1.0)
     };
-    let coherent = after("coherence_enhancing", &[("iterations", "10")]);
     let mut table = Table::new(
         14,
         "Fig. 6.15",
@@ -128,10 +127,48 @@ fn discs_keep_their_area() {
         &["filter", "4 px", "6 px", "9 px", "14 px"],
     );
     let cells = |name: &str, changes: [f64; 4]| {
-        let percents = changes.map(|c| format!("{:+.1}", 100.0 * c));
+        let percents = changes.map(|c| format!("{:+.0}", 100.0 * c));
         [vec![name.to_owned()], percents.to_vec()].concat()
     };
+    let coherent = after("coherence_enhancing", &[("iterations", "10")]);
     table.row(&cells("coherence-enhancing filter, 10 iterations", coherent));
+    let flow = after("mean_curvature_flow", &[("iterations", "15")]);
+    table.row(&cells("mean curvature flow, 15 steps", flow));
+    let sharpened = after("mean_curvature_flow", &[("iterations", "15"), ("shock_every", "5")]);
+    table.row(&cells("the same, shock filter after every 5", sharpened));
     table.print();
     assert!(coherent.iter().all(|change| change.abs() < 0.02), "{coherent:?}");
+    for shrinking in [flow, sharpened] {
+        assert!(shrinking[0] < -0.15 && shrinking[1] < -0.07, "{shrinking:?}");
+    }
+}
+
+#[test]
+fn fifty_iterations_converge_where_the_equation_goes_on_shrinking() {
+    let discs = discs();
+    let mut table = Table::new(
+        14,
+        "Fig. 6.19",
+        "Change of the area of dark discs after 50 iterations, and mean change of a pixel over the last ten",
+        &["filter", "4 px", "6 px", "9 px", "14 px", "last ten"],
+    );
+    let mut limits = Vec::new();
+    for (name, id, setting) in [
+        ("coherence-enhancing filter", "coherence_enhancing", ("sigma_a", "1.5")),
+        ("mean curvature flow, shock filter after every 5", "mean_curvature_flow", ("shock_every", "5")),
+    ] {
+        let after = |iterations: &str| run::node(id, &[("iterations", iterations), setting], &discs);
+        let (forty, fifty) = (after("40"), after("50"));
+        let (before, now) = (areas(&discs), areas(&fifty));
+        let changes = [0, 1, 2, 3].map(|i| now[i] / before[i] - 1.0);
+        let (_, last) = distance(&forty, &fifty);
+        let percents = changes.map(|c| format!("{:+.0}", 100.0 * c));
+        table.row(&[vec![name.to_owned()], percents.to_vec(), vec![format!("{last:.4}")]].concat());
+        limits.push((changes, last));
+    }
+    table.print();
+    let [(kept, steady), (shrunk, going)] = limits[..] else { panic!("two filters were compared") };
+    assert!(kept.iter().all(|change| change.abs() < 0.06), "{kept:?}");
+    assert!(shrunk[0] < -0.5 && shrunk[1] < -0.25, "{shrunk:?}");
+    assert!(5.0 * steady < going, "{steady} against {going}");
 }
