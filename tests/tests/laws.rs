@@ -168,6 +168,7 @@ const PROMISED: &[(&str, &[&str])] = &[
     ("gaussian", &["sigma", "mix"]),
     ("bilateral", &["kernel", "sigma_d", "sigma_r", "iterations", "space", "mix"]),
     ("anisotropic_diffusion", &["scheme", "time_step", "iterations", "contrast", "rho", "sigma", "mix"]),
+    ("mean_curvature_flow", &["constraint", "iterations", "time_step", "shock_every", "mix"]),
     ("morphology", &["operator", "radius", "mix"]),
     ("flow_dilation", &["length", "seed", "mix"]),
     (

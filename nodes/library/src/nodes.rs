@@ -45,6 +45,7 @@ nodes! {
         oriented_bilateral,
         flow_bilateral,
         anisotropic_diffusion,
+        mean_curvature_flow,
         morphology,
         flow_dilation,
     }

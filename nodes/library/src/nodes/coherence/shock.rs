@@ -104,6 +104,13 @@ fn smoothed(plan: &mut PlanBuilder, color: ImageId, sigma_i: f32) -> ImageId {
     if sigma_i > 0.0 { gaussian_blur::color(plan, color, sigma_i) } else { color }
 }
 
+/// One step of the classical shock filter (§ 6.4.1).
+pub(crate) fn osher_rudin_step(plan: &mut PlanBuilder, color: ImageId, sigma_i: f32, time_step: f32) -> ImageId {
+    let smooth = smoothed(plan, color, sigma_i);
+    let detector = laplacian::of_color(plan, smooth);
+    shock_step::step(plan, color, detector, time_step)
+}
+
 /// One step of the coherence-enhancing shock filter (§ 6.4.2).
 pub(crate) fn coherence_enhancing_step(
     plan: &mut PlanBuilder,
@@ -124,9 +131,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     match scope.choice("variant") {
         "osher_rudin" => {
             for _ in 0..iterations {
-                let smooth = smoothed(scope.plan, color, sigma_i);
-                let detector = laplacian::of_color(scope.plan, smooth);
-                color = shock_step::step(scope.plan, color, detector, time_step);
+                color = osher_rudin_step(scope.plan, color, sigma_i, time_step);
             }
             color
         }

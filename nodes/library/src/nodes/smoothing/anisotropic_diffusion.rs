@@ -41,8 +41,8 @@ pub static NODE: NodeSpec = NodeSpec {
             .doc("Length of a step. Above 1/4 explicit steps would not be stable."),
         Param::float("contrast", "Contrast", 4.0, [0.01, 100.0]).slider(0.5, 20.0).doc(
             "Difference of colour that counts as an edge, K or lambda of 3.2, in per cent of RGB: between \
-             neighbours (Perona-Malik), or per pixel. Of the coherence-enhancing scheme, the structure above \
-             which lines are drawn out.",
+             neighbours (Perona-Malik), or per pixel. Of the coherence-enhancing scheme, four times the \
+             gradient above which lines are drawn out.",
         ),
         Param::choice(
             "diffusivity",
@@ -84,6 +84,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         }
     };
     let (sigma, rho) = (scope.float("sigma"), scope.float("rho"));
+    // Lines are to be found where there is no edge yet.
+    let contrast = if scheme == Scheme::CoherenceEnhancing { 0.25 * contrast } else { contrast };
     for _ in 0..iterations {
         let tensors = structure(scope.plan, color, sigma, scheme, rho);
         let weights = diffusion_tensor::weights(scope.plan, tensors, scheme, contrast);
