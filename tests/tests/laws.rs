@@ -169,6 +169,8 @@ const PROMISED: &[(&str, &[&str])] = &[
     ("bilateral", &["kernel", "sigma_d", "sigma_r", "iterations", "space", "mix"]),
     ("anisotropic_diffusion", &["scheme", "time_step", "iterations", "contrast", "rho", "sigma", "mix"]),
     ("mean_curvature_flow", &["constraint", "iterations", "time_step", "shock_every", "mix"]),
+    ("oil_paint", &["detail", "saturation", "lights", "darks", "mix"]),
+    ("watercolor", &["detail", "saturation", "lights", "darks", "mix"]),
     ("morphology", &["operator", "radius", "mix"]),
     ("flow_dilation", &["length", "seed", "mix"]),
     (

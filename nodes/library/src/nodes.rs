@@ -19,6 +19,8 @@ nodes! {
         blueprint,
         cartoon,
         coherent,
+        oil_paint,
+        watercolor,
     }
     structure {
         structure_tensor,

@@ -1,0 +1,154 @@
+//! Oil paint (§ 1.2): noise smoothed along the flow makes the marks of a brush, colours smoothed along
+//! the flow its strokes.
+
+use crate::kernels::colour::paint_relief::{self, Relief};
+use crate::kernels::colour::{lab_to_rgb, rgb_to_lab, tone_curve};
+use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
+use crate::kernels::smoothing::{flow_dilation, gaussian_blur};
+use crate::kernels::structure::noise;
+use crate::look::{self, ADVANCED, LOOK};
+use crate::nodes::structure::structure_tensor::{self, TensorOptions};
+use crate::nodes::styles::cartoon::{self, Abstraction};
+use crate::ports;
+use crate::spec::{NodeSpec, Param, Scope};
+use isophote_engine::{Class, ImageId};
+
+/// The node.
+pub static NODE: NodeSpec = NodeSpec {
+    id: "oil_paint",
+    label: "Oil Paint",
+    group: "styles",
+    doc: "Brush strokes that follow the shapes: regions are flattened, painted in strokes of one colour \
+          along the local orientation and smoothed along it; noise smoothed the same way gives the marks \
+          of bristles, and the light on them.",
+    section: "1.2",
+    inputs: &[ports::COLOR],
+    output: ports::color_output("The painting."),
+    own_params: &[
+        Param::float("stroke_length", "Stroke length", 20.0, [0.0, 80.0])
+            .slider(2.0, 50.0)
+            .pixels()
+            .group(LOOK)
+            .doc("Length of strokes: scales `dilation_length`, `sigma_t` and `sigma_b` by length / 20."),
+        Param::float("stroke_width", "Stroke width", 4.0, [0.5, 20.0])
+            .slider(1.0, 12.0)
+            .pixels()
+            .group(LOOK)
+            .doc("Width of strokes: scales `sigma_n` and `rho` by width / 4."),
+        Param::float("bristle", "Bristle", 0.5, [0.0, 1.0])
+            .group(LOOK)
+            .doc("How dark and light the marks of the bristles are: up to 20 units of L on white."),
+        Param::float("shine", "Shine", 0.4, [0.0, 1.0])
+            .group(LOOK)
+            .doc("How much light the ridges of the paint catch: up to 30 units of L on white."),
+        Param::float("light_angle", "Light angle", 120.0, [0.0, 360.0])
+            .degrees()
+            .group(LOOK)
+            .doc("Where the light comes from, counter-clockwise from the right; 90 is above."),
+        look::DETAIL,
+        look::SATURATION,
+        look::LIGHTS,
+        look::DARKS,
+        cartoon::ABSTRACTION,
+        Param::int("n_a", "Iterations", 2, [0, 16])
+            .slider(0.0, 8.0)
+            .structural()
+            .group(ADVANCED)
+            .doc("Bilateral iterations before the strokes."),
+        cartoon::SIGMA_D,
+        cartoon::SIGMA_R,
+        Param::float("rho", "Rho", 3.0, [0.0, 20.0])
+            .slider(0.0, 8.0)
+            .pixels()
+            .group(ADVANCED)
+            .doc("Standard deviation of the smoothing of the structure tensor: strokes turn no faster."),
+        Param::int("levels", "Levels", 5, [1, 8])
+            .structural()
+            .group(ADVANCED)
+            .doc("Scales at which the orientation is found (2.8): strokes in flat parts follow what is around them."),
+        Param::float("dilation_length", "Dilation length", 8.0, [0.0, 60.0])
+            .slider(0.0, 30.0)
+            .pixels()
+            .group(ADVANCED)
+            .doc("Arc length on each side over which strokes take one colour (5.1)."),
+        Param::float("sigma_t", "Sigma t", 3.0, [0.0, 40.0])
+            .slider(0.0, 20.0)
+            .pixels()
+            .group(ADVANCED)
+            .doc("Standard deviation of the smoothing of colours along the flow."),
+        Param::float("sigma_n", "Sigma n", 1.0, [0.0, 10.0])
+            .slider(0.0, 4.0)
+            .pixels()
+            .group(ADVANCED)
+            .doc("Standard deviation of the smoothing of the noise: how wide strokes and marks are."),
+        Param::float("sigma_b", "Sigma b", 10.0, [0.0, 40.0])
+            .slider(0.0, 20.0)
+            .pixels()
+            .group(ADVANCED)
+            .doc("Standard deviation of the smoothing of the noise along the flow: how long marks are."),
+        Param::int("seed", "Seed", 1, [0, 9999])
+            .slider(0.0, 100.0)
+            .group(ADVANCED)
+            .doc("Another number, other strokes."),
+    ],
+    build,
+};
+
+/// Units of L, on white, of the look controls at 1.
+const MOST_BRISTLE: f32 = 20.0;
+const MOST_SHINE: f32 = 30.0;
+
+fn build(scope: &mut Scope<'_>) -> ImageId {
+    let color = scope.required("color");
+    // Ratios of two lengths have no unit: the scale of the rendering is taken out again.
+    let length = scope.float("stroke_length") / (20.0 * scope.scale());
+    let width = scope.float("stroke_width") / (4.0 * scope.scale());
+    let options = TensorOptions {
+        rho: scope.float("rho") * width,
+        levels: scope.int("levels"),
+        ..TensorOptions::default()
+    };
+    let tensors = structure_tensor::of_color(scope.plan, color, &options);
+    let abstraction = Abstraction::of(scope);
+    let n_a = scope.int("n_a");
+    let (scale, seed) = (scope.scale(), scope.int("seed") as u32);
+    let white = noise::white(scope.plan, scale, seed);
+    let sigma_n = scope.float("sigma_n") * width;
+    let grains = gaussian_blur::smooth(scope.plan, white, sigma_n, Class::Colour);
+
+    let lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
+    let flat = abstraction.apply(scope.plan, lab, tensors, n_a);
+    let dilation_length = scope.float("dilation_length") * length;
+    let strokes = flow_dilation::strokes(scope.plan, flat, tensors, grains, dilation_length);
+    let along = |sigma: f32, adapt: Adapt| Lic { sigma, adapt, ..Lic::default() };
+    let sigma_t = scope.float("sigma_t") * length;
+    let mut painted =
+        line_integral_convolution::color(scope.plan, strokes, tensors, &along(sigma_t, Adapt::Anisotropy));
+
+    let sigma_b = scope.float("sigma_b") * length;
+    let heights = line_integral_convolution::color(scope.plan, grains, tensors, &along(sigma_b, Adapt::None));
+    let gain = evenness(sigma_n, sigma_b);
+    let relief = Relief {
+        bristle: scope.float("bristle") * MOST_BRISTLE * gain,
+        // Wide marks are flatter: what counts is their height against their width.
+        shine: scope.float("shine") * MOST_SHINE * gain * sigma_n.max(0.5),
+        angle: scope.float("light_angle"),
+    };
+    painted = paint_relief::lit(scope.plan, painted, heights, &relief);
+
+    let (darks, lights) = (scope.float("darks"), scope.float("lights"));
+    if darks != 0.0 || lights != 0.0 {
+        painted = tone_curve::tones(scope.plan, painted, darks, lights);
+    }
+    let saturation = scope.float("saturation");
+    lab_to_rgb::to_rgb(scope.plan, painted, saturation)
+}
+
+/// Factor by which uniform noise, smoothed by `across` pixels and then along lines by `along`, gets a
+/// standard deviation of 1/4, so that marks of any size are equally strong.
+fn evenness(across: f32, along: f32) -> f32 {
+    // Each axis of a Gaussian reduces the variance of independent values by 1 / (2 sqrt(pi) sigma).
+    let reduced = |sigma: f32| (3.545 * sigma).max(1.0);
+    let deviation = (1.0 / 12.0 / (reduced(across) * reduced(across.hypot(along)))).sqrt();
+    0.25 / deviation
+}

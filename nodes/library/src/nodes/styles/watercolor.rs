@@ -1,0 +1,130 @@
+//! Watercolour (§ 1.2, 5.1): flat washes with dark borders on grained paper, after Bousseau et al. 2006.
+
+use crate::kernels::colour::watercolor_wash::{self, Wash};
+use crate::kernels::colour::{lab_to_rgb, rgb_to_lab, tone_curve};
+use crate::kernels::smoothing::gaussian_blur;
+use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
+use crate::kernels::smoothing::wobble;
+use crate::look::{self, ADVANCED, LOOK};
+use crate::nodes::smoothing::morphology;
+use crate::nodes::structure::structure_tensor;
+use crate::nodes::structure::structure_tensor::TensorOptions;
+use crate::nodes::styles::cartoon::{self, Abstraction};
+use crate::ports;
+use crate::spec::{NodeSpec, Param, Scope};
+use isophote_engine::ImageId;
+
+/// The node.
+pub static NODE: NodeSpec = NodeSpec {
+    id: "watercolor",
+    label: "Watercolor",
+    group: "styles",
+    doc: "Washes of thin paint: the bilateral filter along the local structure and a closing followed by \
+          an opening simplify the picture, outlines waver, pigment gathers at the borders, in clouds and in \
+          the grain of the paper.",
+    section: "1.2, 5.1",
+    inputs: &[ports::COLOR],
+    output: ports::color_output("The watercolour."),
+    own_params: &[
+        Param::float("wash_size", "Wash size", 3.0, [0.0, 30.0])
+            .slider(0.0, 12.0)
+            .pixels()
+            .group(LOOK)
+            .doc("Radius of the smallest patches of colour that are painted."),
+        look::DETAIL,
+        Param::float("pigment", "Pigment", 0.85, [0.0, 1.0])
+            .slider(0.3, 1.0)
+            .group(LOOK)
+            .doc("How much pigment is in the water: 1 keeps the colours, less shows the paper, 0 leaves it white."),
+        Param::float("edge_darkening", "Edge darkening", 0.5, [0.0, 1.0])
+            .group(LOOK)
+            .doc("How much pigment gathers at the borders of dark regions."),
+        Param::float("clouds", "Clouds", 0.5, [0.0, 1.0])
+            .group(LOOK)
+            .doc("How unevenly the water carries the pigment."),
+        Param::float("granulation", "Granulation", 0.5, [0.0, 1.0])
+            .group(LOOK)
+            .doc("How much pigment settles in the grain of the paper."),
+        Param::float("wobble", "Wobble", 2.0, [0.0, 20.0])
+            .slider(0.0, 6.0)
+            .pixels()
+            .group(LOOK)
+            .doc("How far outlines waver; far ones in waves that are longer than `wavelength`, so that none folds."),
+        look::SATURATION,
+        look::LIGHTS,
+        look::DARKS,
+        cartoon::ABSTRACTION,
+        Param::int("n_a", "Iterations", 4, [0, 16])
+            .slider(0.0, 8.0)
+            .structural()
+            .group(ADVANCED)
+            .doc("Bilateral iterations."),
+        cartoon::SIGMA_D,
+        cartoon::SIGMA_R,
+        Param::float("sigma_a", "Edge smoothing", 2.0, [0.0, 20.0])
+            .slider(0.0, 5.0)
+            .pixels()
+            .group(ADVANCED)
+            .doc("Standard deviation of the smoothing of the patches along their outlines."),
+        Param::float("edge_width", "Edge width", 2.0, [0.0, 30.0])
+            .slider(0.0, 10.0)
+            .pixels()
+            .group(ADVANCED)
+            .doc("Width of the dark borders, the standard deviation of a Gaussian."),
+        Param::float("wavelength", "Wavelength", 24.0, [2.0, 400.0])
+            .slider(8.0, 100.0)
+            .group(ADVANCED)
+            .doc("Length of the waves of the outlines, in pixels of the full-size picture."),
+        Param::float("grain_size", "Grain size", 2.5, [0.5, 40.0])
+            .slider(1.0, 10.0)
+            .group(ADVANCED)
+            .doc("Size of the paper's grain, in pixels of the full-size picture."),
+    ],
+    build,
+};
+
+/// Densities of the look controls at 1.
+const MOST_EDGES: f32 = 16.0;
+const MOST_CLOUDS: f32 = 0.8;
+const MOST_GRAIN: f32 = 0.6;
+
+/// Shortest waves against how far they reach: below 5 outlines could fold.
+const SHORTEST_WAVE: f32 = 8.0;
+
+fn build(scope: &mut Scope<'_>) -> ImageId {
+    let color = scope.required("color");
+    let options = TensorOptions::at_scale(scope.scale());
+    let tensors = structure_tensor::of_color(scope.plan, color, &options);
+    let abstraction = Abstraction::of(scope);
+    let n_a = scope.int("n_a");
+    let lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
+    let mut flat = abstraction.apply(scope.plan, lab, tensors, n_a);
+    let (darks, lights) = (scope.float("darks"), scope.float("lights"));
+    if darks != 0.0 || lights != 0.0 {
+        flat = tone_curve::tones(scope.plan, flat, darks, lights);
+    }
+    let saturation = scope.float("saturation");
+    let rgb = lab_to_rgb::to_rgb(scope.plan, flat, saturation);
+
+    // Closing first: watercolours are light (5.1).
+    let radius = scope.float("wash_size");
+    let closed = morphology::close(scope.plan, rgb, radius);
+    let patches = morphology::open(scope.plan, closed, radius);
+    let smooth = Lic { sigma: scope.float("sigma_a"), ..Lic::default() };
+    let patches = line_integral_convolution::color(scope.plan, patches, tensors, &smooth);
+    let (amount, wavelength, scale) = (scope.float("wobble"), scope.float("wavelength"), scope.scale());
+    let wavelength = wavelength.max(SHORTEST_WAVE * amount / scale);
+    let drawn = wobble::waver(scope.plan, patches, amount, wavelength, scale);
+
+    let edge_width = scope.float("edge_width");
+    let surroundings = gaussian_blur::color(scope.plan, drawn, edge_width);
+    let wash = Wash {
+        scale,
+        pigment: scope.float("pigment"),
+        edges: scope.float("edge_darkening") * MOST_EDGES,
+        clouds: scope.float("clouds") * MOST_CLOUDS,
+        grain: scope.float("granulation") * MOST_GRAIN,
+        grain_size: scope.float("grain_size"),
+    };
+    watercolor_wash::painted(scope.plan, drawn, surroundings, &wash)
+}
