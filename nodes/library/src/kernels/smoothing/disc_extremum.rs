@@ -8,7 +8,7 @@
 //! Cost: about 2 radius + 0.6 radius + log2(radius) comparisons per value on the CPU; the shader looks
 //! at every pixel of the disc.
 
-use isophote_engine::fearless_simd::{Simd, dispatch};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::params! {
@@ -84,68 +84,98 @@ fn chords(params: &Params) -> Vec<Chord> {
     chords
 }
 
-/// a = max(a, b), value by value.
+/// target = max(target, values). Left to itself the compiler would store under a mask, which is slow.
 #[inline(always)]
-fn raise(a: &mut [f32], b: &[f32]) {
-    for (a, b) in a.iter_mut().zip(b) {
-        *a = if *b > *a { *b } else { *a };
+fn raise<S: Simd>(simd: S, target: &mut [f32], values: &[f32]) {
+    let len = target.len().min(values.len());
+    let (target, values) = (&mut target[..len], &values[..len]);
+    let mut i = 0;
+    while i + 8 <= len {
+        let v = f32x8::from_slice(simd, &values[i..i + 8]);
+        v.max(f32x8::from_slice(simd, &target[i..i + 8])).store_slice(&mut target[i..i + 8]);
+        i += 8;
+    }
+    while i < len {
+        target[i] = target[i].max(values[i]);
+        i += 1;
     }
 }
 
-// Plain loops: the compiler makes vectors of them, and `dispatch` makes these as wide as the machine has.
+/// Extrema of rows of 2 n pixels from those of n = `length`, in place: what is read lies ahead of what is
+/// written.
 #[inline(always)]
-fn extrema<S: Simd>(_: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
+fn double<S: Simd>(simd: S, row: &mut [f32], length: usize) {
+    let (len, ahead) = (row.len() - 4 * length, 4 * length);
+    let mut i = 0;
+    while i + 8 <= len {
+        let v = f32x8::from_slice(simd, &row[i + ahead..i + ahead + 8]);
+        v.max(f32x8::from_slice(simd, &row[i..i + 8])).store_slice(&mut row[i..i + 8]);
+        i += 8;
+    }
+    while i < len {
+        row[i] = row[i].max(row[i + ahead]);
+        i += 1;
+    }
+}
+
+#[inline(always)]
+fn extrema<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let window = band.window;
     let view = &pass.inputs[0];
     let chords = chords(params);
     let extent = params.extent;
-    let (mut scratch, mut reduced, mut shifted, mut chord_row) = (vec![], vec![], vec![], vec![]);
+    let (mut scratch, mut reduced, mut chord_row, mut results) = (vec![], vec![], vec![], vec![]);
     let count = 2 * extent + 1;
     for x0 in (window.x0..window.x1).step_by(STRIP) {
         let x1 = (x0 + STRIP as i32).min(window.x1);
         let len = 4 * (x1 - x0) as usize;
         chord_row.resize(len, 0.0f32);
-        let mut results = vec![f32::NEG_INFINITY; len * count as usize];
-        let slot = |y: i32| y.rem_euclid(count) as usize * len;
+        results.clear();
+        results.resize(len * count as usize, f32::NEG_INFINITY);
+        let mut opaque = true;
         for y in window.y0 - extent..window.y1 + extent {
             let source = view.padded_row(y, x0 - extent, x1 + extent, &mut scratch);
-            take_in(source, params.sign, &mut reduced);
+            opaque &= source.chunks_exact(4).all(|p| p[3] == 1.0);
+            take_in(simd, source, params.sign, opaque, &mut reduced);
             // Extrema of rows of `length` pixels begin at every value of `reduced`.
             let mut length = 1;
             for chord in &chords {
                 while 2 * length <= 2 * chord.half + 1 {
-                    shifted.clear();
-                    shifted.extend_from_slice(&reduced[4 * length..]);
-                    raise(&mut reduced, &shifted);
+                    double(simd, &mut reduced, length);
                     length *= 2;
                 }
                 let first = 4 * (extent as usize - chord.half);
                 let second = 4 * (extent as usize + chord.half + 1 - length);
                 chord_row.copy_from_slice(&reduced[first..first + len]);
-                raise(&mut chord_row, &reduced[second..second + len]);
+                raise(simd, &mut chord_row, &reduced[second..second + len]);
                 for dy in &chord.rows {
-                    let at = slot(y + dy);
-                    raise(&mut results[at..at + len], &chord_row);
+                    let at = (y + dy).rem_euclid(count) as usize * len;
+                    raise(simd, &mut results[at..at + len], &chord_row);
                 }
             }
             // Row y - extent has now met all of its disc.
             let done = y - extent;
-            let at = slot(done);
+            let best = &mut results[done.rem_euclid(count) as usize * len..][..len];
             if done >= window.y0 {
                 let from = 4 * (x0 - window.x0) as usize;
                 let origin = view.offset(x0, done);
                 let origin = &view.data()[origin..origin + len];
-                give_out(&results[at..at + len], origin, params.sign, &mut band.row_mut(0, done)[from..from + len]);
+                let target = &mut band.row_mut(0, done)[from..from + len];
+                give_out(simd, best, origin, params.sign, opaque, target);
             }
-            results[at..at + len].fill(f32::NEG_INFINITY);
+            best.fill(f32::NEG_INFINITY);
         }
     }
 }
 
 /// A row with its sign, nothing where it is not covered.
 #[inline(always)]
-fn take_in(source: &[f32], sign: f32, target: &mut Vec<f32>) {
+fn take_in<S: Simd>(simd: S, source: &[f32], sign: f32, opaque: bool, target: &mut Vec<f32>) {
     target.resize(source.len(), 0.0);
+    if opaque {
+        signed(simd, source, sign, target);
+        return;
+    }
     for (s, t) in source.chunks_exact(4).zip(target.chunks_exact_mut(4)) {
         let covered = s[3] >= COVERED;
         for c in 0..4 {
@@ -156,12 +186,32 @@ fn take_in(source: &[f32], sign: f32, target: &mut Vec<f32>) {
 
 /// The extrema with their sign; where the disc held nothing, the pixel's own colour.
 #[inline(always)]
-fn give_out(best: &[f32], origin: &[f32], sign: f32, target: &mut [f32]) {
+fn give_out<S: Simd>(simd: S, best: &[f32], origin: &[f32], sign: f32, opaque: bool, target: &mut [f32]) {
+    if opaque {
+        // Alphas of 1 have come through as 1.
+        signed(simd, best, sign, target);
+        return;
+    }
     for ((b, o), t) in best.chunks_exact(4).zip(origin.chunks_exact(4)).zip(target.chunks_exact_mut(4)) {
         for c in 0..3 {
             t[c] = if b[c] == f32::NEG_INFINITY { o[c] } else { sign * b[c] };
         }
         t[3] = o[3];
+    }
+}
+
+#[inline(always)]
+fn signed<S: Simd>(simd: S, source: &[f32], sign: f32, target: &mut [f32]) {
+    let len = source.len().min(target.len());
+    let (source, target) = (&source[..len], &mut target[..len]);
+    let mut i = 0;
+    while i + 8 <= len {
+        (f32x8::from_slice(simd, &source[i..i + 8]) * sign).store_slice(&mut target[i..i + 8]);
+        i += 8;
+    }
+    while i < len {
+        target[i] = source[i] * sign;
+        i += 1;
     }
 }
 

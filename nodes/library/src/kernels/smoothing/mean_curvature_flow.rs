@@ -76,6 +76,7 @@ struct Magnitudes {
 }
 
 impl Magnitudes {
+    #[inline(always)]
     fn row(&self, y: i32) -> &[f32] {
         &self.data[y.rem_euclid(3) as usize * self.len..][..self.len]
     }
@@ -118,8 +119,7 @@ struct Around<'a> {
 impl<'a> Around<'a> {
     #[inline(always)]
     fn new(rows: &'a Rows, y: i32) -> Self {
-        let row = |y: i32| [rows.row(y, 0), rows.row(y, 1), rows.row(y, 2), rows.row(y, 3)];
-        Self { above: row(y - 1), centre: row(y), below: row(y + 1) }
+        Self { above: channels(rows, y - 1), centre: channels(rows, y), below: channels(rows, y + 1) }
     }
 
     /// Central differences of the colour times its squared coverage.
@@ -137,6 +137,12 @@ impl<'a> Around<'a> {
         }
         [x, y]
     }
+}
+
+/// Row `y`, channel by channel.
+#[inline(always)]
+fn channels(rows: &Rows, y: i32) -> [&[f32]; 4] {
+    [rows.row(y, 0), rows.row(y, 1), rows.row(y, 2), rows.row(y, 3)]
 }
 
 #[inline(always)]

@@ -87,8 +87,7 @@ fn diffused<S: Simd, const EXPONENTIAL: bool>(
         }
         for y in window.y0..window.y1 {
             rows.load4(simd, view, y + 1, #[inline(always)] |v| v);
-            let row = |y: i32| [rows.row(y, 0), rows.row(y, 1), rows.row(y, 2), rows.row(y, 3)];
-            let (above, centre, below) = (row(y - 1), row(y), row(y + 1));
+            let (above, centre, below) = (channels(&rows, y - 1), channels(&rows, y), channels(&rows, y + 1));
             let target = &mut band.row_mut(0, y)[4 * (x0 - window.x0) as usize..4 * (x1 - window.x0) as usize];
             for (i, target) in target.chunks_mut(32).enumerate() {
                 let at = 8 * i + 1;
@@ -103,6 +102,12 @@ fn diffused<S: Simd, const EXPONENTIAL: bool>(
             }
         }
     }
+}
+
+/// Row `y`, channel by channel.
+#[inline(always)]
+fn channels(rows: &Rows, y: i32) -> [&[f32]; 4] {
+    [rows.row(y, 0), rows.row(y, 1), rows.row(y, 2), rows.row(y, 3)]
 }
 
 #[inline(always)]
