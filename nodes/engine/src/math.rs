@@ -230,7 +230,6 @@ pub fn spread<S: Simd>(factor: f32x8<S>) -> [f32x8<S>; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::Image;
     use fearless_simd::{Level, dispatch};
 
     fn apply(

@@ -79,6 +79,30 @@ pub fn for_blocks<const N: usize>(band: &mut Band<'_>, mut f: impl FnMut(Block, 
     }
 }
 
+/// Columns that are worked through together by kernels that read far around: what the pixels of so many
+/// columns have in common stays in the first-level cache from row to row. A multiple of [`BLOCK`].
+pub const TILE: i32 = 64;
+
+/// [`for_blocks`] in tiles of [`TILE`] columns.
+#[inline(always)]
+pub fn for_blocks_in_tiles<const N: usize>(band: &mut Band<'_>, mut f: impl FnMut(Block, &mut [f32])) {
+    let window = band.window;
+    let mut start = window.x0;
+    while start < window.x1 {
+        let end = (start + TILE).min(window.x1);
+        for y in window.y0..window.y1 {
+            let row = band.row_mut(0, y);
+            let mut x = start;
+            while x < end {
+                let (at, len) = ((x - window.x0) as usize, BLOCK.min((end - x) as usize));
+                f(Block { x, y, len }, &mut row[N * at..N * (at + len)]);
+                x += BLOCK as i32;
+            }
+        }
+        start = end;
+    }
+}
+
 /// Writes one value a pixel.
 #[inline(always)]
 pub fn write1<S: Simd>(v: f32x8<S>, target: &mut [f32]) {

@@ -5,7 +5,7 @@
 //! one row or column, and two reads interpolate it exactly as a bilinear sample would.
 //! Cost: per step (about 3 k sigma_e of them) four reads of two values; four exponentials per pixel.
 
-use crate::kernels::blocks::{Block, for_blocks, offsets, write2};
+use crate::kernels::blocks::{Block, for_blocks_in_tiles, offsets, write2};
 use crate::kernels::edge_threshold::{LEAST_COVERAGE, Xdog, dog_response};
 use crate::kernels::tensor_algebra::tangent;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
@@ -199,7 +199,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 fn gradient<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let (lightness, field) = (&pass.inputs[0], &pass.inputs[1]);
     let reach = params.halfwidth as i32 + 2;
-    for_blocks::<2>(band, #[inline(always)] |block, target| {
+    for_blocks_in_tiles::<2>(band, #[inline(always)] |block, target| {
         let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
         let orientation = block.read2(simd, field);
         let line = Across::new(simd, &block, orientation);

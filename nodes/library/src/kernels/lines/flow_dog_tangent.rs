@@ -4,7 +4,7 @@
 //! Cost: 4 sigma_m steps per pixel, each one bilinear sample of two values and one (Euler) or two
 //! samples of orientation with their tangents, about 100 operations.
 
-use crate::kernels::blocks::{BLOCK, Block, write1};
+use crate::kernels::blocks::{BLOCK, Block, TILE, write1};
 use crate::kernels::edge_threshold::{LEAST_COVERAGE, Xdog, edge_threshold, edge_uncovered};
 use crate::kernels::stream_line::{Stream, StreamField, centres};
 use crate::kernels::tensor_algebra::tangent;
@@ -84,22 +84,27 @@ fn smooth<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
     let weights: Vec<f32> =
         (1..=radius(params.sigma) as i32).map(|u| (falloff * (u * u) as f32).exp2()).collect();
     let (window, reach) = (band.window, weights.len() as i32);
-    for y in window.y0..window.y1 {
-        let row = band.row_mut(0, y);
-        let mut x = window.x0;
-        while x < window.x1 {
-            let at = (x - window.x0) as usize;
-            let len = (window.x1 - x).min(2 * BLOCK as i32);
-            if len == 2 * BLOCK as i32 && field.is_inner(x, y, len, reach) {
-                inner(simd, params, response, &field, &weights, [x, y], &mut row[at..at + 2 * BLOCK]);
-                x += len;
-                continue;
+    let mut start = window.x0;
+    while start < window.x1 {
+        let end = (start + TILE).min(window.x1);
+        for y in window.y0..window.y1 {
+            let row = band.row_mut(0, y);
+            let mut x = start;
+            while x < end {
+                let at = (x - window.x0) as usize;
+                let len = (end - x).min(2 * BLOCK as i32);
+                if len == 2 * BLOCK as i32 && field.is_inner(x, y, len, reach) {
+                    inner(simd, params, response, &field, &weights, [x, y], &mut row[at..at + 2 * BLOCK]);
+                    x += len;
+                    continue;
+                }
+                let block = Block { x, y, len: BLOCK.min(len as usize) };
+                let target = &mut row[at..at + block.len];
+                clamped(simd, params, response, &field, &weights, &block, target);
+                x += BLOCK as i32;
             }
-            let block = Block { x, y, len: BLOCK.min(len as usize) };
-            let target = &mut row[at..at + block.len];
-            clamped(simd, params, response, &field, &weights, &block, target);
-            x += BLOCK as i32;
         }
+        start = end;
     }
 }
 

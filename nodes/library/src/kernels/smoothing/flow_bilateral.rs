@@ -9,6 +9,7 @@
 //! Cost: 4 sigma steps per pixel, each one bilinear colour sample with one exponential (manual: four)
 //! and one (Euler) or two tensor samples with their tangents.
 
+use crate::kernels::blocks::for_blocks_in_tiles;
 use crate::kernels::coverage::Covered;
 use crate::kernels::lines::orientation_field;
 use crate::kernels::smoothing::oriented_bilateral::Sampling;
@@ -100,15 +101,10 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         field: StreamField { tensors: pass.inputs[1], step: 1.0, midpoint: params.midpoint != 0 },
         opaque: covered.as_ref().is_some_and(Covered::is_opaque),
     };
-    dispatch!(pass.level, simd => {
-        let window = band.window;
-        for y in window.y0..window.y1 {
-            for x in (window.x0..window.x1).step_by(8) {
-                let values = filter.block(simd, x, y, window.x1 - 1);
-                put_pixels4(values, &mut band.row_mut(0, y)[4 * (x - window.x0) as usize..]);
-            }
-        }
-    });
+    let last = band.window.x1 - 1;
+    dispatch!(pass.level, simd => for_blocks_in_tiles::<4>(band, #[inline(always)] |block, target| {
+        put_pixels4(filter.block(simd, block.x, block.y, last), target);
+    }));
 }
 
 /// What all blocks of a band share.

@@ -3,6 +3,7 @@
 //! Cost: radius + 1 multiply-adds per value. Rows and columns run the same arithmetic on
 //! interleaved values, sixteen pixels at a time.
 
+use crate::kernels::coverage::is_opaque;
 use crate::kernels::support::{GAUSSIAN_TAPS, GaussianTable, gaussian_radius, gaussian_table};
 use crate::kernels::symmetric::{RUN, flat, sum};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, f32x16, prelude::*};
@@ -137,7 +138,7 @@ const LEAST_COVERAGE: f32 = 1e-6;
 
 /// Multiplies colours by their alpha, unless all of them are 1: says whether there was need to.
 fn premultiplied(source: &[f32], target: &mut Vec<f32>) -> bool {
-    if source.chunks_exact(4).all(|p| p[3] == 1.0) {
+    if is_opaque(source) {
         return false;
     }
     target.clear();

@@ -4,6 +4,7 @@
 //! Cost: 4 sigma / h steps per pixel, each one bilinear colour sample and one (Euler) or two tensor
 //! samples with their tangents, about 130 operations.
 
+use crate::kernels::blocks::for_blocks_in_tiles;
 use crate::kernels::coverage::Covered;
 use crate::kernels::stream_line::{Stream, StreamField, acos, centres};
 use crate::kernels::lines::orientation_field;
@@ -113,15 +114,10 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         tensors: pass.inputs[1],
         field: StreamField { tensors: pass.inputs[2], step: params.step, midpoint: params.midpoint != 0 },
     };
-    dispatch!(pass.level, simd => {
-        let window = band.window;
-        for y in window.y0..window.y1 {
-            for x in (window.x0..window.x1).step_by(8) {
-                let values = lines.convolved(simd, x, y, window.x1 - 1);
-                put_pixels4(values, &mut band.row_mut(0, y)[4 * (x - window.x0) as usize..]);
-            }
-        }
-    });
+    let last = band.window.x1 - 1;
+    dispatch!(pass.level, simd => for_blocks_in_tiles::<4>(band, #[inline(always)] |block, target| {
+        put_pixels4(lines.convolved(simd, block.x, block.y, last), target);
+    }));
 }
 
 /// What all blocks of a band share.

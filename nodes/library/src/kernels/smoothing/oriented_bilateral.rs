@@ -7,6 +7,7 @@
 //!
 //! Cost: about 1.8 cutoff taps of two loads, one interpolation and one exponential (manual: two).
 
+use crate::kernels::blocks::for_blocks_in_tiles;
 use crate::kernels::coverage::Covered;
 use crate::kernels::support::{get_pixels4, put_pixels4};
 use crate::kernels::tensor_algebra::{anisotropy, tangent};
@@ -167,13 +168,10 @@ impl Blocks<'_> {
     /// All blocks; the compiler is told when all coverage is 1.
     #[inline(always)]
     fn rows<S: Simd, const OPAQUE: bool>(&self, simd: S, band: &mut Band<'_>) {
-        let window = band.window;
-        for y in window.y0..window.y1 {
-            for x in (window.x0..window.x1).step_by(8) {
-                let values = self.filtered::<S, OPAQUE>(simd, x, y, window.x1 - 1);
-                put_pixels4(values, &mut band.row_mut(0, y)[4 * (x - window.x0) as usize..]);
-            }
-        }
+        let last = band.window.x1 - 1;
+        for_blocks_in_tiles::<4>(band, #[inline(always)] |block, target| {
+            put_pixels4(self.filtered::<S, OPAQUE>(simd, block.x, block.y, last), target);
+        });
     }
 
     #[inline(always)]
@@ -298,19 +296,19 @@ impl Blocks<'_> {
         inner: bool,
         gap: Option<usize>,
     ) -> [[f32x8<S>; 4]; 2] {
-        let mut taps = [[f32x8::splat(simd, 0.0); 4]; 2];
         if let Some(gap) = gap {
-            for i in 0..2 {
-                let (at, f) = lines.first(sides[i]);
-                taps[i] = self.apart(simd, at.to_array(), gap, f);
-            }
-        } else {
-            for i in 0..2 {
-                let (at, f) = if inner { self.inner(lines, sides[i]) } else { self.clamped(lines, sides[i]) };
-                taps[i] = self.between(simd, at, f);
-            }
+            let places = [lines.first(sides[0]), lines.first(sides[1])];
+            return [
+                self.apart(simd, places[0].0.to_array(), gap, places[0].1),
+                self.apart(simd, places[1].0.to_array(), gap, places[1].1),
+            ];
         }
-        taps
+        let places = if inner {
+            [self.inner(lines, sides[0]), self.inner(lines, sides[1])]
+        } else {
+            [self.clamped(lines, sides[0]), self.clamped(lines, sides[1])]
+        };
+        [self.between(simd, places[0].0, places[0].1), self.between(simd, places[1].0, places[1].1)]
     }
 
     /// Offsets of the two pixels around the taps `k` pixels along the axis, and the second one's share.
