@@ -51,14 +51,42 @@ pub fn sample_linear4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S
     transposed(pixels)
 }
 
-/// [`sample_linear4`] where all eight positions keep a pixel's distance from the edges.
+/// Eight positions that keep a pixel's distance from the edges: the pixels above and to the left of them,
+/// and the shares of the next ones. Images that are sampled at the same positions share it.
+#[derive(Clone, Copy)]
+pub struct InnerPlace<S: Simd> {
+    column: i32x8<S>,
+    row: i32x8<S>,
+    right: f32x8<S>,
+    below: [f32x8<S>; 4],
+}
+
+impl<S: Simd> InnerPlace<S> {
+    /// The place of positions (x, y).
+    #[inline(always)]
+    pub fn new(x: f32x8<S>, y: f32x8<S>) -> Self {
+        let (x, y) = (x - 0.5, y - 0.5);
+        let (left, top) = (x.floor(), y.floor());
+        Self { column: left.to_int(), row: top.to_int(), right: x - left, below: spread(y - top) }
+    }
+
+    /// Where the pixels begin in the data of `view`.
+    #[inline(always)]
+    fn offsets(&self, view: &View<'_>) -> [i32; 8] {
+        let held = view.window();
+        let (row, column) = (self.row - held.y0, self.column - held.x0);
+        (row * view.stride() as i32 + column * view.channels() as i32).to_array()
+    }
+}
+
+/// [`sample_linear4`] at an inner place.
 #[inline(always)]
-pub fn sample_inner4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 4] {
-    let (at, stride, fx, fy) = inner_places(view, x, y);
-    let (data, fx, fy) = (view.data(), spread(fx), spread(fy));
+pub fn sample_inner4<S: Simd>(simd: S, view: &View<'_>, place: &InnerPlace<S>) -> [f32x8<S>; 4] {
+    let (at, stride, fx, fy) =
+        (place.offsets(view), view.stride() as u32 as usize, spread(place.right), place.below);
     // Two slices of one length share the check of the range.
+    let (data, mut pixels) = (view.data(), [f32x8::splat(simd, 0.0); 4]);
     let (upper, lower) = (&data[..data.len() - stride], &data[stride..]);
-    let mut pixels = [f32x8::splat(simd, 0.0); 4];
     for i in 0..4 {
         let (low, high) = (at[i] as u32 as usize, at[i + 4] as u32 as usize);
         let (top, bottom) = (&upper[low..low + 8], &lower[low..low + 8]);
@@ -72,33 +100,20 @@ pub fn sample_inner4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>
     transposed(pixels)
 }
 
-/// [`sample_linear2`] where all eight positions keep a pixel's distance from the edges.
+/// [`sample_linear2`] at an inner place.
 #[inline(always)]
-pub fn sample_inner2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
-    let (at, stride, fx, fy) = inner_places(view, x, y);
-    let (data, fy) = (view.data(), spread(fy));
+pub fn sample_inner2<S: Simd>(simd: S, view: &View<'_>, place: &InnerPlace<S>) -> [f32x8<S>; 2] {
+    let (at, stride) = (place.offsets(view), view.stride() as u32 as usize);
+    let (data, mut pixels) = (view.data(), [f32x8::splat(simd, 0.0); 4]);
     let (upper, lower) = (&data[..data.len() - stride], &data[stride..]);
-    let mut pixels = [f32x8::splat(simd, 0.0); 4];
     for i in 0..4 {
         let (low, high) = (at[i] as u32 as usize, at[i + 4] as u32 as usize);
         let a = load_pixels(simd, &upper[low..low + 4], &upper[high..high + 4]);
         let b = load_pixels(simd, &lower[low..low + 4], &lower[high..high + 4]);
-        pixels[i] = (b - a).mul_add(fy[i], a);
+        pixels[i] = (b - a).mul_add(place.below[i], a);
     }
     let [l0, l1, r0, r1] = transposed(pixels);
-    [(r0 - l0).mul_add(fx, l0), (r1 - l1).mul_add(fx, l1)]
-}
-
-/// Where the upper left of the four pixels around inner positions begin, values from row to row, and the
-/// shares of the right and of the lower ones.
-#[inline(always)]
-fn inner_places<S: Simd>(view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> ([i32; 8], usize, f32x8<S>, f32x8<S>) {
-    let (held, stride) = (view.window(), view.stride());
-    let (x, y) = (x - 0.5, y - 0.5);
-    let (left, top) = (x.floor(), y.floor());
-    let (column, row): (i32x8<S>, i32x8<S>) = (left.to_int(), top.to_int());
-    let at = (row - held.y0) * stride as i32 + (column - held.x0) * view.channels() as i32;
-    (at.to_array(), stride as u32 as usize, x - left, y - top)
+    [(r0 - l0).mul_add(place.right, l0), (r1 - l1).mul_add(place.right, l1)]
 }
 
 #[inline(always)]
@@ -294,9 +309,9 @@ mod tests {
             let x = f32x8::from_slice(simd, &[1.5, 2.0, 28.4, 13.7, 9.01, 20.0, 3.5, 27.99]);
             let y = f32x8::from_slice(simd, &[1.5, 7.4, 2.0, 3.3, 4.5, 5.99, 6.0, 7.1]);
             let (two, four) = (View::new(&two, [30, 9]), View::new(&four, [30, 9]));
-            let bits = |v: f32x8<_>| v.to_array();
-            assert_eq!(sample_inner2(simd, &two, x, y).map(bits), sample_linear2(simd, &two, x, y).map(bits));
-            assert_eq!(sample_inner4(simd, &four, x, y).map(bits), sample_linear4(simd, &four, x, y).map(bits));
+            let (place, bits) = (InnerPlace::new(x, y), |v: f32x8<_>| v.to_array());
+            assert_eq!(sample_inner2(simd, &two, &place).map(bits), sample_linear2(simd, &two, x, y).map(bits));
+            assert_eq!(sample_inner4(simd, &four, &place).map(bits), sample_linear4(simd, &four, x, y).map(bits));
         });
     }
 }

@@ -11,7 +11,7 @@
 use crate::kernels::tensor_algebra::tangent;
 use isophote_engine::View;
 use isophote_engine::fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
-use isophote_engine::math::{sample_inner2, sample_linear2, sample_linear4};
+use isophote_engine::math::{InnerPlace, sample_inner2, sample_linear2, sample_linear4};
 
 /// A tensor field and how its stream lines are stepped.
 ///
@@ -121,32 +121,40 @@ impl StreamField<'_> {
         lines[1].follow(t[1], h[1]);
     }
 
-    /// [`StreamField::advance_both`] for all lanes of `N` times eight `inner` lines of (E - G, F), which stay
-    /// off the picture's edges: the same arithmetic without what the edges ask for.
+    /// Moves all lanes of `N` times eight lines by one step, from places where the tangents are `t`.
+    ///
+    /// The lines are inner ones, which stay off the picture's edges, and the field is (E - G, F). The
+    /// arithmetic is that of [`StreamField::advance_both`] without what the edges ask for; whoever takes
+    /// samples at the new positions asks for the tangents there with [`StreamField::tangent_at`] as well,
+    /// so that both share the place and the wait.
     #[inline(always)]
-    pub fn advance_inner<S: Simd, const N: usize>(&self, simd: S, lines: &mut [Stream<S>; N]) {
-        let (h, zero) = (f32x8::splat(simd, self.step), f32x8::splat(simd, 0.0));
-        let mut t = [[zero; 2]; N];
-        for i in 0..N {
-            t[i] = lines[i].direction;
-            if !lines[i].begins {
-                let [d, f] = sample_inner2(simd, &self.tensors, lines[i].x, lines[i].y);
-                t[i] = tangent(d, f, zero);
-            }
-        }
+    pub fn advance_inner<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        lines: &mut [Stream<S>; N],
+        mut t: [[f32x8<S>; 2]; N],
+    ) {
+        let h = f32x8::splat(simd, self.step);
         if self.midpoint {
-            let mut field = [[zero; 2]; N];
+            let mut field = t;
             for i in 0..N {
                 let [x, y] = lines[i].halfway(t[i], h);
-                field[i] = sample_inner2(simd, &self.tensors, x, y);
+                field[i] = sample_inner2(simd, &self.tensors, &InnerPlace::new(x, y));
             }
             for i in 0..N {
-                t[i] = tangent(field[i][0], field[i][1], zero);
+                t[i] = tangent(field[i][0], field[i][1], f32x8::splat(simd, 0.0));
             }
         }
         for i in 0..N {
             lines[i].follow(t[i], h);
         }
+    }
+
+    /// Unit minor eigenvectors of (E - G, F) at an inner place, of either sign.
+    #[inline(always)]
+    pub fn tangent_at<S: Simd>(&self, simd: S, place: &InnerPlace<S>) -> [f32x8<S>; 2] {
+        let [difference, f] = sample_inner2(simd, &self.tensors, place);
+        tangent(difference, f, f32x8::splat(simd, 0.0))
     }
 
     /// True when lines of length `radius` through `len` pixels from (x, y) on stay off the edges.

@@ -9,7 +9,7 @@ use crate::kernels::edge_threshold::{LEAST_COVERAGE, Xdog, edge_threshold, edge_
 use crate::kernels::stream_line::{Stream, StreamField, centres};
 use crate::kernels::tensor_algebra::tangent;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, mask32x8, prelude::*};
-use isophote_engine::math::{sample_inner2, sample_linear2};
+use isophote_engine::math::{InnerPlace, sample_inner2, sample_linear2};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::params! {
@@ -126,11 +126,16 @@ fn inner<S: Simd>(
     let ([a, b], [c, d]) = (begun(simd, field, &blocks[0]), begun(simd, field, &blocks[1]));
     let mut lines = [a, b, c, d];
     let mut sums = [blocks[0].read2(simd, response), blocks[1].read2(simd, response)];
-    for weight in weights {
-        field.advance_inner(simd, &mut lines);
+    let mut t = [a.direction, b.direction, c.direction, d.direction];
+    for (u, weight) in weights.iter().enumerate() {
+        field.advance_inner(simd, &mut lines, t);
         let weight = f32x8::splat(simd, *weight);
         for i in 0..4 {
-            let [v, alpha] = sample_inner2(simd, response, lines[i].x, lines[i].y);
+            let place = InnerPlace::new(lines[i].x, lines[i].y);
+            if u + 1 < weights.len() {
+                t[i] = field.tangent_at(simd, &place);
+            }
+            let [v, alpha] = sample_inner2(simd, response, &place);
             let [sum, norm] = sums[i / 2];
             sums[i / 2] = [weight.mul_add(v, sum), weight.mul_add(alpha, norm)];
         }

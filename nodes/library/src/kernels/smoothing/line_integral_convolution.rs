@@ -11,7 +11,7 @@ use crate::kernels::lines::orientation_field;
 use crate::kernels::support::{get_pixels4, put_pixels4};
 use crate::kernels::tensor_algebra::{anisotropy, tangent};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::math::{Elementary, sample_inner4, sample_linear4};
+use isophote_engine::math::{Elementary, InnerPlace, sample_inner4, sample_linear4};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::params! {
@@ -149,13 +149,14 @@ impl Lines<'_> {
         let mut norm = f32x8::splat(simd, 1.0);
         let [px, py] = centres(simd, x, y, last);
         let mut lines = Stream::both_sides(px, py, tangent(e, f, g));
+        let mut t = [lines[0].direction, lines[1].direction];
         let mut u = [zero; 2];
         let mut active = [step.simd_le(limit); 2];
         // Lines that have ended go on where there is no edge to stop them; they have no weight.
         let inner = field.is_inner(x, y, 8, self::radius(params.sigma) as i32);
         while (active[0] | active[1]).any_true() {
             if inner {
-                field.advance_inner(simd, &mut lines);
+                field.advance_inner(simd, &mut lines, t);
             } else {
                 field.advance_both(simd, &mut lines, active);
             }
@@ -173,7 +174,9 @@ impl Lines<'_> {
                 active[side] &= line.turn.simd_ge(f32x8::splat(simd, params.least_turn));
                 let weight = active[side].select((falloff * u[side] * u[side]).exp2(), zero);
                 let [r, g, b, a] = if inner {
-                    sample_inner4(simd, &self.source, line.x, line.y)
+                    let place = InnerPlace::new(line.x, line.y);
+                    t[side] = field.tangent_at(simd, &place);
+                    sample_inner4(simd, &self.source, &place)
                 } else {
                     sample_linear4(simd, &self.source, line.x, line.y)
                 };
