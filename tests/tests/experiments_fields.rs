@@ -1,5 +1,4 @@
-//! Experiments on fields: filling low-contrast regions (Figure 2.26) and stream lines on a circular
-//! field (Figure 2.31).
+//! Experiments on fields: filling low-contrast regions (Figure 2.26).
 
 use isophote::kernels::structure::jacobi_step;
 use isophote_engine::{Class, Image, PlanBuilder};
@@ -123,44 +122,4 @@ fn relaxation_on_a_pyramid_solves_laplaces_equation() {
     assert!(slow > 0.02, "1,000 Jacobi iterations are not enough");
     assert!(pyramid[2] < slow, "the pyramid is better");
     assert!(pyramid[2] < 0.02, "and within two percent");
-}
-
-/// A cone: its grey value is the distance from the centre over 100 pixels, and its tensor field is
-/// circular.
-fn cone() -> Image {
-    from_fn(161, 161, |x, y| {
-        let v = (f64::from(x) - 80.0).hypot(f64::from(y) - 80.0) / 100.0;
-        let v = v as f32;
-        [v, v, v, 1.0]
-    })
-}
-
-/// How far outwards stream lines of `integrator` lead, in pixels, weighted along the line.
-fn drift(integrator: &str, radius: f64) -> f64 {
-    let params = [("sigma", "8"), ("integrator", integrator), ("adapt", "none"), ("max_angle", "0")];
-    let picture = cone();
-    let smoothed = run::node("line_integral_convolution", &params, &picture);
-    let (mut sum, mut count) = (0.0, 0.0);
-    for y in 0..161 {
-        for x in 0..161 {
-            let r = (f64::from(x) - 80.0).hypot(f64::from(y) - 80.0);
-            if (r - radius).abs() < 1.0 {
-                sum += 100.0 * f64::from(smoothed.pixel(x, y)[0] - picture.pixel(x, y)[0]);
-                count += 1.0;
-            }
-        }
-    }
-    sum / count
-}
-
-#[test]
-fn euler_drifts_outwards_and_runge_kutta_does_not() {
-    println!("radius   euler    rk2   (pixels outwards)");
-    for radius in [16.0, 24.0, 36.0, 50.0] {
-        let (euler, rk2) = (drift("euler", radius), drift("rk2", radius));
-        println!("{radius:6}  {euler:6.3}  {rk2:6.3}");
-        // Each step of length h leads h^2 / 2r outwards.
-        assert!(euler > 0.8 * 8.0 * 0.7 / (2.0 * radius), "Euler drifts");
-        assert!(rk2.abs() < 0.1 * euler, "the second order drifts ten times less");
-    }
 }

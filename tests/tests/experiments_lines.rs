@@ -1,10 +1,11 @@
-//! Experiments on the difference of Gaussians: the two forms agree (4.9, 4.10), and the response is
-//! that of the scale-normalized Laplacian (4.5).
+//! Experiments on the difference of Gaussians: the two forms agree (4.9, 4.10), the response is that of the
+//! scale-normalized Laplacian (4.5), and the separable flow-based filter is the two-dimensional one (§ 4.5).
 
 use isophote_engine::Image;
-use isophote_tests::compare::distance;
+use isophote_tests::compare::{distance, psnr};
 use isophote_tests::pictures::{self, from_fn};
 use isophote_tests::run;
+use isophote_tests::table::Table;
 
 /// The grey of CIELAB lightness L, gamma-encoded.
 fn grey_of_lightness(l: f64) -> f32 {
@@ -17,7 +18,8 @@ fn grey_of_lightness(l: f64) -> f32 {
 #[test]
 fn the_tau_form_and_the_sharpening_form_agree() {
     let picture = pictures::scenery(160, 120);
-    println!("tau      form without threshold   tanh");
+    let title = "Largest difference between the tau form and the sharpening form";
+    let mut table = Table::new(11, "4.9, 4.10", title, &["tau", "response, units of L", "after tanh"]);
     for tau in [0.5f64, 0.9, 0.956, 0.99] {
         let (epsilon, phi) = (0.4f64, 1.7f64);
         let text = |v: f64| format!("{v}");
@@ -42,11 +44,12 @@ fn the_tau_form_and_the_sharpening_form_agree() {
         }
         let (worst, _) = distance(&plain, &sharpened);
         let (worst_tanh, _) = distance(&by("tau", "tanh"), &by("sharpen", "tanh"));
-        println!("{tau:5}    {worst:22.1e}   {worst_tanh:.1e}");
-        assert!(worst < 2e-4, "to rounding, in units of L");
-        assert!(worst_tanh < 1e-3);
+        assert!(worst < 2e-4, "to rounding, in units of L: {worst}");
+        assert!(worst_tanh < 1e-3, "{worst_tanh}");
         assert!(plain.data().iter().any(|v| v.abs() > 0.1), "there is something to compare");
+        table.row(&[text(tau), "below 2e-4".into(), "below 1e-3".into()]);
     }
+    table.print();
 }
 
 /// Lightness 50 + 30 cos(omega x) as a picture.
@@ -67,7 +70,9 @@ fn response(sigma: f64, k: f64, omega: f64) -> f64 {
 
 #[test]
 fn the_response_is_that_of_the_scale_normalized_laplacian() {
-    println!("sigma     k   DoG / (k - 1)   -sigma^2 Laplacian   ratio");
+    let title = "Difference of Gaussians / (k - 1) against the scale-normalized Laplacian, on a wave";
+    let columns = ["sigma", "k", "DoG / (k - 1)", "Laplacian", "ratio"];
+    let mut table = Table::new(11, "4.5", title, &columns);
     for sigma in [2.0, 4.0, 8.0] {
         // The same wave, measured in sigmas.
         let omega = 0.8 / sigma;
@@ -76,7 +81,13 @@ fn the_response_is_that_of_the_scale_normalized_laplacian() {
         for k in [1.6, 1.4, 1.2, 1.1] {
             let normalized = response(sigma, k, omega) / (k - 1.0);
             let ratio = normalized / laplacian;
-            println!("{sigma:5}  {k:4}  {normalized:14.3}  {laplacian:19.3}  {ratio:6.3}");
+            table.row(&[
+                format!("{sigma}"),
+                format!("{k}"),
+                format!("{normalized:.2}"),
+                format!("{laplacian:.2}"),
+                format!("{ratio:.2}"),
+            ]);
             ratios.push(ratio);
         }
         // What (4.5) becomes for these k, in the limit of untruncated Gaussians.
@@ -87,14 +98,60 @@ fn the_response_is_that_of_the_scale_normalized_laplacian() {
         }
         assert!((ratios[3] - 1.0).abs() < 0.1, "the limit k -> 1");
     }
+    table.print();
 }
 
 #[test]
 fn the_response_does_not_depend_on_scale() {
     // Twice the scale on a picture of twice the size: the same response.
     let responses: Vec<f64> = [2.0, 4.0, 8.0].iter().map(|s| response(*s, 1.6, 0.8 / s)).collect();
-    println!("responses at sigma 2, 4, 8: {responses:.3?}");
+    let mut table = Table::new(
+        11,
+        "4.5",
+        "Response at a crest, the wave growing with the filter",
+        &["sigma 2", "sigma 4", "sigma 8"],
+    );
+    let cells: Vec<String> = responses.iter().map(|r| format!("{r:.2}")).collect();
+    table.row(&cells);
+    table.print();
     for pair in responses.windows(2) {
         assert!((pair[0] / pair[1] - 1.0).abs() < 0.02);
     }
+}
+
+#[test]
+fn the_separable_filter_is_the_two_dimensional_one() {
+    let picture = pictures::scenery(160, 120);
+    let by = |kernel: &str, integrator: &str, threshold: &str| {
+        let params = [("kernel", kernel), ("integrator", integrator), ("threshold", threshold)];
+        run::node("flow_dog", &params, &picture)
+    };
+    let mut table = Table::new(
+        10,
+        "section 4.5",
+        "Separable flow-based difference of Gaussians against the two-dimensional kernel",
+        &[
+            "stream lines",
+            "samples",
+            "largest difference of the response, units of L",
+            "edge images alike, dB",
+        ],
+    );
+    let mut likeness = Vec::new();
+    for (integrator, samples) in [("cabral_leedom", "nearest"), ("rk2", "bilinear"), ("euler", "bilinear")] {
+        let at = |kernel| by(kernel, integrator, "none");
+        let (worst, mean) = distance(&at("separable"), &at("two_dimensional"));
+        let edges = psnr(&by("separable", integrator, "tanh"), &by("two_dimensional", integrator, "tanh"));
+        if samples == "nearest" {
+            assert!(worst < 5e-3 && mean < 2e-4, "to rounding: {worst:e}, mean {mean:e}");
+            table.row(&[integrator, samples, "below 0.005 (rounding)", "above 60"]);
+            assert!(edges > 60.0, "{edges} dB");
+        } else {
+            assert!(mean > 2e-3, "interpolated samples make an approximation of it: {mean:e}");
+            table.row(&[integrator.to_owned(), samples.into(), format!("{worst:.1}"), format!("{edges:.0}")]);
+            likeness.push(edges);
+        }
+    }
+    table.print();
+    assert!(likeness.iter().all(|db| *db > 25.0), "indistinguishable to the eye: {likeness:?} dB");
 }

@@ -11,6 +11,7 @@ pub mod coverage;
 pub mod edge_threshold;
 pub mod luma_lines;
 pub mod neighbours;
+pub mod pixel_line;
 pub mod rows;
 pub mod stream_line;
 pub mod support;

@@ -84,12 +84,17 @@ pub fn color(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: 
     let params = Params {
         sigma: options.sigma,
         step: options.step.max(MIN_STEP),
-        least_turn: if options.max_angle > 0.0 { options.max_angle.to_radians().cos() } else { -1.0 },
+        least_turn: least_turn(options.max_angle),
         midpoint: u32::from(options.midpoint),
         adapt: options.adapt as u32,
     };
     let field = orientation_field::of_tensor(plan, tensors);
     plan.pass(&KERNEL, &[color, tensors, field], &params, Class::Colour, support(&params))
+}
+
+/// Cosine of the greatest turn that a line survives, `max_angle` degrees; 0 for any.
+pub(crate) fn least_turn(max_angle: f32) -> f32 {
+    if max_angle > 0.0 { max_angle.to_radians().cos() } else { -1.0 }
 }
 
 /// Shorter steps cost much and gain nothing over rounding.

@@ -1,8 +1,12 @@
-//! The flow-based difference of Gaussians filter, separable (§ 4.5), with lines where geometry breaks.
+//! The flow-based difference of Gaussians filter (§ 4.5), separable or with its two-dimensional kernel, with
+//! lines where geometry breaks.
 
 use crate::kernels::colour::lightness;
 use crate::kernels::edge_threshold::{Threshold, Xdog};
-use crate::kernels::lines::{darken_by_lines, flow_dog_gradient, flow_dog_tangent, guide_lines, orientation_field};
+use crate::kernels::lines::flow_dog_two_dimensional::{self, Stepping};
+use crate::kernels::lines::{
+    darken_by_lines, flow_dog_cabral_leedom, flow_dog_gradient, flow_dog_tangent, guide_lines, orientation_field,
+};
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::structure::structure_tensor::{Guides, TensorOptions, of_color_and_guides};
 use crate::ports;
@@ -42,9 +46,7 @@ pub static NODE: NodeSpec = NodeSpec {
             .slider(1.0, 5.0)
             .structural()
             .doc("Times the filter runs, each on the lightness times the lines found so far, which closes gaps."),
-        Param::choice("kernel", "Kernel", 0, &[Choice { id: "separable", label: "Separable" }])
-            .uniform()
-            .doc("Separable: across the tangent at each pixel, then along its stream line."),
+        KERNEL,
         INTEGRATOR,
         Param::float("guide_weight", "Guide weight", 0.0, [0.0, 16.0])
             .slider(0.0, 2.0)
@@ -79,10 +81,26 @@ pub(crate) const INTEGRATOR: Param = Param::choice(
     &[
         Choice { id: "euler", label: "Euler" },
         Choice { id: "rk2", label: "Runge-Kutta, second order" },
+        Choice { id: "cabral_leedom", label: "Cabral-Leedom" },
     ],
 )
-.uniform()
-.doc("How stream lines are stepped: Euler (2.176) or second order (2.182).");
+.doc(
+    "How stream lines are stepped: Euler (2.176), second order (2.182), or from pixel boundary to pixel \
+     boundary with the Gaussian integrated exactly (Cabral and Leedom, 2.193).",
+);
+const KERNEL: Param = Param::choice(
+    "kernel",
+    "Kernel",
+    0,
+    &[
+        Choice { id: "separable", label: "Separable" },
+        Choice { id: "two_dimensional", label: "Two-dimensional" },
+    ],
+)
+.doc(
+    "Separable: across the tangent at each pixel, then along its stream line. Two-dimensional: across the \
+     tangent at every point of the stream line, as first proposed; costly, and hardly to be told apart.",
+);
 
 /// How lines are drawn along the flow; lengths in pixels of the picture that is rendered.
 #[derive(Clone, Copy, Debug)]
@@ -92,7 +110,8 @@ pub(crate) struct FlowDog {
     pub sigma_m: f32,
     pub xdog: Xdog,
     pub iterations: i32,
-    pub midpoint: bool,
+    pub stepping: Stepping,
+    pub two_dimensional: bool,
     pub guide_weight: f32,
 }
 
@@ -110,24 +129,50 @@ impl FlowDog {
         let guides = [guides.normal, guides.depth, guides.object_id];
         for iteration in 1..=self.iterations {
             let last = iteration == self.iterations;
-            let mut response =
-                flow_dog_gradient::response(plan, source, field, self.sigma_e, self.k, &self.xdog);
-            if self.guide_weight > 0.0 && guides.iter().any(Option::is_some) {
-                let (sigma, weight) = (self.sigma_e, self.guide_weight);
-                response =
-                    guide_lines::add(plan, response, field, guides, sigma, weight, self.xdog.edge);
-            }
             let mut xdog = self.xdog;
             if !last && xdog.threshold == Threshold::None {
                 // Only an edge image can darken the input of the next iteration.
                 xdog.threshold = Threshold::Tanh;
             }
-            edges = flow_dog_tangent::edges(plan, response, field, self.sigma_m, self.midpoint, &xdog);
+            edges = if self.two_dimensional {
+                let marked = self.marked(plan, source, field, guides);
+                let sigmas = [self.sigma_e, self.k, self.sigma_m];
+                flow_dog_two_dimensional::edges(plan, [source, field, marked], sigmas, self.stepping, &xdog)
+            } else {
+                let response =
+                    flow_dog_gradient::response(plan, source, field, self.sigma_e, self.k, &xdog);
+                let response = self.marked(plan, response, field, guides);
+                self.along(plan, response, field, &xdog)
+            };
             if !last {
                 source = darken_by_lines::darken(plan, lightness, edges);
             }
         }
         edges
+    }
+
+    /// A response, or any image of that shape, with the lines that the guides draw.
+    fn marked(
+        &self,
+        plan: &mut PlanBuilder,
+        response: ImageId,
+        field: ImageId,
+        guides: [Option<ImageId>; 3],
+    ) -> ImageId {
+        if self.guide_weight <= 0.0 || guides.iter().all(Option::is_none) {
+            return response;
+        }
+        let (sigma, weight) = (self.sigma_e, self.guide_weight);
+        guide_lines::add(plan, response, field, guides, sigma, weight, self.xdog.edge)
+    }
+
+    /// The second pass of the separable filter.
+    fn along(&self, plan: &mut PlanBuilder, response: ImageId, field: ImageId, xdog: &Xdog) -> ImageId {
+        if self.stepping == Stepping::CabralLeedom {
+            return flow_dog_cabral_leedom::edges(plan, response, field, self.sigma_m, xdog);
+        }
+        let midpoint = self.stepping == Stepping::Midpoint;
+        flow_dog_tangent::edges(plan, response, field, self.sigma_m, midpoint, xdog)
     }
 }
 
@@ -157,7 +202,12 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         sigma_m: scope.float("sigma_m"),
         xdog: dog::xdog(scope),
         iterations: scope.int("iterations"),
-        midpoint: scope.choice("integrator") == "rk2",
+        stepping: match scope.choice("integrator") {
+            "euler" => Stepping::Euler,
+            "cabral_leedom" => Stepping::CabralLeedom,
+            _ => Stepping::Midpoint,
+        },
+        two_dimensional: scope.choice("kernel") == "two_dimensional",
         guide_weight: scope.float("guide_weight"),
     };
     let guides = guides(scope, lines.guide_weight);

@@ -1,6 +1,7 @@
 //! Line integral convolution (§ 2.9): smoothing along stream lines of the structure tensor, which
 //! makes edges more coherent and gives pictures the look of brush strokes.
 
+use crate::kernels::smoothing::cabral_leedom;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
 use crate::nodes::structure::structure_tensor;
 use crate::ports;
@@ -30,10 +31,17 @@ pub static NODE: NodeSpec = NodeSpec {
             "integrator",
             "Integrator",
             1,
-            &[Choice { id: "euler", label: "Euler" }, Choice { id: "rk2", label: "Runge-Kutta 2" }],
+            &[
+                Choice { id: "euler", label: "Euler" },
+                Choice { id: "rk2", label: "Runge-Kutta 2" },
+                Choice { id: "cabral_leedom", label: "Cabral-Leedom" },
+            ],
         )
-        .uniform()
-        .doc("How lines are stepped: Euler's method (2.177) or the second-order midpoint method (2.182)."),
+        .doc(
+            "How lines are stepped: Euler's method (2.177), the second-order midpoint method (2.182), or \
+             from pixel boundary to pixel boundary with the Gaussian integrated exactly on the pixels \
+             (Cabral and Leedom, 2.193), where `step` has no part.",
+        ),
         Param::choice(
             "adapt",
             "Adapt length",
@@ -71,5 +79,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         },
         max_angle: scope.float("max_angle"),
     };
+    if scope.choice("integrator") == "cabral_leedom" {
+        return cabral_leedom::color(scope.plan, color, tensors, &options);
+    }
     line_integral_convolution::color(scope.plan, color, tensors, &options)
 }

@@ -2,6 +2,7 @@
 
 use crate::kernels::colour::blueprint_paper::{Sheet, draw};
 use crate::kernels::colour::{lightness, rgb_to_lab};
+use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::look::{self, ADVANCED, LOOK, Lines};
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::lines::flow_dog::{self, FlowDog};
@@ -82,7 +83,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         sigma_m: lines.sigma_m,
         xdog: lines.xdog(),
         iterations: scope.int("line_iterations"),
-        midpoint: true,
+        stepping: Stepping::Midpoint,
+        two_dimensional: false,
         guide_weight,
     };
     let lightness = lightness::of_lab(scope.plan, smooth);

@@ -4,6 +4,7 @@ use crate::kernels::colour::quantize_luminance::{Steepness, quantize};
 use crate::kernels::colour::{composite_lines, lab_to_rgb, lightness, rgb_to_lab, tone_curve};
 use crate::kernels::smoothing::bilateral::Options;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
+use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::look::{self, ADVANCED, Lines};
 use crate::nodes::colour::quantize_luminance as quantization;
 use crate::nodes::lines::difference_of_gaussians as dog;
@@ -191,7 +192,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         sigma_m: lines.sigma_m,
         xdog: lines.xdog(),
         iterations: scope.int("line_iterations"),
-        midpoint: true,
+        stepping: Stepping::Midpoint,
+        two_dimensional: false,
         guide_weight,
     };
     let lightness = lightness::of_lab(scope.plan, for_lines);

@@ -1,0 +1,139 @@
+//! Experiments on stream lines: their drift on a circular field (Figure 2.31), and the Gaussian along them
+//! on images that are constant on pixels (2.193).
+
+use isophote::kernels::smoothing::cabral_leedom;
+use isophote::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
+use isophote_engine::{Class, Image, PlanBuilder};
+use isophote_tests::pictures::{self, Kind, from_fn};
+use isophote_tests::run;
+use isophote_tests::table::Table;
+
+/// A cone: its grey value is the distance from the centre over 100 pixels, and its tensor field is
+/// circular.
+fn cone() -> Image {
+    from_fn(161, 161, |x, y| {
+        let v = (f64::from(x) - 80.0).hypot(f64::from(y) - 80.0) / 100.0;
+        let v = v as f32;
+        [v, v, v, 1.0]
+    })
+}
+
+/// How far outwards stream lines of `integrator` lead, in pixels, weighted along the line.
+fn drift(integrator: &str, radius: f64) -> f64 {
+    let params = [("sigma", "8"), ("integrator", integrator), ("adapt", "none"), ("max_angle", "0")];
+    let picture = cone();
+    let smoothed = run::node("line_integral_convolution", &params, &picture);
+    let (mut sum, mut count) = (0.0, 0.0);
+    for y in 0..161 {
+        for x in 0..161 {
+            let r = (f64::from(x) - 80.0).hypot(f64::from(y) - 80.0);
+            if (r - radius).abs() < 1.0 {
+                sum += 100.0 * f64::from(smoothed.pixel(x, y)[0] - picture.pixel(x, y)[0]);
+                count += 1.0;
+            }
+        }
+    }
+    sum / count
+}
+
+#[test]
+fn euler_drifts_outwards_and_runge_kutta_does_not() {
+    let mut table = Table::new(
+        7,
+        "Figure 2.31",
+        "Drift outwards on a circular field, pixels, sigma 8",
+        &["radius", "Euler", "Runge-Kutta", "Cabral-Leedom"],
+    );
+    for radius in [16.0, 24.0, 36.0, 50.0] {
+        let [euler, rk2, cabral] = ["euler", "rk2", "cabral_leedom"].map(|i| drift(i, radius));
+        table.row(&[format!("{radius}"), format!("{euler:.2}"), format!("{rk2:.2}"), format!("{cabral:.2}")]);
+        // Each step of length h leads h^2 / 2r outwards.
+        assert!(euler > 0.8 * 8.0 * 0.7 / (2.0 * radius), "Euler drifts");
+        assert!(rk2.abs() < 0.1 * euler, "the second order drifts ten times less: {rk2} to {euler}");
+        assert!(cabral.abs() < euler, "directions of the pixels themselves do not lead outwards: {cabral}");
+    }
+    table.print();
+}
+
+/// erf(x) for 0 <= x <= 2 by its Maclaurin series.
+fn erf(x: f64) -> f64 {
+    let (mut term, mut sum) = (x, x);
+    for n in 1..60 {
+        term *= -x * x / f64::from(n);
+        sum += term / f64::from(2 * n + 1);
+    }
+    sum * 2.0 / std::f64::consts::PI.sqrt()
+}
+
+/// The Gaussian along the straight line through the centre of (x, y) at `angle`, over an image that is
+/// constant on pixels, in double precision; cut where the filters cut it.
+fn exact(image: &Image, x: i32, y: i32, angle: f64, sigma: f64) -> f64 {
+    let (sin, cos) = angle.sin_cos();
+    let limit = (2.0 * sigma).floor();
+    let (mut sum, mut norm) = (0.0, 0.0);
+    for (dx, dy) in [(cos, sin), (-cos, -sin)] {
+        let mut cuts = vec![0.0, limit];
+        for k in 0..limit as i32 + 1 {
+            // Boundaries lie half a pixel and k whole ones from the centre.
+            for d in [dx, dy] {
+                cuts.push(((f64::from(k) + 0.5) / d.abs().max(1e-9)).min(limit));
+            }
+        }
+        cuts.sort_by(f64::total_cmp);
+        for pair in cuts.windows(2) {
+            let middle = 0.5 * (pair[0] + pair[1]);
+            let at = |c: i32, d: f64| (f64::from(c) + 0.5 + d * middle).floor() as i32;
+            let bound = |u: f64| erf(u / (sigma * std::f64::consts::SQRT_2));
+            let weight = bound(pair[1]) - bound(pair[0]);
+            sum += weight * f64::from(image.pixel(at(x, dx), at(y, dy))[0]);
+            norm += weight;
+        }
+    }
+    sum / norm
+}
+
+#[test]
+fn cabral_leedom_integrates_the_gaussian_exactly_on_pixels() {
+    const SIDE: u32 = 64;
+    let picture = pictures::color(Kind::Noise, SIDE, SIDE);
+    let mut table = Table::new(
+        7,
+        "2.193",
+        "Largest error of the Gaussian along straight lines over noise constant on pixels, sigma 5",
+        &["angle, degrees", "Runge-Kutta, step 1", "Cabral-Leedom"],
+    );
+    for degrees in [0.0f64, 11.0, 30.0, 45.0, 73.0, 90.0, 128.0] {
+        let angle = degrees.to_radians();
+        let (sin, cos) = angle.sin_cos();
+        let tensors = from_fn(SIDE, SIDE, |_, _| [sin * sin, -sin * cos, cos * cos, 1.0].map(|v| v as f32));
+        let options = Options { sigma: 5.0, adapt: Adapt::None, ..Options::default() };
+        let filtered = |exactly: bool| {
+            let mut plan = PlanBuilder::new(SIDE, SIDE).unwrap();
+            let color = plan.input("color", 4, Class::Colour);
+            let tensor = plan.input("tensor", 4, Class::Field);
+            let out = if exactly {
+                cabral_leedom::color(&mut plan, color, tensor, &options)
+            } else {
+                line_integral_convolution::color(&mut plan, color, tensor, &options)
+            };
+            plan.output("output", out);
+            let inputs = [("color", picture.clone()), ("tensor", tensors.clone())];
+            run::whole(&plan.finish().unwrap(), &inputs)
+        };
+        let worst = |image: &Image| {
+            let mut worst = 0.0f64;
+            for y in 12..SIDE as i32 - 12 {
+                for x in 12..SIDE as i32 - 12 {
+                    let error = f64::from(image.pixel(x, y)[0]) - exact(&picture, x, y, angle, 5.0);
+                    worst = worst.max(error.abs());
+                }
+            }
+            worst
+        };
+        let (sampled, integrated) = (worst(&filtered(false)), worst(&filtered(true)));
+        assert!(integrated < 1e-4, "{degrees} degrees: {integrated:e}");
+        assert!(sampled > 10.0 * integrated, "samples are not the integral: {sampled:e}, {integrated:e}");
+        table.row(&[format!("{degrees}"), format!("{sampled:.3}"), "below 1e-4".into()]);
+    }
+    table.print();
+}
