@@ -21,6 +21,7 @@ nodes! {
         coherent,
         oil_paint,
         watercolor,
+        ink,
     }
     structure {
         structure_tensor,
@@ -34,6 +35,7 @@ nodes! {
     }
     lines {
         difference_of_gaussians,
+        edge_detector,
         flow_dog,
     }
     coherence {

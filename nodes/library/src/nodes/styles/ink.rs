@@ -1,0 +1,388 @@
+//! Ink and its relatives: the extended difference of Gaussians as drawing (§ 4.3, 4.4, Figure 4.1).
+
+use crate::kernels::colour::ink_sheet::{Sheet, draw};
+use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
+use crate::kernels::edge_threshold::{Threshold, Xdog};
+use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
+use crate::kernels::smoothing::gaussian_blur;
+use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
+use crate::kernels::structure::{contrast, noise};
+use crate::look::{self, ADVANCED, LOOK};
+use crate::nodes::lines::difference_of_gaussians as dog;
+use crate::nodes::lines::flow_dog::{self, FlowDog};
+use crate::nodes::structure::structure_tensor::{TensorOptions, of_color_and_guides};
+use crate::nodes::styles::cartoon::{self, Abstraction};
+use crate::ports;
+use crate::spec::{Choice, NodeSpec, Param, Scope};
+use isophote_engine::{Class, ImageId, PlanBuilder};
+
+/// The node.
+pub static NODE: NodeSpec = NodeSpec {
+    id: "ink",
+    label: "Ink",
+    group: "styles",
+    doc: "Drawings on paper: pencil, ink, charcoal, woodcut or pastel. All are one filter, the flow-based \
+          difference of Gaussians in its sharpening form (4.10), thresholded more or less softly (4.8), with \
+          hatching, carved strokes and the paper's grain, at five sets of values; `advanced` trims them. \
+          Normals, depth and object ids, where given, draw lines of their own.",
+    section: "4.3-4.5",
+    inputs: &[
+        ports::COLOR,
+        flow_dog::NORMAL,
+        flow_dog::DEPTH,
+        flow_dog::OBJECT_ID,
+    ],
+    output: ports::color_output("The drawing."),
+    own_params: &[
+        Param::choice(
+            "style",
+            "Style",
+            1,
+            &[
+                Choice { id: "pencil", label: "Pencil" },
+                Choice { id: "ink", label: "Ink" },
+                Choice { id: "charcoal", label: "Charcoal" },
+                Choice { id: "woodcut", label: "Woodcut" },
+                Choice { id: "pastel", label: "Pastel" },
+            ],
+        )
+        .group(LOOK)
+        .doc("What is drawn with; sets every technical value."),
+        look::LINE_WIDTH.doc("Width of lines; 2 is the style's own."),
+        Param::float("line_amount", "Line amount", 0.5, [0.0, 1.0])
+            .group(LOOK)
+            .doc("How many lines: 0 leaves masses and shading alone, 1 draws faint edges too; scales p (4.10)."),
+        Param::float("suppress_small", "Suppress small", 0.0, [0.0, 1.0])
+            .group(LOOK)
+            .doc("Drops short and weak lines: lengthens the smoothing along lines up to three times and halves p."),
+        Param::float("tone", "Tone", 0.5, [0.0, 1.0])
+            .group(LOOK)
+            .doc("How much is dark: 0 leaves lines alone, 1 fills what is not bright; shifts epsilon and scales the shading."),
+        Param::float("grain", "Grain", 0.5, [0.0, 1.0])
+            .group(LOOK)
+            .doc("How much the paper's grain shows, from not at all to twice the style's own."),
+        look::DETAIL,
+        Param::color("line_color", "Line colour", [0.09, 0.085, 0.1, 1.0])
+            .group(LOOK)
+            .doc("Colour of what is drawn with; its alpha is its opacity."),
+        Param::color("paper_color", "Paper colour", [0.965, 0.955, 0.93, 1.0])
+            .group(LOOK)
+            .doc("Colour of the paper."),
+        look::SATURATION.doc("Factor on the picture's own colours, in as far as the style shows them."),
+        Param::bool("cover", "Cover", false)
+            .group(LOOK)
+            .doc("Paper also where the picture is transparent; the result is then opaque."),
+        factor("edge_scale", "Edge scale", "Factor on sigma_e, the scale of edges (4.7)."),
+        factor("flow_length", "Flow length", "Factor on sigma_m, the smoothing along lines (4.5)."),
+        factor("sharpening", "Sharpening", "Factor on p, the weight of edges (4.10)."),
+        shift("threshold_shift", "Threshold shift", 100.0, "Added to epsilon, the lightness from which on there is no ink (4.8)."),
+        factor("steepness", "Steepness", "Factor on phi, the steepness of the ramp from paper to ink (4.8)."),
+        factor("carving", "Carving", "Factor on the strokes that follow the flow."),
+        factor("shading", "Shading", "Factor on the shading that is hatched or rubbed in."),
+        factor("grain_size", "Grain size", "Factor on the size of the paper's grains."),
+        shift("own_color", "Own colour", 1.0, "Added to how much of the picture's own colours shows."),
+        factor("edge_smoothing", "Edge smoothing", "Factor on the final smoothing along the edges."),
+        dog::K.group(ADVANCED),
+        cartoon::ABSTRACTION,
+        cartoon::N_E,
+        cartoon::SIGMA_D,
+        cartoon::SIGMA_R,
+        cartoon::GUIDE_WEIGHT,
+    ],
+    build,
+};
+
+const fn factor(id: &'static str, label: &'static str, doc: &'static str) -> Param {
+    Param::float(id, label, 1.0, [0.0, 4.0]).slider(0.0, 2.0).group(ADVANCED).doc(doc)
+}
+
+const fn shift(id: &'static str, label: &'static str, most: f32, doc: &'static str) -> Param {
+    Param::float(id, label, 0.0, [-most, most]).group(ADVANCED).doc(doc)
+}
+
+/// One set of values; lengths in pixels of the full-size picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Preset {
+    /// Standard deviation of the tensor's smoothing.
+    rho: f32,
+    sigma_e: f32,
+    sigma_m: f32,
+    /// Weight of the difference of Gaussians (4.10).
+    p: f32,
+    /// Lightness from which on there is no ink, units of L.
+    epsilon: f32,
+    /// Steepness of the ramp, per unit of L.
+    phi: f32,
+    /// Width and length of strokes along the flow; no length: there are none.
+    stroke: [f32; 2],
+    /// Units of L by which they raise and lower the response.
+    carving: f32,
+    /// How much of the grain follows them instead of the paper.
+    follow: f32,
+    /// Iterations of the bilateral filter beside `n_e`.
+    flattening: i32,
+    shading: f32,
+    hatching: f32,
+    grain: f32,
+    grain_size: f32,
+    /// How much of the picture's own colours shows.
+    colour: f32,
+    /// Opacity of what is drawn with.
+    opacity: f32,
+    /// Standard deviation of the final smoothing along the edges; 0: there is none.
+    sigma_a: f32,
+    texture: f32,
+}
+
+/// Two tones with soft edges; the others are told by how they differ.
+const INK: Preset = Preset {
+    rho: 2.0,
+    sigma_e: 1.2,
+    sigma_m: 4.0,
+    p: 20.0,
+    epsilon: 38.0,
+    phi: 0.06,
+    stroke: [1.0, 0.0],
+    carving: 0.0,
+    follow: 0.0,
+    flattening: 0,
+    shading: 0.0,
+    hatching: 0.0,
+    grain: 0.0,
+    grain_size: 2.5,
+    colour: 0.0,
+    opacity: 1.0,
+    sigma_a: 1.5,
+    texture: 0.04,
+};
+
+/// Thin grey lines, tones hatched in two directions, a fine grain.
+const PENCIL: Preset = Preset {
+    sigma_e: 0.9,
+    sigma_m: 3.0,
+    p: 18.0,
+    epsilon: 30.0,
+    phi: 0.03,
+    shading: 0.95,
+    hatching: 1.0,
+    grain: 0.7,
+    grain_size: 1.6,
+    opacity: 0.8,
+    sigma_a: 0.0,
+    texture: 0.06,
+    ..INK
+};
+
+/// Wide soft lines and rubbed tones that catch on coarse paper.
+const CHARCOAL: Preset = Preset {
+    rho: 3.0,
+    sigma_e: 2.2,
+    sigma_m: 6.0,
+    p: 14.0,
+    epsilon: 45.0,
+    phi: 0.022,
+    stroke: [1.4, 5.0],
+    follow: 0.25,
+    shading: 1.0,
+    grain: 0.75,
+    grain_size: 2.2,
+    opacity: 0.95,
+    sigma_a: 0.0,
+    texture: 0.08,
+    ..INK
+};
+
+/// Thick lines and masses, carved along the flow.
+const WOODCUT: Preset = Preset {
+    rho: 4.0,
+    sigma_e: 1.8,
+    sigma_m: 9.0,
+    p: 16.0,
+    epsilon: 48.0,
+    phi: 0.15,
+    stroke: [1.6, 12.0],
+    carving: 45.0,
+    sigma_a: 2.0,
+    ..INK
+};
+
+/// The picture's colours in chalk, with soft dark lines.
+const PASTEL: Preset = Preset {
+    rho: 3.0,
+    sigma_e: 1.6,
+    sigma_m: 5.0,
+    p: 12.0,
+    epsilon: 20.0,
+    phi: 0.02,
+    stroke: [1.4, 7.0],
+    follow: 0.5,
+    flattening: 2,
+    shading: 0.2,
+    grain: 1.0,
+    grain_size: 2.4,
+    colour: 0.95,
+    opacity: 0.7,
+    sigma_a: 0.0,
+    texture: 0.08,
+    ..INK
+};
+
+fn preset(style: &str) -> Preset {
+    match style {
+        "pencil" => PENCIL,
+        "charcoal" => CHARCOAL,
+        "woodcut" => WOODCUT,
+        "pastel" => PASTEL,
+        _ => INK,
+    }
+}
+
+/// Controls that scale or shift a preset.
+#[derive(Clone, Copy, Debug)]
+struct Looks {
+    /// 2 is neutral.
+    width: f32,
+    /// 0..=1, 0.5 is neutral.
+    amount: f32,
+    /// 0..=1, 0 is neutral.
+    suppress: f32,
+    /// 0..=1, 0.5 is neutral.
+    tone: f32,
+    /// 0..=1, 0.5 is neutral.
+    grain: f32,
+}
+
+impl Preset {
+    /// The preset as the look controls leave it; every mapping is monotone.
+    fn looking(self, look: Looks) -> Self {
+        let amount =
+            if look.amount <= 0.5 { 2.0 * look.amount } else { 4f32.powf(2.0 * look.amount - 1.0) };
+        Self {
+            sigma_e: self.sigma_e * (look.width / 2.0),
+            sigma_m: self.sigma_m * (1.0 + 2.0 * look.suppress),
+            p: self.p * amount * (1.0 - 0.5 * look.suppress),
+            epsilon: self.epsilon + 70.0 * (look.tone - 0.5),
+            shading: self.shading * 2.0 * look.tone,
+            grain: self.grain * 2.0 * look.grain,
+            ..self
+        }
+    }
+
+    /// The preset as the trims of `advanced` leave it.
+    fn trimmed(self, scope: &Scope<'_>) -> Self {
+        Self {
+            sigma_e: self.sigma_e * scope.float("edge_scale"),
+            sigma_m: self.sigma_m * scope.float("flow_length"),
+            p: self.p * scope.float("sharpening"),
+            epsilon: self.epsilon + scope.float("threshold_shift"),
+            phi: self.phi * scope.float("steepness"),
+            carving: self.carving * scope.float("carving"),
+            shading: self.shading * scope.float("shading"),
+            grain_size: self.grain_size * scope.float("grain_size"),
+            colour: self.colour + scope.float("own_color"),
+            sigma_a: self.sigma_a * scope.float("edge_smoothing"),
+            ..self
+        }
+    }
+}
+
+/// Strokes along the flow, 0..=1 about middle grey: noise, `width` pixels wide and smoothed along the stream
+/// lines by `length`, lengths in pixels of the full-size picture.
+fn strokes(plan: &mut PlanBuilder, tensor: ImageId, [width, length]: [f32; 2], scale: f32) -> ImageId {
+    let white = noise::white(plan, scale, 19);
+    let soft = gaussian_blur::smooth(plan, white, width * scale, Class::Colour);
+    let options = Lic { sigma: length * scale, adapt: Adapt::None, ..Lic::default() };
+    let long = line_integral_convolution::color(plan, soft, tensor, &options);
+    // Averages of noise are faint: a Gaussian of this width leaves 1 / (2 sqrt(pi) width) of its deviation.
+    contrast::stretch(plan, long, 7.0 * width * scale)
+}
+
+fn build(scope: &mut Scope<'_>) -> ImageId {
+    let color = scope.required("color");
+    let scale = scope.scale();
+    let own = preset(scope.choice("style"));
+    let drawing = own.trimmed(scope).looking(Looks {
+        width: scope.float("line_width") / scale,
+        amount: scope.float("line_amount"),
+        suppress: scope.float("suppress_small"),
+        tone: scope.float("tone"),
+        grain: scope.float("grain"),
+    });
+    let guide_weight = scope.float("guide_weight");
+    let guides = flow_dog::guides(scope, guide_weight);
+    let options = TensorOptions { rho: own.rho * scale, ..TensorOptions::at_scale(scale) };
+    let tensor = of_color_and_guides(scope.plan, color, &guides, &options);
+    let (abstraction, n_e) = (Abstraction::of(scope), scope.int("n_e"));
+    let lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
+    let smooth = abstraction.apply(scope.plan, lab, tensor, n_e + own.flattening);
+    let flow = FlowDog {
+        sigma_e: drawing.sigma_e * scale,
+        k: scope.float("k"),
+        sigma_m: drawing.sigma_m * scale,
+        xdog: Xdog::sharpen(drawing.p, 0.0, 1.0, Threshold::None),
+        iterations: 1,
+        stepping: Stepping::Midpoint,
+        two_dimensional: false,
+        guide_weight,
+    };
+    let lightness = lightness::of_lab(scope.plan, smooth);
+    let response = flow.edges(scope.plan, lightness, tensor, &guides);
+    let tinted = lab_to_rgb::to_rgb(scope.plan, smooth, scope.float("saturation"));
+    // Which passes there are is a matter of the style alone: the trims only change numbers.
+    let carved =
+        if own.stroke[1] > 0.0 { strokes(scope.plan, tensor, own.stroke, scale) } else { tinted };
+    let mut line = scope.color("line_color");
+    line[3] *= drawing.opacity;
+    let sheet = Sheet {
+        line,
+        paper: scope.color("paper_color"),
+        epsilon: drawing.epsilon,
+        phi: drawing.phi,
+        carving: drawing.carving,
+        follow: drawing.follow,
+        shading: drawing.shading,
+        hatching: drawing.hatching,
+        grain: drawing.grain,
+        grain_size: drawing.grain_size,
+        scale,
+        colour: drawing.colour,
+        texture: drawing.texture,
+        cover: scope.bool("cover"),
+    };
+    let drawn = draw(scope.plan, response, tinted, carved, &sheet);
+    if own.sigma_a > 0.0 {
+        let options = Lic { sigma: drawing.sigma_a * scale, ..Lic::default() };
+        return line_integral_convolution::color(scope.plan, drawn, tensor, &options);
+    }
+    drawn
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NEUTRAL: Looks = Looks { width: 2.0, amount: 0.5, suppress: 0.0, tone: 0.5, grain: 0.5 };
+    const ALL: [Preset; 5] = [PENCIL, INK, CHARCOAL, WOODCUT, PASTEL];
+
+    #[test]
+    fn neutral_controls_change_nothing() {
+        for preset in ALL {
+            assert_eq!(preset.looking(NEUTRAL), preset);
+        }
+    }
+
+    #[test]
+    fn mappings_are_monotone_and_stay_in_range() {
+        for preset in ALL {
+            for i in 0..100 {
+                let (a, b) = (i as f32 / 100.0, (i + 1) as f32 / 100.0);
+                let at = |looks: Looks| preset.looking(looks);
+                assert!(at(Looks { amount: a, ..NEUTRAL }).p < at(Looks { amount: b, ..NEUTRAL }).p);
+                assert!(at(Looks { suppress: a, ..NEUTRAL }).p > at(Looks { suppress: b, ..NEUTRAL }).p);
+                assert!(at(Looks { tone: a, ..NEUTRAL }).epsilon < at(Looks { tone: b, ..NEUTRAL }).epsilon);
+                let (low, high) = (at(Looks { grain: a, ..NEUTRAL }), at(Looks { grain: b, ..NEUTRAL }));
+                assert!(low.grain <= high.grain);
+            }
+        }
+    }
+}
