@@ -62,8 +62,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let q = centre(id) * params.inverse_scale;
     let g = q * params.grain_frequency;
-    let tooth = even(0.55 * value_noise(g, 11u) + 0.3 * value_noise(g * 2.13, 1013u)
-        + 0.15 * value_noise(g * 0.23, 2027u));
+    let tooth = even(0.45 * value_noise(g, 11u) + 0.25 * value_noise(g * 2.13, 1013u)
+        + 0.3 * value_noise(g * 0.31, 2027u));
     let v = fetch(source, 1u, pixel(id));
     let alpha = clamp(v.a, 0.0, 1.0);
 
@@ -72,7 +72,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let lines = select(-tanh(max(params.phi * (u - params.epsilon), -20.0)), 0.0, u >= params.epsilon);
 
     let dark = 1.0 - clamp(dot(v.rgb, vec3f(0.2126, 0.7152, 0.0722)), 0.0, 1.0);
-    let tone = clamp(params.shading * dark, 0.0, 1.0);
+    let tone = clamp(params.shading * (1.06 * dark - 0.06), 0.0, 1.0);
     let deep = clamp(params.shading * (1.7 * dark - 0.9), 0.0, 1.0);
     let first = mix(tooth, hatch(q, vec2f(0.8, -0.6), 301u), params.hatching);
     let second = mix(tooth, hatch(q, vec2f(0.96, 0.28), 701u), params.hatching);

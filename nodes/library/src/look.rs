@@ -17,7 +17,7 @@ pub(crate) const LINE_WIDTH: Param = Param::float("line_width", "Line width", 2.
     .slider(0.8, 10.0)
     .pixels()
     .group(LOOK)
-    .doc("Width of lines: scales `sigma_e` by width / 2.");
+    .doc("Width of lines: scales `sigma_e` by width / 2 and, above 2, `sigma_m` by its root, so that wide lines do not break.");
 pub(crate) const LINE_AMOUNT: Param = Param::float("line_amount", "Line amount", 0.5, [0.0, 1.0])
     .group(LOOK)
     .doc("How many lines: 0 draws none, 1 draws them at faint edges too; scales 1 - `tau`.");
@@ -84,7 +84,7 @@ impl Lines {
         let base = ((1.0 - self.tau) * base_factor(amount)).clamp(0.0, 1.0);
         Self {
             sigma_e: self.sigma_e * (width / 2.0),
-            sigma_m: self.sigma_m * (1.0 + 2.0 * suppress),
+            sigma_m: self.sigma_m * longer(width) * (1.0 + 2.0 * suppress),
             tau: 1.0 - base,
             epsilon: self.epsilon - 0.75 * suppress,
             phi: self.phi,
@@ -95,6 +95,12 @@ impl Lines {
     pub fn xdog(&self) -> Xdog {
         Xdog::tau(self.tau, self.epsilon, self.phi, Threshold::Tanh)
     }
+}
+
+/// Factor on the smoothing along lines `width` wide, 2 and below is neutral: wide ones fall into blots when
+/// what joins them stays short.
+pub(crate) fn longer(width: f32) -> f32 {
+    (width / 2.0).max(1.0).sqrt()
 }
 
 /// Factor on 1 - tau: infinite at 0, where no line is left; 1 at 0.5; 1/4 at 1, since nothing at all
@@ -141,6 +147,8 @@ mod tests {
             assert!(a.tau <= b.tau && (0.0..=1.0).contains(&a.tau), "{pair:?}: {} {}", a.tau, b.tau);
             let (a, b) = (THESIS.looking(2.0, 0.5, pair[0]), THESIS.looking(2.0, 0.5, pair[1]));
             assert!(a.sigma_m < b.sigma_m && a.epsilon > b.epsilon);
+            let (a, b) = (THESIS.looking(40.0 * pair[0], 0.5, 0.0), THESIS.looking(40.0 * pair[1], 0.5, 0.0));
+            assert!(a.sigma_e < b.sigma_e && a.sigma_m <= b.sigma_m);
             assert!(detail_factors(pair[0])[0] > detail_factors(pair[1])[0]);
             assert!(steepness(3.4, 8, pair[0]) > steepness(3.4, 8, pair[1]));
         }

@@ -129,9 +129,9 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             let y = f32x8::splat(simd, (block.y as f32 + 0.5) * params.inverse_scale);
             let (gx, gy) = (x * params.grain_frequency, y * params.grain_frequency);
             let tooth = even(
-                noise(simd, gx, gy, 11) * 0.55
-                    + noise(simd, gx * 2.13, gy * 2.13, 1013) * 0.3
-                    + noise(simd, gx * 0.23, gy * 0.23, 2027) * 0.15,
+                noise(simd, gx, gy, 11) * 0.45
+                    + noise(simd, gx * 2.13, gy * 2.13, 1013) * 0.25
+                    + noise(simd, gx * 0.31, gy * 0.31, 2027) * 0.3,
             );
             let [r, g, b, a] = block.read4(simd, source);
             let alpha = a.max(zero).min(one);
@@ -149,7 +149,7 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
                 first = mix(tooth, hatch(simd, [x, y], [0.8, -0.6], 301), share);
                 second = mix(tooth, hatch(simd, [x, y], [0.96, 0.28], 701), share);
             }
-            let tone = (dark * params.shading).min(one);
+            let tone = ((dark * 1.06 - 0.06) * params.shading).max(zero).min(one);
             let deep = ((dark * 1.7 - 0.9) * params.shading).max(zero).min(one);
             // Strokes leave the paper between them; what is rubbed in follows the grain only a little.
             let depth = 0.4 + 1.2 * params.hatching;

@@ -184,8 +184,8 @@ const CHARCOAL: Preset = Preset {
     stroke: [1.4, 5.0],
     follow: 0.25,
     shading: 1.0,
-    grain: 0.75,
-    grain_size: 2.2,
+    grain: 0.65,
+    grain_size: 2.4,
     opacity: 0.95,
     sigma_a: 0.0,
     texture: 0.08,
@@ -201,7 +201,7 @@ const WOODCUT: Preset = Preset {
     epsilon: 48.0,
     phi: 0.15,
     stroke: [1.6, 12.0],
-    carving: 45.0,
+    carving: 28.0,
     sigma_a: 2.0,
     ..INK
 };
@@ -254,16 +254,17 @@ struct Looks {
 
 impl Preset {
     /// The preset as the look controls leave it; every mapping is monotone.
-    fn looking(self, look: Looks) -> Self {
+    fn looking(self, looks: Looks) -> Self {
         let amount =
-            if look.amount <= 0.5 { 2.0 * look.amount } else { 4f32.powf(2.0 * look.amount - 1.0) };
+            if looks.amount <= 0.5 { 2.0 * looks.amount } else { 4f32.powf(2.0 * looks.amount - 1.0) };
         Self {
-            sigma_e: self.sigma_e * (look.width / 2.0),
-            sigma_m: self.sigma_m * (1.0 + 2.0 * look.suppress),
-            p: self.p * amount * (1.0 - 0.5 * look.suppress),
-            epsilon: self.epsilon + 70.0 * (look.tone - 0.5),
-            shading: self.shading * 2.0 * look.tone,
-            grain: self.grain * 2.0 * look.grain,
+            rho: self.rho * look::longer(looks.width),
+            sigma_e: self.sigma_e * (looks.width / 2.0),
+            sigma_m: self.sigma_m * look::longer(looks.width) * (1.0 + 2.0 * looks.suppress),
+            p: self.p * amount * (1.0 - 0.5 * looks.suppress),
+            epsilon: self.epsilon + 80.0 * (looks.tone - 0.5),
+            shading: self.shading * 2.0 * looks.tone,
+            grain: self.grain * 2.0 * looks.grain,
             ..self
         }
     }
@@ -310,7 +311,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     });
     let guide_weight = scope.float("guide_weight");
     let guides = flow_dog::guides(scope, guide_weight);
-    let options = TensorOptions { rho: own.rho * scale, ..TensorOptions::at_scale(scale) };
+    let options = TensorOptions { rho: drawing.rho * scale, ..TensorOptions::at_scale(scale) };
     let tensor = of_color_and_guides(scope.plan, color, &guides, &options);
     let (abstraction, n_e) = (Abstraction::of(scope), scope.int("n_e"));
     let lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
