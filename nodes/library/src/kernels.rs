@@ -5,6 +5,7 @@
 //! kernel in [`KERNELS`]; no other file needs to change. The Rust file holds the uniform block
 //! ([`params!`](crate::params)), the twin and `pub static KERNEL` ([`kernel!`](crate::kernel)).
 
+pub mod block_convolution;
 pub mod blocks;
 pub mod colour_space;
 pub mod coverage;
@@ -12,7 +13,10 @@ pub mod edge_threshold;
 pub mod luma_lines;
 pub mod neighbours;
 pub mod pixel_line;
+pub mod planes;
+pub mod pyramid;
 pub mod rows;
+pub mod sectors;
 pub mod stream_line;
 pub mod support;
 pub mod symmetric;

@@ -22,11 +22,17 @@ nodes! {
         oil_paint,
         watercolor,
         ink,
+        painting,
     }
     structure {
         structure_tensor,
         edge_tangent_flow,
         tensor_view,
+    }
+    painting {
+        anisotropic_kuwahara,
+        generalized_kuwahara,
+        kuwahara,
     }
     colour {
         composite_lines,

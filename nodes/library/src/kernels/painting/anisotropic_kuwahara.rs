@@ -1,0 +1,389 @@
+//! The anisotropic Kuwahara filter with polynomial weighting functions (§ 5.4, Listing 5.4): the mean
+//! of the sectors of an ellipse that lies along the local structure, flat sectors counting most.
+//!
+//! Eight neighbouring pixels go through the union of their ellipses, row by row, pixels outside their
+//! own ellipse with weight 0. Two pixels opposite each other share one evaluation of the weights, and
+//! sums over opposite sectors are kept as their sum and their difference: those need the sum and the
+//! difference of the two colours only, which halves the multiply-adds. A row's weights are found
+//! first, then the sums of two opposite sectors at a time, which fit the registers.
+//!
+//! Cost: pi radius^2 pixels, each half of about 110 operations.
+
+use crate::kernels::planes::Planes;
+use crate::kernels::rows::strips;
+use crate::kernels::sectors::{INSIDE, MIN_RADIUS, Polynomial, Response, Sector};
+use crate::kernels::support::{get_pixels4, put_pixels4};
+use crate::kernels::tensor_algebra::{anisotropy, tangent};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
+use std::f32::consts::FRAC_1_SQRT_2;
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for anisotropic_kuwahara {
+        /// Radius of the disc that the ellipse is made of, pixels.
+        pub radius: f32,
+        /// 1 / alpha of (5.22).
+        pub elongation: f32,
+        /// Overlap of the sectors at the centre (5.40).
+        pub zeta: f32,
+        /// Overlap of the sectors at their sides (5.42).
+        pub eta: f32,
+        /// tau_s of (5.15).
+        pub threshold: f32,
+        /// Exponent q.
+        pub q: f32,
+        /// tau_w: least standard deviation of a sector in the second output.
+        pub deviation_floor: f32,
+        /// 4 or 8.
+        pub sectors: u32,
+    }
+}
+
+crate::kernel!(anisotropic_kuwahara {
+    cpu: run,
+    cost: |params| {
+        let p: Params = bytemuck::pod_read_unaligned(params);
+        let sums = if p.sectors == 8 { 55.0 } else { 32.0 };
+        60.0 + std::f64::consts::PI * f64::from(p.radius).powi(2) * sums
+    },
+    tolerance: Tolerance {
+        absolute: 2e-3,
+        relative: 1e-3,
+        outliers: 0.03,
+        reason: "the last bit decides whether a pixel on the border of the ellipse belongs to it, where the \
+                 tensor is nearly isotropic its direction turns by many roundings, and the brightest pixels \
+                 round the variances of all sectors",
+    },
+});
+
+/// What the filter is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Radius r, pixels.
+    pub radius: f32,
+    /// 4 or 8.
+    pub sectors: u32,
+    /// Exponent q.
+    pub q: f32,
+    /// tau_s, RGB in 0..=1.
+    pub threshold: f32,
+    /// alpha of (5.22): the ellipse is up to ((1 + alpha) / alpha)^2 times as long as wide.
+    pub alpha: f32,
+    /// tau_w of § 5.5.2.
+    pub deviation_floor: f32,
+}
+
+/// Filters a colour. The second output (`sibling` 1) is the sum of the standard deviations of the
+/// sectors, as of eight.
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: &Options) -> ImageId {
+    let radius = options.radius.max(MIN_RADIUS);
+    let weights = Polynomial::new(radius, options.sectors);
+    let params = Params {
+        radius,
+        elongation: 1.0 / options.alpha,
+        zeta: weights.zeta,
+        eta: weights.eta,
+        threshold: options.threshold,
+        q: options.q,
+        deviation_floor: options.deviation_floor,
+        sectors: options.sectors,
+    };
+    let level = plan.desc(color).level;
+    let support = Support::Pixels(reach(radius, params.elongation) as u32);
+    plan.pass_at(&KERNEL, &[color, tensors], &params, &[Class::Colour, Class::Field], support, level)
+}
+
+/// The most pixels that an ellipse reaches along either axis.
+pub(crate) fn reach(radius: f32, elongation: f32) -> i32 {
+    // The longest is (1 + elongation) radius; the margin is that of the border.
+    (radius * (1.0 + elongation) * INSIDE.sqrt()).floor() as i32 + 1
+}
+
+/// One pair of opposite pixels: per pair of opposite sectors the sum and the difference of the weights,
+/// then sums and differences of the pixels' channels.
+type Tap = [[f32; 8]; 18];
+
+const BOTH: usize = 0;
+const APART: usize = 4;
+const SUM: usize = 8;
+const DIFFERENCE: usize = 13;
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    dispatch!(pass.level, simd => filter(simd, pass, &params, band));
+}
+
+#[inline(always)]
+fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
+    let reach = reach(params.radius, params.elongation);
+    let response = Response { threshold: params.threshold, q: params.q, floor: params.deviation_floor };
+    let mut planes = Planes::default();
+    let mut taps: Vec<Tap> = vec![[[0.0; 8]; 18]; 2 * reach as usize + 1];
+    let (color, window) = (&pass.inputs[0], band.window);
+    for (x0, x1) in strips(window.x0, window.x1) {
+        planes.start(x0, x1, reach, 2 * reach + 1);
+        for y in window.y0 - reach..window.y0 + reach {
+            planes.load(simd, color, y);
+        }
+        for y in window.y0..window.y1 {
+            planes.load(simd, color, y + reach);
+            let opaque = planes.is_opaque();
+            for x in (x0..x1).step_by(8) {
+                let ellipses = Ellipses::new(simd, &pass.inputs[1], params, x, y, x1 - 1);
+                let original = get_pixels4(simd, color, x, y, x1 - 1);
+                let place = Place { planes: &planes, x, y };
+                let (colour, deviation) = match (opaque, params.sectors == 8) {
+                    (true, true) => {
+                        respond8(&gather::<S, true, true>(simd, place, &ellipses, params, &mut taps), &response, original)
+                    }
+                    (false, true) => {
+                        respond8(&gather::<S, false, true>(simd, place, &ellipses, params, &mut taps), &response, original)
+                    }
+                    (true, false) => {
+                        respond4(&gather::<S, true, false>(simd, place, &ellipses, params, &mut taps), &response, original)
+                    }
+                    (false, false) => {
+                        respond4(&gather::<S, false, false>(simd, place, &ellipses, params, &mut taps), &response, original)
+                    }
+                };
+                let (first, last) = ((x - window.x0) as usize, (x1.min(x + 8) - window.x0) as usize);
+                put_pixels4(colour, &mut band.row_mut(0, y)[4 * first..4 * last]);
+                band.row_mut(1, y)[first..last].copy_from_slice(&deviation.to_array()[..last - first]);
+            }
+        }
+    }
+}
+
+/// Eight pixels of a row and the rows around them.
+#[derive(Clone, Copy)]
+struct Place<'a> {
+    planes: &'a Planes,
+    x: i32,
+    y: i32,
+}
+
+/// The mappings S R_-phi (5.32) of eight pixels, for discs of radius 1, and their ellipses
+/// a i^2 + 2 b i j + c j^2 <= 1 solved for i.
+struct Ellipses<S: Simd> {
+    along: [f32x8<S>; 2],
+    across: [f32x8<S>; 2],
+    /// -b / a: how far the middle of a row lies from that of the row above.
+    shift: f32x8<S>,
+    /// 1 / a, and (a c - b^2) / a^2.
+    width: [f32x8<S>; 2],
+    /// Rows below the centre that hold a pixel of any.
+    rows: i32,
+}
+
+impl<S: Simd> Ellipses<S> {
+    #[inline(always)]
+    fn new(simd: S, tensors: &View<'_>, params: &Params, x: i32, y: i32, last: i32) -> Self {
+        let [e, f, g, _] = get_pixels4(simd, tensors, x, y, last);
+        let [tx, ty] = tangent(e, f, g);
+        let stretch = anisotropy(e, f, g) * params.elongation + 1.0;
+        let long = f32x8::splat(simd, 1.0) / (stretch * params.radius);
+        let short = stretch / params.radius;
+        let along = [tx * long, ty * long];
+        let across = [-(ty * short), tx * short];
+        let a = along[0].mul_add(along[0], across[0] * across[0]);
+        let b = along[0].mul_add(along[1], across[0] * across[1]);
+        let area = params.radius.powi(4).recip();
+        let inverse = f32x8::splat(simd, 1.0) / a;
+        let rows = (a * (INSIDE / area)).sqrt().reduce_max() as i32;
+        Self { along, across, shift: -(b * inverse), width: [inverse, inverse * inverse * area], rows }
+    }
+
+    /// First and last column of row `j` that hold a pixel of any of the ellipses.
+    #[inline(always)]
+    fn columns(&self, j: f32) -> (i32, i32) {
+        let middle = self.shift * j;
+        let square = self.width[0] * INSIDE - self.width[1] * (j * j);
+        let half = square.max(0.0).sqrt() + 1e-3;
+        let some = square.simd_ge(f32x8::splat(square.simd, 0.0));
+        let far = f32x8::splat(square.simd, 1e6);
+        let first = some.select(middle - half, far).ceil().reduce_min();
+        let last = some.select(middle + half, -far).floor().reduce_max();
+        (first as i32, last as i32)
+    }
+}
+
+/// What eight pixels gathered: per pair of opposite sectors the sums of both together and of their
+/// difference, and the weights of each of the two.
+struct Gathered<S: Simd> {
+    both: [[f32x8<S>; 5]; 4],
+    apart: [[f32x8<S>; 5]; 4],
+    weights: [f32x8<S>; 4],
+}
+
+impl<S: Simd> Gathered<S> {
+    /// Sector `k` (share 1/2) or its opposite (share -1/2).
+    #[inline(always)]
+    fn sector(&self, k: usize, share: f32) -> Sector<S> {
+        let mut sums = [f32x8::splat(self.weights[0].simd, 0.0); 5];
+        for (channel, sum) in sums.iter_mut().enumerate() {
+            *sum = self.apart[k][channel] * share + self.both[k][channel] * 0.5;
+        }
+        Sector::new(sums, self.weights[k])
+    }
+}
+
+#[inline(always)]
+fn respond8<S: Simd>(
+    gathered: &Gathered<S>,
+    response: &Response,
+    original: [f32x8<S>; 4],
+) -> ([f32x8<S>; 4], f32x8<S>) {
+    // A loop, not closures: those the compiler leaves outside the code for wide vectors.
+    let mut sectors = [gathered.sector(0, 0.5); 8];
+    for k in 0..4 {
+        (sectors[k], sectors[k + 4]) = (gathered.sector(k, 0.5), gathered.sector(k, -0.5));
+    }
+    response.of(&sectors, original)
+}
+
+#[inline(always)]
+fn respond4<S: Simd>(
+    gathered: &Gathered<S>,
+    response: &Response,
+    original: [f32x8<S>; 4],
+) -> ([f32x8<S>; 4], f32x8<S>) {
+    let [a, b] = [gathered.sector(0, 0.5), gathered.sector(0, -0.5)];
+    let [c, d] = [gathered.sector(2, 0.5), gathered.sector(2, -0.5)];
+    response.of(&[a, b, c, d], original)
+}
+
+/// Opaque pixels need no sums of coverage: those are twice the sums of weights, to the bit.
+#[inline(always)]
+fn gather<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
+    simd: S,
+    place: Place<'_>,
+    ellipses: &Ellipses<S>,
+    params: &Params,
+    taps: &mut [Tap],
+) -> Gathered<S> {
+    let zero = f32x8::splat(simd, 0.0);
+    let Place { planes, x, y } = place;
+    // At the centre all sectors weigh the same.
+    let share = f32x8::splat(simd, if EIGHT { 0.125 } else { 0.25 });
+    let at = planes.column(x);
+    let mut centre = [zero; 5];
+    for (centre, plane) in centre.iter_mut().zip(planes.row(y)) {
+        *centre = f32x8::from_slice(simd, &plane[at..at + 8]) * (share + share);
+    }
+    let mut out = Gathered { both: [centre; 4], apart: [[zero; 5]; 4], weights: [share; 4] };
+    for j in 0..=ellipses.rows {
+        let (first, last) = ellipses.columns(j as f32);
+        let first = if j == 0 { 1 } else { first };
+        if last < first {
+            continue;
+        }
+        let count = (last - first + 1) as usize;
+        let row = &mut taps[..count];
+        weights::<S, OPAQUE, EIGHT>(simd, place, ellipses, params, [first, j], row);
+        add::<S, OPAQUE, 0>(simd, row, &mut out);
+        add::<S, OPAQUE, 2>(simd, row, &mut out);
+        if EIGHT {
+            add::<S, OPAQUE, 1>(simd, row, &mut out);
+            add::<S, OPAQUE, 3>(simd, row, &mut out);
+        }
+    }
+    if OPAQUE {
+        for k in 0..4 {
+            out.both[k][4] = out.weights[k] * 2.0;
+        }
+    }
+    out
+}
+
+/// Finds the weights of the pixels of row `j` from column `i` on, and pairs them with their opposites.
+#[inline(always)]
+fn weights<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
+    simd: S,
+    place: Place<'_>,
+    ellipses: &Ellipses<S>,
+    params: &Params,
+    [i, j]: [i32; 2],
+    row: &mut [Tap],
+) {
+    let Place { planes, x, y } = place;
+    let (below, above) = (planes.row(y + j), planes.row(y - j));
+    let zero = f32x8::splat(simd, 0.0);
+    let zeta = f32x8::splat(simd, params.zeta);
+    let eta = f32x8::splat(simd, -params.eta);
+    let start = [ellipses.along[1] * j as f32, ellipses.across[1] * j as f32];
+    let step = [ellipses.along[0], ellipses.across[0]];
+    let turned = [(start[0] + start[1]) * FRAC_1_SQRT_2, (start[1] - start[0]) * FRAC_1_SQRT_2];
+    let turned_step = [(step[0] + step[1]) * FRAC_1_SQRT_2, (step[1] - step[0]) * FRAC_1_SQRT_2];
+    for (tap, i) in row.iter_mut().zip(i..) {
+        let column = f32x8::splat(simd, i as f32);
+        let v = [column.mul_add(step[0], start[0]), column.mul_add(step[1], start[1])];
+        let squares = [v[0] * v[0], v[1] * v[1]];
+        let distance = squares[0] + squares[1];
+        let (s0, d0) = opposite(v[0], eta.mul_add(squares[1], zeta), zero);
+        let (s2, d2) = opposite(v[1], eta.mul_add(squares[0], zeta), zero);
+        let mut sum = s0 + s2;
+        let (mut s1, mut d1, mut s3, mut d3) = (zero, zero, zero, zero);
+        if EIGHT {
+            let u =
+                [column.mul_add(turned_step[0], turned[0]), column.mul_add(turned_step[1], turned[1])];
+            (s1, d1) = opposite(u[0], eta.mul_add(u[1] * u[1], zeta), zero);
+            (s3, d3) = opposite(u[1], eta.mul_add(u[0] * u[0], zeta), zero);
+            sum += s1 + s3;
+        }
+        let inside = distance.simd_le(f32x8::splat(simd, INSIDE));
+        let g = inside.select(gaussian(distance) / sum, zero);
+        let pairs = [(s0, d0), (s1, d1), (s2, d2), (s3, d3)];
+        for k in 0..4 {
+            if EIGHT || k % 2 == 0 {
+                (pairs[k].0 * g).store_slice(&mut tap[BOTH + k]);
+                (pairs[k].1 * g).store_slice(&mut tap[APART + k]);
+            }
+        }
+        let (near, far) = (planes.column(x + i), planes.column(x - i));
+        for channel in 0..if OPAQUE { 4 } else { 5 } {
+            let p = f32x8::from_slice(simd, &below[channel][near..near + 8]);
+            let q = f32x8::from_slice(simd, &above[channel][far..far + 8]);
+            (p + q).store_slice(&mut tap[SUM + channel]);
+            (p - q).store_slice(&mut tap[DIFFERENCE + channel]);
+        }
+    }
+}
+
+/// Sum and difference of the polynomials (5.36) of two opposite sectors, from the component along the
+/// sector and zeta - eta times the square of that across it.
+#[inline(always)]
+fn opposite<S: Simd>(forward: f32x8<S>, k: f32x8<S>, zero: f32x8<S>) -> (f32x8<S>, f32x8<S>) {
+    let (near, far) = ((k + forward).max(zero), (k - forward).max(zero));
+    let near = near * near;
+    (far.mul_add(far, near), (-far).mul_add(far, near))
+}
+
+/// exp(-3.125 x) for x in 0..=1 to 1e-6; the fourth power of a polynomial for a quarter of it.
+#[inline(always)]
+fn gaussian<S: Simd>(x: f32x8<S>) -> f32x8<S> {
+    let c = |v: f32| f32x8::splat(x.simd, v);
+    let p = x.mul_add(c(-0.001_649_391), c(0.014_706_744));
+    let p = p.mul_add(x, c(-0.079_063_355));
+    let p = p.mul_add(x, c(0.305_081_35));
+    let p = p.mul_add(x, c(-0.781_241_96));
+    let p = p.mul_add(x, c(0.999_999_9));
+    let p = p * p;
+    p * p
+}
+
+/// Adds a row's pixels to sector `K` and its opposite.
+#[inline(always)]
+fn add<S: Simd, const OPAQUE: bool, const K: usize>(simd: S, row: &[Tap], out: &mut Gathered<S>) {
+    let (mut both, mut apart, mut weights) = (out.both[K], out.apart[K], out.weights[K]);
+    for tap in row {
+        let s = f32x8::from_slice(simd, &tap[BOTH + K]);
+        let d = f32x8::from_slice(simd, &tap[APART + K]);
+        for channel in 0..if OPAQUE { 4 } else { 5 } {
+            both[channel] = s.mul_add(f32x8::from_slice(simd, &tap[SUM + channel]), both[channel]);
+            apart[channel] = d.mul_add(f32x8::from_slice(simd, &tap[DIFFERENCE + channel]), apart[channel]);
+        }
+        weights += s;
+    }
+    (out.both[K], out.apart[K], out.weights[K]) = (both, apart, weights);
+}

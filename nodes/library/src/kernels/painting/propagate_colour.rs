@@ -1,0 +1,78 @@
+//! Merges a level of the multi-scale Kuwahara filter with the result of the coarser one (§ 5.5.2): what
+//! varied much there stays as it is, the rest takes the coarser result, interpolated.
+//!
+//! Cost: 4 interpolations on five channels and 20 operations.
+
+use crate::kernels::blocks::for_blocks;
+use crate::kernels::pyramid::Upsampling;
+use crate::kernels::support::put_pixels4;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::math::load4;
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+
+crate::params! {
+    /// Uniform block.
+    pub struct Params for propagate_colour {
+        /// p_s p_d^k at this level.
+        pub gain: f32,
+        /// tau_v: deviations up to this, times the gain, count for nothing.
+        pub threshold: f32,
+    }
+}
+
+crate::kernel!(propagate_colour {
+    cpu: run,
+    cost: |_| 50.0,
+    tolerance: Tolerance {
+        absolute: 2e-5,
+        relative: 2e-5,
+        outliers: 0.0,
+        reason: "interpolations in the same order, and a product with the deviation",
+    },
+});
+
+/// Adds the pass; `coarse` and the standard deviations found there lie one level above `color`.
+pub fn merged(
+    plan: &mut PlanBuilder,
+    color: ImageId,
+    coarse: ImageId,
+    deviations: ImageId,
+    params: &Params,
+) -> ImageId {
+    plan.pass(&KERNEL, &[color, coarse, deviations], params, Class::Colour, Support::Pixels(1))
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let params: Params = pass.params();
+    dispatch!(pass.level, simd => merge(simd, pass, &params, band));
+}
+
+#[inline(always)]
+fn merge<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
+    let (mut colours, mut spreads) = (Upsampling::default(), Upsampling::default());
+    let columns = [band.window.x0, band.window.x1];
+    let (mut filtered, mut deviations): (Vec<f32>, Vec<f32>) = (Vec::new(), Vec::new());
+    let (zero, one, least) =
+        (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0), f32x8::splat(simd, 1e-3));
+    for_blocks::<4>(band, |block, target| {
+        if block.x == columns[0] {
+            filtered.clear();
+            filtered.extend_from_slice(colours.row::<4>(&pass.inputs[1], block.y, columns, true));
+            deviations.clear();
+            deviations.extend_from_slice(spreads.row::<1>(&pass.inputs[2], block.y, columns, false));
+        }
+        let at = (block.x - columns[0]) as usize;
+        let [r, g, b, a] = block.read4(simd, &pass.inputs[0]);
+        let below: [f32x8<S>; 4] = load4(simd, &filtered[4 * at..4 * at + 32]);
+        let deviation = f32x8::from_slice(simd, &deviations[at..at + 8]);
+        let beta = (deviation * params.gain - params.threshold).max(zero).min(one);
+        let beta = below[3].simd_lt(least).select(one, beta);
+        let n = one / below[3].max(least);
+        let mut out = [r, g, b, a];
+        for (out, below) in out.iter_mut().zip(below).take(3) {
+            let below = below * n;
+            *out = (*out - below).mul_add(beta, below);
+        }
+        put_pixels4(out, target);
+    });
+}

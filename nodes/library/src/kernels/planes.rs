@@ -1,0 +1,87 @@
+//! Rings of rows for the Kuwahara filters: colours times coverage, their squares and the coverage,
+//! channel by channel, ready for vectors that start at any column.
+
+use isophote_engine::View;
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
+use isophote_engine::math::load4;
+
+/// Channels of a row: a r, a g, a b, a (r^2 + g^2 + b^2), a.
+pub const CHANNELS: usize = 5;
+
+/// Rows of a strip of columns, clamped to the picture's edge.
+#[derive(Debug, Default)]
+pub struct Planes {
+    first: i32,
+    columns: usize,
+    len: usize,
+    count: i32,
+    data: Vec<f32>,
+    /// Per row: all coverage is 1.
+    opaque: Vec<bool>,
+    scratch: Vec<f32>,
+}
+
+impl Planes {
+    /// Prepares for `rows` rows of columns `x0..x1` with `reach` pixels on both sides.
+    pub fn start(&mut self, x0: i32, x1: i32, reach: i32, rows: i32) {
+        self.first = x0 - reach;
+        self.columns = (x1 - x0 + 2 * reach) as usize;
+        // The last vectors of the output and their neighbours to the right.
+        self.len = ((x1 - x0) as usize).next_multiple_of(16) + (2 * reach as usize).next_multiple_of(8);
+        self.count = rows;
+        self.data.resize(self.len * self.count as usize * CHANNELS, 0.0);
+        self.opaque.clear();
+        self.opaque.resize(self.count as usize, true);
+    }
+
+    /// Where column `x` lies in a row.
+    #[inline(always)]
+    pub fn column(&self, x: i32) -> usize {
+        (x - self.first) as usize
+    }
+
+    /// The channels of row `y`.
+    #[inline(always)]
+    pub fn row(&self, y: i32) -> [&[f32]; CHANNELS] {
+        let start = y.rem_euclid(self.count) as usize * CHANNELS * self.len;
+        let row = &self.data[start..start + CHANNELS * self.len];
+        let (r, rest) = row.split_at(self.len);
+        let (g, rest) = rest.split_at(self.len);
+        let (b, rest) = rest.split_at(self.len);
+        let (q, a) = rest.split_at(self.len);
+        [r, g, b, q, a]
+    }
+
+    /// True when every pixel of the ring is opaque.
+    pub fn is_opaque(&self) -> bool {
+        self.opaque.iter().all(|o| *o)
+    }
+
+    /// Takes in row `y` of a colour image, which replaces the oldest.
+    #[inline(always)]
+    pub fn load<S: Simd>(&mut self, simd: S, view: &View<'_>, y: i32) {
+        let slot = y.rem_euclid(self.count) as usize;
+        let last = self.first + self.columns as i32;
+        let source = view.padded_row(y, self.first, last, &mut self.scratch);
+        let target = &mut self.data[slot * CHANNELS * self.len..][..CHANNELS * self.len];
+        let one = f32x8::splat(simd, 1.0);
+        let mut least = one;
+        for (i, block) in source.chunks(32).enumerate() {
+            let [r, g, b, a]: [f32x8<S>; 4] = if block.len() == 32 {
+                load4(simd, block)
+            } else {
+                // The padding is never used, and must not make an opaque row look otherwise.
+                let mut padded = [1.0; 32];
+                padded[..block.len()].copy_from_slice(block);
+                load4(simd, &padded)
+            };
+            least = least.min(a);
+            let square = b.mul_add(b, g.mul_add(g, r * r));
+            let values = [r * a, g * a, b * a, square * a, a];
+            for (channel, value) in values.into_iter().enumerate() {
+                value.store_slice(&mut target[channel * self.len + 8 * i..][..8]);
+            }
+        }
+        self.opaque[slot] = least.simd_ge(one).all_true();
+    }
+}

@@ -1,0 +1,177 @@
+//! The anisotropic Kuwahara filter (§ 5.4), at one scale or at several (§ 5.5).
+
+use crate::kernels::painting::anisotropic_kuwahara::{self as polynomial, Options};
+use crate::kernels::painting::propagate_colour::{self, Params as Propagation};
+use crate::kernels::painting::{anisotropic_kuwahara_texture as texture, lanczos_half, propagate_tensor};
+use crate::nodes::painting::generalized_kuwahara::{Q, SECTORS, THRESHOLD, sectors};
+use crate::nodes::structure::structure_tensor::{self, TensorOptions};
+use crate::ports;
+use crate::spec::{Choice, NodeSpec, Param, Scope};
+use isophote_engine::{ImageId, PlanBuilder};
+
+/// The node.
+pub static NODE: NodeSpec = NodeSpec {
+    id: "anisotropic_kuwahara",
+    label: "Anisotropic Kuwahara",
+    group: "painting",
+    doc: "A painterly flattening along the local structure: every pixel takes the mean of the sectors of an \
+          ellipse that lies along it, those that vary least counting most (5.14, 5.33). Directional features \
+          survive and become strokes, borders stay sharp, and no clusters form. Several levels abstract more \
+          than a larger radius could. Transparent pixels lend no colour, and coverage stays as it is.",
+    section: "5.4, 5.5",
+    inputs: &[ports::COLOR, TENSOR],
+    output: ports::color_output("The painted picture."),
+    own_params: &[
+        RADIUS,
+        SECTORS,
+        Q,
+        THRESHOLD,
+        ALPHA,
+        Param::choice(
+            "weights",
+            "Weights",
+            1,
+            &[Choice { id: "texture", label: "Texture" }, Choice { id: "polynomial", label: "Polynomial" }],
+        )
+        .doc(
+            "Weighting functions of the sectors: sampled from their definition (5.33), or polynomials (5.38), \
+             which hardly differ and are faster on CPUs.",
+        ),
+        Param::int("iterations", "Iterations", 1, [1, 10])
+            .slider(1.0, 5.0)
+            .structural()
+            .doc("How often the filter runs, each time on its own result and that one's orientation."),
+        LEVELS,
+        P_S,
+        P_D,
+        TAU_V,
+        TAU_W,
+    ],
+    build,
+};
+
+const TENSOR: crate::spec::Port = crate::spec::Port {
+    doc: "The orientation to follow, in all iterations and at the finest level; the smoothed structure tensor \
+          of the picture when open.",
+    ..ports::TENSOR
+};
+
+pub(crate) const RADIUS: Param = Param::float("radius", "Radius", 6.0, [0.0, 40.0])
+    .slider(1.0, 16.0)
+    .pixels()
+    .doc("Radius of the disc that is stretched to an ellipse (r); at every level the same number of its pixels.");
+pub(crate) const ALPHA: Param = Param::float("alpha", "Roundness", 1.0, [0.25, 100.0])
+    .slider(0.25, 4.0)
+    .doc("Tunes the ellipse (alpha of 5.22): up to ((1 + alpha) / alpha)^2 times as long as wide, 4 by default.");
+pub(crate) const LEVELS: Param = Param::int("levels", "Levels", 1, [1, MAX_LEVELS as i32])
+    .slider(1.0, 6.0)
+    .structural()
+    .doc("Scales, each half as large as the one before (5.5); 1 for the filter at a single scale.");
+pub(crate) const P_S: Param = Param::float("p_s", "Detail", 0.5, [0.0, 10.0])
+    .slider(0.0, 2.0)
+    .doc("With several levels: how much of each scale's own picture stays where it varies (p_s of 5.5.2).");
+pub(crate) const P_D: Param = Param::float("p_d", "Detail by scale", 1.25, [0.1, 10.0])
+    .slider(0.5, 2.0)
+    .doc("With several levels: factor on `p_s` from each scale to the coarser one (p_d of 5.5.2).");
+pub(crate) const TAU_V: Param = Param::float("tau_v", "Noise threshold", 0.1, [0.0, 1.0])
+    .slider(0.0, 0.5)
+    .doc("With several levels: how little variation is taken for none (tau_v of 5.5.2).");
+pub(crate) const TAU_W: Param = Param::float("tau_w", "Least deviation", 0.02, [0.001, 1.0])
+    .slider(0.001, 0.1)
+    .doc("With several levels: least standard deviation of a sector in the measure of variation (tau_w of 5.5.2).");
+
+/// The filter at several scales.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Painting {
+    /// At each scale.
+    pub options: Options,
+    /// Sampled weights instead of polynomials.
+    pub texture: bool,
+    /// Scales, at least 1.
+    pub levels: i32,
+    /// Detail kept at all scales.
+    pub p_s: f32,
+    /// Factor on it per scale.
+    pub p_d: f32,
+    /// What counts as no variation.
+    pub tau_v: f32,
+}
+
+impl Painting {
+    /// The values of the parameters of these names, which nodes that paint share.
+    pub(crate) fn of(scope: &Scope<'_>, texture: bool) -> Self {
+        Self {
+            options: Options {
+                radius: scope.float("radius"),
+                sectors: sectors(scope),
+                q: scope.float("q"),
+                threshold: scope.float("threshold"),
+                alpha: scope.float("alpha"),
+                deviation_floor: scope.float("tau_w"),
+            },
+            texture,
+            levels: scope.int("levels"),
+            p_s: scope.float("p_s"),
+            p_d: scope.float("p_d"),
+            tau_v: scope.float("tau_v"),
+        }
+    }
+
+    /// Filters a colour (Fig. 5.25). `tensor` is the orientation at the finest level, where one is given;
+    /// `scale` is that of the picture.
+    pub(crate) fn apply(
+        &self,
+        plan: &mut PlanBuilder,
+        color: ImageId,
+        tensor: Option<ImageId>,
+        scale: f32,
+    ) -> ImageId {
+        let options = TensorOptions::at_scale(scale);
+        let mut levels = [color; MAX_LEVELS];
+        let mut count = 1;
+        while count < MAX_LEVELS.min(self.levels.max(1) as usize) {
+            let finer = levels[count - 1];
+            let level = plan.desc(finer).level;
+            // A picture of a few pixels has no coarser structure.
+            if plan.level_size(level).iter().all(|n| *n <= SMALLEST) {
+                break;
+            }
+            levels[count] = lanczos_half::halved(plan, finer);
+            count += 1;
+        }
+        let mut below: Option<[ImageId; 3]> = None;
+        for (k, image) in levels[..count].iter().enumerate().rev() {
+            let mut merged = *image;
+            if let Some([colour, deviations, _]) = below {
+                let gain = self.p_s * self.p_d.powi(k as i32);
+                let params = Propagation { gain, threshold: self.tau_v };
+                merged = propagate_colour::merged(plan, *image, colour, deviations, &params);
+            }
+            let orientation = match (tensor, below) {
+                (Some(tensor), _) if k == 0 => tensor,
+                (_, below) => {
+                    let own = structure_tensor::of_color(plan, merged, &options);
+                    below.map_or(own, |[.., coarse]| propagate_tensor::merged(plan, own, coarse))
+                }
+            };
+            let filter = if self.texture { texture::pass } else { polynomial::pass };
+            let colour = filter(plan, merged, orientation, &self.options);
+            below = Some([colour, plan.sibling(colour, 1), orientation]);
+        }
+        below.map_or(color, |[colour, ..]| colour)
+    }
+}
+
+/// Most scales.
+const MAX_LEVELS: usize = 8;
+
+/// Levels whose sides are at most this are not halved again, pixels.
+const SMALLEST: i32 = 8;
+
+fn build(scope: &mut Scope<'_>) -> ImageId {
+    let color = scope.required("color");
+    let tensor = scope.input("tensor");
+    let painting = Painting::of(scope, scope.choice("weights") == "texture");
+    let (iterations, scale) = (scope.int("iterations"), scope.scale());
+    (0..iterations).fold(color, |color, _| painting.apply(scope.plan, color, tensor, scale))
+}

@@ -1,0 +1,47 @@
+//! The classical Kuwahara filter (§ 5.2) and its Gaussian variant.
+
+use crate::kernels::painting::kuwahara;
+use crate::kernels::painting::kuwahara_rows::Side;
+use crate::ports;
+use crate::spec::{Choice, NodeSpec, Param, Scope};
+use isophote_engine::ImageId;
+
+/// The node.
+pub static NODE: NodeSpec = NodeSpec {
+    id: "kuwahara",
+    label: "Kuwahara",
+    group: "painting",
+    doc: "Removes noise and fine detail and keeps edges: every pixel takes the mean of that one of four \
+          neighbouring regions that varies least (5.4), where several vary alike their mean. Large radii \
+          show the regions' shape; the generalized and the anisotropic filter do not. Transparent pixels \
+          lend no colour, and coverage stays as it is.",
+    section: "5.2",
+    inputs: &[ports::COLOR],
+    output: ports::color_output("The flattened picture."),
+    own_params: &[
+        Param::float("radius", "Radius", 3.0, [0.0, 60.0])
+            .slider(0.0, 20.0)
+            .pixels()
+            .doc("Reach of the regions from the pixel (r); squares take the nearest whole number."),
+        Param::choice(
+            "regions",
+            "Regions",
+            0,
+            &[Choice { id: "squares", label: "Squares" }, Choice { id: "gaussian", label: "Gaussian" }],
+        )
+        .uniform()
+        .doc(
+            "Squares that share the pixel as a corner (5.1), or Gaussians with the squares' means and \
+             variances (5.6), which leave no ringing.",
+        ),
+    ],
+    build,
+};
+
+fn build(scope: &mut Scope<'_>) -> ImageId {
+    let color = scope.required("color");
+    let radius = scope.float("radius");
+    let side =
+        if scope.choice("regions") == "gaussian" { Side::gaussian(radius) } else { Side::square(radius) };
+    kuwahara::filter(scope.plan, color, &side)
+}

@@ -1,0 +1,137 @@
+// The anisotropic Kuwahara filter with polynomial weighting functions (thesis § 5.4, Listing 5.4).
+//
+// Two pixels opposite each other share one evaluation of the weights. Sums over opposite sectors k and
+// k + N/2 are kept as their sum and their difference, which need the sum and the difference of the two
+// colours only: half the multiply-adds, and ten vectors for all eight sectors in one pass over the
+// neighbourhood, where two passes over four sectors each would evaluate all weights twice.
+//
+// Cost: pi radius^2 pixels, each one load and half of about 110 operations.
+#import grid
+#import sectors
+#import tensor
+
+struct Params {
+    // Radius of the disc that the ellipse is made of, pixels.
+    radius: f32,
+    // 1 / alpha of (5.22).
+    elongation: f32,
+    // Overlap of the sectors at the centre (5.40).
+    zeta: f32,
+    // Overlap of the sectors at their sides (5.42).
+    eta: f32,
+    // tau_s of (5.15).
+    threshold: f32,
+    // Exponent q.
+    q: f32,
+    // tau_w: least standard deviation of a sector in the second output.
+    deviation_floor: f32,
+    // 4 or 8.
+    sectors: u32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var source: texture_2d<f32>;
+@group(0) @binding(3) var tensors: texture_2d<f32>;
+@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(5) var deviations: texture_storage_2d<r32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let p = pixel(id);
+    let tensor = fetch(tensors, 1u, p);
+    let t = tensor_tangent(tensor);
+    let stretch = 1.0 + params.elongation * tensor_anisotropy(tensor);
+    // Rows of S R_-phi (5.32) for a disc of radius 1.
+    let along = t / (params.radius * stretch);
+    let across = vec2f(-t.y, t.x) * (stretch / params.radius);
+    let eight = params.sectors == 8u;
+    let mask = select(vec4f(1.0, 0.0, 1.0, 0.0), vec4f(1.0), eight);
+
+    let origin = fetch(source, 0u, p);
+    // Sums of sectors 0, 1, 2, 3 with their opposites, and differences from them.
+    var sum = SectorSums();
+    var difference = SectorSums();
+    let centre = select(vec4f(0.25, 0.0, 0.25, 0.0), vec4f(0.125), eight);
+    var full = centre;
+    sector_add(&sum, 2.0 * centre, vec3f(0.0), origin.a);
+
+    // The ellipse |v|^2 = a i^2 + 2 b i j + c j^2 <= 1, a c - b^2 = `area`, row by row.
+    let a = along.x * along.x + across.x * across.x;
+    let b = along.x * along.y + across.x * across.y;
+    let area = 1.0 / (params.radius * params.radius * params.radius * params.radius);
+    let rows = i32(sqrt(SECTOR_INSIDE * a / area));
+    for (var j = 0; j <= rows; j++) {
+        let y = f32(j);
+        let half = sqrt(max(SECTOR_INSIDE * a - area * y * y, 0.0)) / a;
+        var first = i32(ceil(-b * y / a - half - 1e-3));
+        let last = i32(floor(-b * y / a + half + 1e-3));
+        if j == 0 {
+            first = 1;
+        }
+        for (var i = first; i <= last; i++) {
+            let d = vec2f(f32(i), y);
+            let v = vec2f(dot(along, d), dot(across, d));
+            let distance2 = dot(v, v);
+            if distance2 > SECTOR_INSIDE {
+                continue;
+            }
+            let u = vec2f(v.x + v.y, v.y - v.x) * 0.70710678;
+            // Components along sectors 0 to 3, and the squares of those across them.
+            let forward = vec4f(v.x, u.x, v.y, u.y);
+            let side = vec4f(v.y * v.y, u.y * u.y, v.x * v.x, u.x * u.x);
+            let k = params.zeta - params.eta * side;
+            let z0 = max(k + forward, vec4f(0.0));
+            let z1 = max(k - forward, vec4f(0.0));
+            let near = z0 * z0 * mask;
+            let far = z1 * z1 * mask;
+            let g = exp(-3.125 * distance2) / dot(near + far, vec4f(1.0));
+            let both = (near + far) * g;
+            let apart = (near - far) * g;
+
+            let offset = vec2i(i, j);
+            let p0 = fetch(source, 0u, p + offset);
+            let p1 = fetch(source, 0u, p - offset);
+            let c0 = p0.rgb - origin.rgb;
+            let c1 = p1.rgb - origin.rgb;
+            let e = p0.a * vec4f(c0, dot(c0, c0)) + p1.a * vec4f(c1, dot(c1, c1));
+            let o = p0.a * vec4f(c0, dot(c0, c0)) - p1.a * vec4f(c1, dot(c1, c1));
+            sum.r += both * e.r;
+            sum.g += both * e.g;
+            sum.b += both * e.b;
+            sum.q += both * e.a;
+            sum.w += both * (p0.a + p1.a);
+            difference.r += apart * o.r;
+            difference.g += apart * o.g;
+            difference.b += apart * o.b;
+            difference.q += apart * o.a;
+            difference.w += apart * (p0.a - p1.a);
+            full += both;
+        }
+    }
+    let near = sector_means(half_of(sum, difference, 0.5), full);
+    let far = sector_means(half_of(sum, difference, -0.5), full);
+    let least = min(sector_least(near, params.threshold), sector_least(far, params.threshold));
+    let found = sector_response(near, least, params.threshold, params.q)
+        + sector_response(far, least, params.threshold, params.q);
+    let color = origin.rgb + select(vec3f(0.0), found.rgb / found.a, found.a > 0.0);
+    textureStore(target_image, vec2i(id.xy), vec4f(color, origin.a));
+
+    let all = sector_deviations(near, params.deviation_floor) + sector_deviations(far, params.deviation_floor);
+    // As of eight sectors.
+    let deviation = select(2.0 * (all.x + all.z), dot(all, vec4f(1.0)), eight);
+    textureStore(deviations, vec2i(id.xy), vec4f(deviation));
+}
+
+// Half the sum of the first plus `share` times the second.
+fn half_of(sum: SectorSums, difference: SectorSums, share: f32) -> SectorSums {
+    return SectorSums(
+        0.5 * sum.r + share * difference.r,
+        0.5 * sum.g + share * difference.g,
+        0.5 * sum.b + share * difference.b,
+        0.5 * sum.q + share * difference.q,
+        0.5 * sum.w + share * difference.w,
+    );
+}

@@ -1,0 +1,98 @@
+// The generalized Kuwahara filter (thesis § 5.3, Listing 5.1): the sums over sectors are convolutions
+// with fixed weighting functions, here taken pixel by pixel. The CPU twin may take them by the fast
+// Fourier transform, which is another way to the same sums.
+//
+// Two pixels opposite each other share one evaluation of the weights.
+//
+// Cost: pi radius^2 pixels, each one load and half of eight table lookups and 80 multiply-adds.
+#import grid
+#import sectors
+
+struct Params {
+    // 1 / radius, per pixel.
+    scale: f32,
+    // Pixels from the centre to the border along an axis.
+    reach: i32,
+    // tau_s of (5.15).
+    threshold: f32,
+    // Exponent q.
+    q: f32,
+    // 4 or 8.
+    sectors: u32,
+    // Side of the blocks that the CPU transforms; 0 for none.
+    block: u32,
+    reserved: vec2u,
+    // h_0 and its quarter turns at 43 x 22 nodes over the half y >= 0 of the disc's bounding square.
+    weights: array<vec4f, 960>,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var source: texture_2d<f32>;
+@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+
+// Texel `at` and its right neighbour, interpolated.
+fn texels(at: u32, f: f32) -> vec4f {
+    return mix(params.weights[at], params.weights[at + 1u], f);
+}
+
+// The four weights at a point of the unit disc, interpolated. The lower half mirrors the upper one, with
+// the second and the fourth sector exchanged.
+fn table(v: vec2f) -> vec4f {
+    let p = vec2f(max((v.x + 1.0) * 21.0, 0.0), abs(v.y) * 21.0);
+    let corner = min(floor(p), vec2f(41.0, 20.0));
+    let f = min(p - corner, vec2f(1.0));
+    let at = u32(corner.y) * 43u + u32(corner.x);
+    let w = mix(texels(at, f.x), texels(at + 43u, f.x), f.y);
+    return select(w, w.xwzy, v.y < 0.0);
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let p = pixel(id);
+    let origin = fetch(source, 0u, p);
+    let eight = params.sectors == 8u;
+    // Four sectors a quarter turn apart, and the four between them.
+    var even = SectorSums();
+    var odd = SectorSums();
+    var even_full = table(vec2f(0.0));
+    var odd_full = even_full;
+    sector_add(&even, even_full, vec3f(0.0), origin.a);
+    sector_add(&odd, odd_full, vec3f(0.0), origin.a);
+    for (var j = 0; j <= params.reach; j++) {
+        for (var i = select(-params.reach, 1, j == 0); i <= params.reach; i++) {
+            let v = vec2f(vec2i(i, j)) * params.scale;
+            if dot(v, v) > SECTOR_INSIDE {
+                continue;
+            }
+            let p0 = fetch(source, 0u, p + vec2i(i, j));
+            let p1 = fetch(source, 0u, p - vec2i(i, j));
+            let c0 = p0.rgb - origin.rgb;
+            let c1 = p1.rgb - origin.rgb;
+            let w = table(v);
+            sector_add(&even, w, c0, p0.a);
+            sector_add(&even, w.zwxy, c1, p1.a);
+            even_full += w + w.zwxy;
+            if eight {
+                let t = table(vec2f(v.x + v.y, v.y - v.x) * 0.70710678);
+                sector_add(&odd, t, c0, p0.a);
+                sector_add(&odd, t.zwxy, c1, p1.a);
+                odd_full += t + t.zwxy;
+            }
+        }
+    }
+    let near = sector_means(even, even_full);
+    var least = sector_least(near, params.threshold);
+    var far = sector_means(odd, odd_full);
+    if eight {
+        least = min(least, sector_least(far, params.threshold));
+    } else {
+        far.cover = vec4f(0.0);
+    }
+    let found = sector_response(near, least, params.threshold, params.q)
+        + sector_response(far, least, params.threshold, params.q);
+    let color = origin.rgb + select(vec3f(0.0), found.rgb / found.a, found.a > 0.0);
+    textureStore(target_image, vec2i(id.xy), vec4f(color, origin.a));
+}

@@ -1,0 +1,35 @@
+// Merges a level of the multi-scale Kuwahara filter with the result of the coarser one (thesis § 5.5.2):
+// what varied much there stays as it is, the rest takes the coarser result, interpolated.
+// Cost: 9 loads and 60 operations.
+#import sampling
+#import coverage
+
+struct Params {
+    // p_s p_d^k at this level.
+    gain: f32,
+    // tau_v: deviations up to this, times the gain, count for nothing.
+    threshold: f32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var source: texture_2d<f32>;
+@group(0) @binding(3) var coarse: texture_2d<f32>;
+@group(0) @binding(4) var deviations: texture_2d<f32>;
+@group(0) @binding(5) var target_image: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let original = fetch(source, 0u, pixel(id));
+    let at = centre(id) * 0.5;
+    let filtered = sample_covered(coarse, 1u, at);
+    let deviation = sample_linear(deviations, 2u, at).x;
+    var beta = clamp(deviation * params.gain - params.threshold, 0.0, 1.0);
+    if filtered.a < 1e-3 {
+        beta = 1.0;
+    }
+    let below = filtered.rgb / max(filtered.a, 1e-3);
+    textureStore(target_image, vec2i(id.xy), vec4f(below + (original.rgb - below) * beta, original.a));
+}

@@ -1,0 +1,27 @@
+// Merges the smoothed structure tensors of a level of the multi-scale Kuwahara filter with those of the
+// coarser one, interpolated, each weighted by its anisotropy (thesis § 5.5.2).
+// Cost: 5 loads, two anisotropies and 30 operations.
+#import sampling
+#import tensor
+
+struct Params {
+    // Least anisotropy that counts.
+    floor: f32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var fine: texture_2d<f32>;
+@group(0) @binding(3) var coarse: texture_2d<f32>;
+@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let own = fetch(fine, 0u, pixel(id));
+    let below = sample_linear(coarse, 1u, centre(id) * 0.5);
+    let a = max(tensor_anisotropy(own), params.floor);
+    let b = max(tensor_anisotropy(below), params.floor);
+    textureStore(target_image, vec2i(id.xy), own + (below - own) * (b / (a + b)));
+}
