@@ -159,8 +159,8 @@ fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
                     }
                 }
                 let mut own = [zero; 4];
-                for c in 0..4 {
-                    own[c] = f32x8::from_slice(simd, &held.row(y, c)[centre..centre + 8]);
+                for (c, own) in own.iter_mut().enumerate() {
+                    *own = f32x8::from_slice(simd, &held.row(y, c)[centre..centre + 8]);
                 }
                 put_pixels4(turned(simd, params, own, plain, strong, inverse), pixels);
             }
