@@ -244,8 +244,12 @@ impl Blocks<'_> {
             }
         } else {
             let mut k = 1.0;
-            let mut taps = self.taps(simd, lines, sides(steps, k), inner, gap);
             let mut more = steps.simd_ge(k).any_true();
+            // Lines of no length read nothing: the pixel beside the centre may lie outside the support.
+            let mut taps = [[f32x8::splat(simd, 0.0); 4]; 2];
+            if more {
+                taps = self.taps(simd, lines, sides(steps, k), inner, gap);
+            }
             while more {
                 // The next taps are fetched before these are weighted: exponentials are long chains of
                 // operations, and the fetches fill the time.
