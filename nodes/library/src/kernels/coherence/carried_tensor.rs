@@ -209,8 +209,8 @@ impl Strip {
                     tensor[c] = valid.select(tensor[c], earlier[c]);
                 }
             }
-            for c in 0..3 {
-                tensor[c].store_slice(&mut self.tensors[c * len + i..c * len + i + 8]);
+            for (c, value) in tensor.iter().enumerate() {
+                value.store_slice(&mut self.tensors[c * len + i..c * len + i + 8]);
             }
         }
     }
@@ -252,7 +252,7 @@ impl Strip {
         }
         for (i, pixels) in target.chunks_mut(32).enumerate() {
             let mut tensor = [one; 4];
-            for c in 0..3 {
+            for (c, value) in tensor.iter_mut().take(3).enumerate() {
                 let at = c * narrow + 8 * i;
                 let mut sum = f32x8::from_slice(simd, &rows[r][at..at + 8]) * weights[0];
                 for k in 1..=r {
@@ -260,7 +260,7 @@ impl Strip {
                     let below = f32x8::from_slice(simd, &rows[r + k][at..at + 8]);
                     sum = (above + below).mul_add(f32x8::splat(simd, weights[k]), sum);
                 }
-                tensor[c] = sum;
+                *value = sum;
             }
             put_pixels4(tensor, pixels);
         }

@@ -36,10 +36,10 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     dispatch!(pass.level, simd => each(simd, &pass.inputs[0], band, #[inline(always)] |around: Neighbours<'_, _>| {
         let mut result = [f32x8::splat(simd, 0.0); 4];
-        for c in 0..3 {
+        for (c, result) in result.iter_mut().take(3).enumerate() {
             let across = around.excess(-1, 0, c) + around.excess(1, 0, c);
             let along = around.excess(0, -1, c) + around.excess(0, 1, c);
-            result[c] = (across + along) * params.scale;
+            *result = (across + along) * params.scale;
         }
         result
     }));

@@ -42,13 +42,13 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         let [e, f, g, _] = block.read4(simd, &pass.inputs[1]);
         let (_, [x, y]) = axis((e - g) * 0.5, f);
         let mut result = [f32x8::splat(simd, 0.0); 4];
-        for c in 0..3 {
+        for (c, result) in result.iter_mut().take(3).enumerate() {
             let xx = around.excess(-1, 0, c) + around.excess(1, 0, c);
             let yy = around.excess(0, -1, c) + around.excess(0, 1, c);
             let rising = around.excess(1, 1, c) + around.excess(-1, -1, c);
             let falling = around.excess(1, -1, c) + around.excess(-1, 1, c);
             let xy = (rising - falling) * 0.25;
-            result[c] = (x * x * xx + x * y * xy * 2.0 + y * y * yy) * params.scale;
+            *result = (x * x * xx + x * y * xy * 2.0 + y * y * yy) * params.scale;
         }
         result
     }));
