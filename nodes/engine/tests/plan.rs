@@ -136,7 +136,9 @@ fn strips_compute_what_whole_passes_do() {
         for strip in [1, 8, 13, 40] {
             let (strips, told) = run(strip);
             assert_eq!(strips, whole, "{region:?} in strips of {strip}");
-            assert!(told.len() > 5 && told.is_sorted() && told.last() == Some(&1.0), "{told:?}");
+            // Forty rows of so small a picture would take more memory than whole passes do.
+            assert_eq!(told.len() > 5, strip < 40, "{region:?} in strips of {strip}");
+            assert!(told.is_sorted() && told.last() == Some(&1.0), "{told:?}");
         }
     }
 }

@@ -37,10 +37,11 @@ crate::kernel!(flow_dog_gradient {
     tolerance: Tolerance {
         absolute: 2e-3,
         relative: 1e-4,
-        outliers: 5e-3,
+        outliers: 1e-2,
         reason: "the slope of a tangent is exact to a few units in the last place and shifts samples by \
-                 as much times the local contrast; a diagonal may take the other axis, and the last \
-                 step may fall on either side of the cut-off",
+                 as much times the local contrast, which is large beside a difference of Gaussians of \
+                 highlights; a diagonal may take the other axis, and the last step may fall on either \
+                 side of the cut-off",
     },
 });
 

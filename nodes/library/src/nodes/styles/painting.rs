@@ -41,7 +41,7 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
-const BRUSH_SIZE: Param = Param::float("brush_size", "Brush size", 12.0, [0.0, 80.0])
+const BRUSH_SIZE: Param = Param::float("brush_size", "Brush size", 12.0, [0.0, 64.0])
     .slider(2.0, 32.0)
     .pixels()
     .group(LOOK)
@@ -54,7 +54,7 @@ const SHARPNESS: Param = Param::float("sharpness", "Sharpness", 0.5, [0.0, 1.0])
     .doc("How crisp the borders of strokes are: scales `q` from 1/4 to 4 times.");
 /// The levels of the node, more of them by default.
 const PAINTING_LEVELS: Param = Param {
-    kind: ParamKind::Int { default: 4, range: [1, 8], slider: [1, 6] },
+    kind: ParamKind::Int { default: 2, range: [1, 8], slider: [1, 6] },
     ..LEVELS.group(ADVANCED)
 };
 

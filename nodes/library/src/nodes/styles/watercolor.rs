@@ -26,7 +26,7 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR],
     output: ports::color_output("The watercolour."),
     own_params: &[
-        Param::float("wash_size", "Wash size", 3.0, [0.0, 30.0])
+        Param::float("wash_size", "Wash size", 1.5, [0.0, 30.0])
             .slider(0.0, 12.0)
             .pixels()
             .group(LOOK)
