@@ -8,6 +8,7 @@ pub mod cases;
 pub mod compare;
 pub mod device;
 pub mod library;
+pub mod ofx;
 pub mod pictures;
 pub mod png;
 pub mod random;

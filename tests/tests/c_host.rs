@@ -297,15 +297,30 @@ fn a_c_program_may_end_without_cleaning_up() {
 }
 
 #[test]
-fn the_library_exports_one_symbol() {
+fn the_library_exports_the_entries_of_its_two_faces_and_no_more() {
     if !cfg!(target_os = "linux") || !has("nm") {
         return;
     }
     let run = Command::new("nm").args(["-D", "--defined-only"]).arg(library::path()).output();
     let text = printed(&run.expect("nm can be started"), "nm");
-    let names: Vec<&str> = text.lines().filter_map(|l| l.split_whitespace().last()).collect();
-    assert!(names.contains(&"isophote_api"), "{text}");
-    assert!(names.iter().all(|n| n.starts_with("isophote_")), "{text}");
+    let mut names: Vec<&str> = text.lines().filter_map(|l| l.split_whitespace().last()).collect();
+    names.sort_unstable();
+    assert_eq!(names, ["OfxGetNumberOfPlugins", "OfxGetPlugin", "OfxSetHost", "isophote_api"], "{text}");
+}
+
+#[test]
+fn the_library_needs_nothing_but_what_every_system_has() {
+    if !cfg!(target_os = "linux") || !has("readelf") {
+        return;
+    }
+    let run = Command::new("readelf").args(["-d", "-W"]).arg(library::path()).output();
+    let text = printed(&run.expect("readelf can be started"), "readelf");
+    let needed = text.lines().filter(|l| l.contains("(NEEDED)"));
+    for library in needed.filter_map(|l| l.split(['[', ']']).nth(1)) {
+        // The loader is a part of libc.
+        let known = ["libc.so", "libm.so", "libgcc_s.so", "ld-linux"];
+        assert!(known.iter().any(|k| library.starts_with(k)), "{library} is needed");
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The project's chores, `cargo xtask <chore>`: one module for each.
 
 mod bench;
+mod bundle;
 mod demo;
 mod error;
 mod experiments;
@@ -37,6 +38,8 @@ enum Chore {
     Gallery(gallery::Options),
     /// Runs the host's benchmark, built for speed
     Bench(bench::Options),
+    /// Makes the OpenFX bundle, and installs it
+    Bundle(bundle::Options),
     /// Writes include/isophote.h from the Rust declarations
     Header(header::Options),
     /// Writes the README's table of nodes from their declarations
@@ -53,6 +56,7 @@ fn main() -> ExitCode {
         Chore::Bless => test::bless(),
         Chore::Experiments(options) => experiments::run(&options),
         Chore::Gallery(options) => gallery::run(&options),
+        Chore::Bundle(options) => bundle::run(&options),
         Chore::Bench(options) => bench::run(&options),
         Chore::Readme(options) => readme::run(&options),
         Chore::Header(options) => header::run(&options),

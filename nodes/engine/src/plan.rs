@@ -210,6 +210,34 @@ impl Plan {
         last
     }
 
+    /// The most bytes that the images of a run over `windows` ([`Plan::windows`]) take at once, those that
+    /// enter included, when each is freed after its last use.
+    pub fn peak_bytes(&self, windows: &[Rect]) -> u64 {
+        let bytes = |image: ImageId| {
+            let window = &windows[image.index()];
+            let channels = u64::from(self.desc(image).channels);
+            u64::from(window.width()) * u64::from(window.height()) * channels * 4
+        };
+        let mut live: u64 = self.inputs.iter().map(|port| bytes(port.image)).sum();
+        let mut most = live;
+        let last_uses = self.last_uses();
+        let mut freed: Vec<Vec<ImageId>> = vec![Vec::new(); self.passes.len()];
+        for (index, last) in last_uses.iter().enumerate() {
+            let image = ImageId(index as u32);
+            if let Some(list) = freed.get_mut(*last)
+                && !self.inputs.iter().any(|port| port.image == image)
+            {
+                list.push(image);
+            }
+        }
+        for (pass, freed) in self.passes.iter().zip(&freed) {
+            live += pass.outputs.iter().map(|o| bytes(*o)).sum::<u64>();
+            most = most.max(live);
+            live -= freed.iter().map(|image| bytes(*image)).sum::<u64>();
+        }
+        most
+    }
+
     /// Describes the plan again with other uniform bytes, in place and without allocating.
     ///
     /// Returns false when the description took another course (other passes, other connections, or

@@ -390,32 +390,16 @@ impl Job<'_> {
 /// Fails when the images of a run would not fit into memory, which the allocator answers by ending the
 /// process.
 fn must_fit(plan: &Plan, windows: &[Rect], on_device: bool) -> Outcome<()> {
-    let bytes = |image: usize| {
-        let window = &windows[image];
-        let channels = plan.images()[image].channels;
-        u64::from(window.width()) * u64::from(window.height()) * u64::from(channels) * 4
-    };
-    let mut live: u64 = plan.inputs().iter().map(|port| bytes(port.image.index())).sum();
-    let mut most = live;
-    if on_device {
-        most += plan.outputs().iter().map(|port| bytes(port.image.index())).sum::<u64>();
+    let most = if on_device {
+        let bytes = |image: ImageId| {
+            let window = &windows[image.index()];
+            let channels = u64::from(plan.desc(image).channels);
+            u64::from(window.width()) * u64::from(window.height()) * channels * 4
+        };
+        plan.inputs().iter().chain(plan.outputs()).map(|port| bytes(port.image)).sum()
     } else {
-        let last_uses = plan.last_uses();
-        let mut freed: Vec<Vec<usize>> = vec![Vec::new(); plan.passes().len()];
-        let inputs: Vec<usize> = plan.inputs().iter().map(|port| port.image.index()).collect();
-        for (image, last) in last_uses.iter().enumerate() {
-            if let Some(list) = freed.get_mut(*last)
-                && !inputs.contains(&image)
-            {
-                list.push(image);
-            }
-        }
-        for (pass, freed) in plan.passes().iter().zip(&freed) {
-            live += pass.outputs.iter().map(|o| bytes(o.index())).sum::<u64>();
-            most = most.max(live);
-            live -= freed.iter().map(|image| bytes(*image)).sum::<u64>();
-        }
-    }
+        plan.peak_bytes(windows)
+    };
     let fits =
         usize::try_from(most).is_ok_and(|bytes| Vec::<u8>::new().try_reserve_exact(bytes.max(1)).is_ok());
     if fits {

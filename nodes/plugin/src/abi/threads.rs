@@ -70,7 +70,7 @@ impl Chosen {
         if let Some(run) = control.run {
             let cores = || std::thread::available_parallelism().map_or(1, usize::from);
             let count = if threads == 0 { cores() } else { threads };
-            return Ok(Self::Host(HostThreads { run, user: User(control.user), count }));
+            return Ok(Self::Host(HostThreads::new(run, User(control.user), count)));
         }
         Ok(if threads == 1 { Self::Calling(CallingThread) } else { Self::Pool(pool(threads)?) })
     }
@@ -100,6 +100,17 @@ pub struct HostThreads {
     run: unsafe extern "C" fn(user: *mut c_void, jobs: u32, job: IsophoteJob, batch: u64),
     user: User,
     count: usize,
+}
+
+impl HostThreads {
+    /// `count` threads behind a function that runs the jobs of a batch.
+    pub fn new(
+        run: unsafe extern "C" fn(user: *mut c_void, jobs: u32, job: IsophoteJob, batch: u64),
+        user: User,
+        count: usize,
+    ) -> Self {
+        Self { run, user, count }
+    }
 }
 
 type Job<'a> = dyn Fn(usize) + Sync + 'a;

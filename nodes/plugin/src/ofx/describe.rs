@@ -1,0 +1,255 @@
+//! Describing an effect to a host: properties, clips and parameters, all from the effect's controls.
+
+use super::effects::{Control, Effect, SPACES, Target};
+use super::host::{Host, Outcome, Properties};
+use super::interface::*;
+use isophote::graph::GraphInput;
+use isophote::spec::{ParamKind, Unit};
+use std::ffi::{CStr, c_int};
+use std::ptr::null_mut;
+
+/// Names of the clips.
+pub const SOURCE: &CStr = c"Source";
+pub const OUTPUT: &CStr = c"Output";
+pub const MASK: &CStr = c"Mask";
+
+/// Name of the clip that gives a guide.
+pub fn guide_clip(guide: GraphInput) -> Option<&'static CStr> {
+    match guide {
+        GraphInput::Normal => Some(c"Normal"),
+        GraphInput::Depth => Some(c"Depth"),
+        _ => None,
+    }
+}
+
+const COMPONENTS: [&CStr; 3] = [kOfxImageComponentRGBA, kOfxImageComponentRGB, kOfxImageComponentAlpha];
+
+/// What does not depend on a context.
+///
+/// # Errors
+/// Failed, without a descriptor.
+pub fn describe(effect: &'static Effect, host: &Host, descriptor: Handle) -> Outcome {
+    let set = host.effect(descriptor);
+    if set.is_null() {
+        return Err(kOfxStatFailed);
+    }
+    for name in [kOfxPropLabel, kOfxPropShortLabel, kOfxPropLongLabel] {
+        set.set_string(name, 0, &effect.label);
+    }
+    set.set_string(kOfxImageEffectPluginPropGrouping, 0, &effect.grouping);
+    set.set_string(kOfxPropPluginDescription, 0, &effect.description);
+    set.set_string(kOfxPropVersionLabel, 0, VERSION);
+    for (index, number) in VERSION.to_string_lossy().split('.').enumerate() {
+        set.set_int_at(kOfxPropVersion, index, number.parse().unwrap_or(0));
+    }
+    for (index, icon) in effect.icons.iter().enumerate() {
+        set.set_string(kOfxPropIcon, index, icon);
+    }
+    let contexts = [kOfxImageEffectContextFilter, kOfxImageEffectContextGeneral];
+    set_strings(set, kOfxImageEffectPropSupportedContexts, &contexts);
+    let depths = [kOfxBitDepthFloat, kOfxBitDepthHalf, kOfxBitDepthShort, kOfxBitDepthByte];
+    let depths = depths.into_iter().filter(|d| host.half || *d != kOfxBitDepthHalf);
+    set_strings(set, kOfxImageEffectPropSupportedPixelDepths, &depths.collect::<Vec<_>>());
+    // Nothing is kept between calls, so any number of frames may be rendered at once.
+    set.set_string(kOfxImageEffectPluginRenderThreadSafety, 0, kOfxImageEffectRenderFullySafe);
+    for (name, value) in [
+        (kOfxImageEffectPluginPropSingleInstance, 0),
+        (kOfxImageEffectPluginPropHostFrameThreading, 0),
+        (kOfxImageEffectPropSupportsMultiResolution, 1),
+        (kOfxImageEffectPropSupportsTiles, effect.local.into()),
+        (kOfxImageEffectPropTemporalClipAccess, 0),
+        (kOfxImageEffectPluginPropFieldRenderTwiceAlways, 0),
+        (kOfxImageEffectPropSupportsMultipleClipDepths, 0),
+        (kOfxImageEffectPropSupportsMultipleClipPARs, 0),
+        (kOfxImageEffectInstancePropSequentialRender, 0),
+    ] {
+        set.set_int(name, value);
+    }
+    for (name, value) in [
+        (kOfxImageEffectPropOpenGLRenderSupported, c"false"),
+        (kOfxImageEffectPropOpenCLRenderSupported, c"false"),
+        (kOfxImageEffectPropCudaRenderSupported, c"false"),
+        (kOfxImageEffectPropMetalRenderSupported, c"false"),
+        (kOfxImageEffectPropCPURenderSupported, c"true"),
+        (kOfxImageEffectPropNoSpatialAwareness, c"false"),
+    ] {
+        set.set_string(name, 0, value);
+    }
+    Ok(kOfxStatOK)
+}
+
+const VERSION: &CStr = match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {
+    Ok(version) => version,
+    Err(_) => c"",
+};
+
+fn set_strings(set: Properties<'_>, name: &CStr, values: &[&'static CStr]) {
+    for (index, value) in values.iter().enumerate() {
+        set.set_string(name, index, value);
+    }
+}
+
+/// Clips and parameters of one context.
+///
+/// # Errors
+/// Failed, when the host refuses a clip or a parameter.
+pub fn in_context(effect: &'static Effect, host: &Host, descriptor: Handle, in_args: Handle) -> Outcome {
+    let context = host.set(in_args).string(kOfxImageEffectPropContext, 0).unwrap_or_default();
+    let general = context.as_c_str() == kOfxImageEffectContextGeneral;
+    for (name, mask, optional) in clips(effect, general) {
+        let set = define_clip(host, descriptor, name)?;
+        set_strings(
+            set,
+            kOfxImageEffectPropSupportedComponents,
+            if mask { &COMPONENTS[2..] } else { &COMPONENTS },
+        );
+        set.set_int(kOfxImageClipPropOptional, optional.into());
+        set.set_int(kOfxImageClipPropIsMask, mask.into());
+        set.set_int(kOfxImageEffectPropSupportsTiles, effect.local.into());
+        set.set_int(kOfxImageEffectPropTemporalClipAccess, 0);
+        set.set_string(kOfxImageClipPropFieldExtraction, 0, kOfxImageFieldDoubled);
+    }
+    let params = host.params(descriptor)?;
+    let shown = || effect.controls.iter().filter(|c| general || !matches!(c.target, Target::MaskApply));
+    let page = define_param(host, params, kOfxParamTypePage, c"Controls")?;
+    page.set_string(kOfxPropLabel, 0, c"Controls");
+    for (index, control) in shown().enumerate() {
+        page.set_string(kOfxParamPropPageChild, index, &control.name);
+    }
+    for group in &effect.groups {
+        let set = define_param(host, params, kOfxParamTypeGroup, &group.name)?;
+        labels(set, &group.name, &group.label);
+        set.set_int(kOfxParamPropGroupOpen, group.open.into());
+    }
+    for control in shown() {
+        define_control(effect, host, params, control)?;
+    }
+    Ok(kOfxStatOK)
+}
+
+/// Names of the clips in the order of inputs; whether each is a mask, and whether it may stay open.
+fn clips(effect: &Effect, general: bool) -> Vec<(&'static CStr, bool, bool)> {
+    let mut clips = vec![(SOURCE, false, false), (OUTPUT, false, false)];
+    if general {
+        clips.push((MASK, true, true));
+        clips.extend(effect.guides.iter().filter_map(|g| Some((guide_clip(*g)?, false, true))));
+    }
+    clips
+}
+
+fn define_clip<'h>(host: &'h Host, descriptor: Handle, name: &'static CStr) -> Outcome<Properties<'h>> {
+    let define = host.effects.clipDefine.ok_or(kOfxStatErrMissingHostFeature)?;
+    let mut set = null_mut();
+    // SAFETY: a descriptor that the host gave, a string with a closing zero, and a place for the answer.
+    let status = unsafe { define(descriptor, name.as_ptr(), &raw mut set) };
+    if status == kOfxStatOK { Ok(host.set(set)) } else { Err(kOfxStatFailed) }
+}
+
+fn define_param<'h>(
+    host: &'h Host,
+    params: Handle,
+    kind: &'static CStr,
+    name: &'static CStr,
+) -> Outcome<Properties<'h>> {
+    let define = host.parameters.paramDefine.ok_or(kOfxStatErrMissingHostFeature)?;
+    let mut set = null_mut();
+    // SAFETY: a set that the host gave, strings with a closing zero, and a place for the answer.
+    let status = unsafe { define(params, kind.as_ptr(), name.as_ptr(), &raw mut set) };
+    if status == kOfxStatOK { Ok(host.set(set)) } else { Err(kOfxStatFailed) }
+}
+
+fn labels(set: Properties<'_>, name: &'static CStr, label: &'static CStr) {
+    for property in [kOfxPropLabel, kOfxPropShortLabel, kOfxPropLongLabel] {
+        set.set_string(property, 0, label);
+    }
+    set.set_string(kOfxParamPropScriptName, 0, name);
+}
+
+fn define_control(
+    effect: &'static Effect,
+    host: &Host,
+    params: Handle,
+    control: &'static Control,
+) -> Outcome<()> {
+    let define = |kind| define_param(host, params, kind, &control.name);
+    let set = match control.target {
+        Target::Param(_, param) => match param.kind {
+            ParamKind::Float { default, range, slider } => {
+                let set = define(kOfxParamTypeDouble)?;
+                let angle = param.unit == Unit::Degrees;
+                let kind = if angle { kOfxParamDoubleTypeAngle } else { kOfxParamDoubleTypePlain };
+                set.set_string(kOfxParamPropDoubleType, 0, kind);
+                for (name, value) in [
+                    (kOfxParamPropDefault, default),
+                    (kOfxParamPropMin, range[0]),
+                    (kOfxParamPropMax, range[1]),
+                    (kOfxParamPropDisplayMin, slider[0]),
+                    (kOfxParamPropDisplayMax, slider[1]),
+                ] {
+                    set.set_doubles(name, &[exact(value)]);
+                }
+                // A hundredth of the slider, as a round number, and one digit more.
+                let digits = (2.0 - (slider[1] - slider[0]).log10().floor()).clamp(0.0, 6.0);
+                set.set_doubles(kOfxParamPropIncrement, &[10_f64.powf(-f64::from(digits))]);
+                set.set_int(kOfxParamPropDigits, digits as c_int + 1);
+                set.set_int(kOfxParamPropAnimates, 1);
+                set
+            }
+            ParamKind::Int { default, range, slider } => {
+                let set = define(kOfxParamTypeInteger)?;
+                for (name, value) in [
+                    (kOfxParamPropDefault, default),
+                    (kOfxParamPropMin, range[0]),
+                    (kOfxParamPropMax, range[1]),
+                    (kOfxParamPropDisplayMin, slider[0]),
+                    (kOfxParamPropDisplayMax, slider[1]),
+                    (kOfxParamPropAnimates, 1),
+                ] {
+                    set.set_int(name, value);
+                }
+                set
+            }
+            ParamKind::Bool { default } => switch(define(kOfxParamTypeBoolean)?, default),
+            ParamKind::Choice { default, .. } => choice(define(kOfxParamTypeChoice)?, control, default),
+            ParamKind::Color { default } => {
+                let set = define(kOfxParamTypeRGBA)?;
+                set.set_doubles(kOfxParamPropDefault, &default.map(exact));
+                set.set_int(kOfxParamPropAnimates, 1);
+                set
+            }
+        },
+        Target::LinesOutput => choice(define(kOfxParamTypeChoice)?, control, 0),
+        Target::WorkingSpace => {
+            let default = SPACES.iter().position(|(_, space)| *space == host.quirks.space).unwrap_or(0);
+            choice(define(kOfxParamTypeChoice)?, control, default)
+        }
+        Target::ProcessAlpha => switch(define(kOfxParamTypeBoolean)?, false),
+        Target::MaskApply => switch(define(kOfxParamTypeBoolean)?, !host.quirks.all_connected),
+    };
+    labels(set, &control.name, &control.label);
+    set.set_string(kOfxParamPropHint, 0, &control.hint);
+    if let Some(group) = control.group {
+        set.set_string(kOfxParamPropParent, 0, &effect.groups[group].name);
+    }
+    Ok(())
+}
+
+fn switch(set: Properties<'_>, default: bool) -> Properties<'_> {
+    set.set_int(kOfxParamPropDefault, default.into());
+    set.set_int(kOfxParamPropAnimates, 0);
+    set
+}
+
+fn choice<'h>(set: Properties<'h>, control: &'static Control, default: usize) -> Properties<'h> {
+    for (index, option) in control.options.iter().enumerate() {
+        set.set_string(kOfxParamPropChoiceOption, index, option);
+    }
+    set.set_int(kOfxParamPropDefault, default as c_int);
+    set.set_int(kOfxParamPropAnimates, 0);
+    set
+}
+
+/// The decimal number that was meant: 0.99 and not 0.9900000095.
+fn exact(value: f32) -> f64 {
+    value.to_string().parse().unwrap_or_else(|_| value.into())
+}

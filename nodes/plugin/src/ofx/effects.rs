@@ -1,0 +1,293 @@
+//! The effects: every node from colour to colour, the line filters and the pair of structure nodes,
+//! each derived from the nodes' declarations. Nothing is written down per effect.
+//!
+//! An effect is a small graph. Its controls are the parameters of the graph's nodes (those of any but
+//! the first node under a prefix, so that neither can ever take the other's name) and the few that an
+//! image effect adds itself.
+
+use isophote::engine::Support;
+use isophote::graph::GraphInput;
+use isophote::spec::{ImageKind, NodeSpec, Param, Unit};
+use isophote::{ColourSpace, Graph, NodeId, Planned, Request};
+use std::ffi::{CStr, CString};
+use std::sync::LazyLock;
+
+/// Reverse name of the house, before the id of every effect.
+const HOUSE: &str = "org.isophote.";
+
+/// What the controls of an effect's own are called.
+pub const WORKING_SPACE: &str = "working_space";
+pub const PROCESS_ALPHA: &str = "process_alpha";
+pub const MASK_APPLY: &str = "mask_apply";
+pub const LINES_OUTPUT: &str = "lines_output";
+
+/// How the nodes of an effect are connected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// One node from colour to colour.
+    Colour,
+    /// A node from colour to lines, and one that draws them over the picture.
+    Lines,
+    /// A node from colour to tensors, and one that shows them.
+    Structure,
+}
+
+/// The spaces that pixels may be in. "As is" computes as sRGB does, and says that nobody claims it.
+pub const SPACES: [(&CStr, ColourSpace); 4] = [
+    (c"Linear (Rec. 709)", ColourSpace::Linear),
+    (c"sRGB", ColourSpace::Srgb),
+    (c"As is", ColourSpace::Srgb),
+    (c"ACEScg", ColourSpace::AcesCg),
+];
+
+/// What an effect of lines can show.
+pub const LINE_OUTPUTS: [&CStr; 2] = [c"Lines only", c"Lines over source"];
+
+/// What a control decides.
+#[derive(Clone, Copy, Debug)]
+pub enum Target {
+    /// A parameter of the node at this position.
+    Param(usize, &'static Param),
+    /// Lines alone, or over the picture.
+    LinesOutput,
+    /// What the pixels' numbers mean.
+    WorkingSpace,
+    /// Whether alpha is filtered too, instead of being the source's.
+    ProcessAlpha,
+    /// Whether a connected mask counts. For hosts that call every clip connected.
+    MaskApply,
+}
+
+/// A control that hosts show.
+#[derive(Debug)]
+pub struct Control {
+    /// Stable name, fit for scripts.
+    pub name: CString,
+    /// For people.
+    pub label: CString,
+    /// One sentence or two.
+    pub hint: CString,
+    /// Position in [`Effect::groups`], when it stands under a heading.
+    pub group: Option<usize>,
+    /// What it decides.
+    pub target: Target,
+    /// Labels of a choice's options.
+    pub options: Vec<CString>,
+}
+
+/// A heading.
+#[derive(Debug)]
+pub struct Group {
+    /// Stable name.
+    pub name: CString,
+    /// For people.
+    pub label: CString,
+    /// Whether its controls show at first.
+    pub open: bool,
+}
+
+/// One image effect.
+#[derive(Debug)]
+pub struct Effect {
+    pub identifier: CString,
+    pub label: CString,
+    pub grouping: CString,
+    pub description: CString,
+    pub icons: [CString; 2],
+    pub form: Form,
+    pub nodes: Vec<&'static NodeSpec>,
+    pub groups: Vec<Group>,
+    pub controls: Vec<Control>,
+    /// Guides that it takes as clips.
+    pub guides: Vec<GraphInput>,
+    /// Whether a tile needs only its surroundings, at the default values.
+    pub local: bool,
+}
+
+/// All effects, in the order of the catalogue.
+pub static EFFECTS: LazyLock<Vec<Effect>> =
+    LazyLock::new(|| isophote::registry::nodes().iter().filter_map(|node| Effect::of(node)).collect());
+
+/// Text without what C strings and menus cannot hold.
+fn text(text: &str) -> CString {
+    CString::new(text.replace('\0', " ")).unwrap_or_default()
+}
+
+impl Effect {
+    /// The effect that a node becomes, if it becomes one.
+    fn of(node: &'static NodeSpec) -> Option<Self> {
+        let from_colour = node.inputs.iter().any(|p| p.kind == ImageKind::Color)
+            && node.inputs.iter().all(|p| p.optional || p.kind == ImageKind::Color);
+        let find = |id| isophote::registry::find(id).ok();
+        match node.output.kind {
+            ImageKind::Color if from_colour => Self::new(Form::Colour, vec![node], node),
+            ImageKind::Scalar if from_colour => {
+                Self::new(Form::Lines, vec![node, find("composite_lines")?], node)
+            }
+            ImageKind::Color if node.id == "tensor_view" => {
+                Self::new(Form::Structure, vec![find("structure_tensor")?, node], node)
+            }
+            _ => None,
+        }
+    }
+
+    fn new(form: Form, nodes: Vec<&'static NodeSpec>, shown: &NodeSpec) -> Option<Self> {
+        let (id, label) = match form {
+            Form::Structure => ("structure", "Structure"),
+            _ => (shown.id, shown.label),
+        };
+        let identifier = format!("{HOUSE}{id}");
+        let mut effect = Self {
+            // Some hosts stumble over a hyphen in a label.
+            label: text(&label.replace('-', " ")),
+            grouping: text(&format!("Isophote/{}", shown.group)),
+            description: text(&format!("{}\n\nThesis: section {}.", shown.doc, shown.section)),
+            icons: [text(&format!("{identifier}.svg")), text(&format!("{identifier}.png"))],
+            identifier: text(&identifier),
+            form,
+            groups: Vec::new(),
+            controls: Vec::new(),
+            guides: [GraphInput::Normal, GraphInput::Depth]
+                .into_iter()
+                .filter(|g| nodes[0].inputs.iter().any(|p| p.kind == g.kind()))
+                .collect(),
+            local: true,
+            nodes,
+        };
+        effect.add_controls();
+        let (graph, _) = effect.graph(false).ok()?;
+        let planned = Planned::new(&graph, Request::new(256, 256)).ok()?;
+        effect.local = planned.plan().support() != Support::Global;
+        Some(effect)
+    }
+
+    fn add_controls(&mut self) {
+        if self.form == Form::Lines {
+            self.add(LINES_OUTPUT, "Output", LINES_HINT, "", Target::LinesOutput);
+        }
+        for (index, node) in self.nodes.clone().into_iter().enumerate() {
+            for param in node.params() {
+                let target = Target::Param(index, param);
+                let hint = match param.unit {
+                    Unit::Pixels => format!("{} In pixels of the full-size picture.", param.doc),
+                    Unit::Percent => format!("{} In percent.", param.doc),
+                    Unit::Degrees => format!("{} In degrees.", param.doc),
+                    Unit::None => param.doc.to_owned(),
+                };
+                if index == 0 {
+                    self.add(param.id, param.label, &hint, param.group, target);
+                } else {
+                    let (prefix, group) = if self.form == Form::Lines {
+                        ("lines", "lines over source")
+                    } else {
+                        ("view", "view")
+                    };
+                    self.add(&format!("{prefix}_{}", param.id), param.label, &hint, group, target);
+                }
+            }
+        }
+        self.add(WORKING_SPACE, "Working space", SPACE_HINT, "output", Target::WorkingSpace);
+        self.add(PROCESS_ALPHA, "Process alpha", ALPHA_HINT, "output", Target::ProcessAlpha);
+        self.add(MASK_APPLY, "Apply mask", MASK_HINT, "output", Target::MaskApply);
+        // Under one heading, controls follow one another.
+        self.controls.sort_by_key(|c| c.group);
+    }
+
+    fn add(&mut self, name: &str, label: &str, hint: &str, group: &str, target: Target) {
+        let group = (!group.is_empty()).then(|| self.group(group));
+        let options = match target {
+            Target::Param(_, Param { kind: isophote::spec::ParamKind::Choice { options, .. }, .. }) => {
+                options.iter().map(|o| text(o.label)).collect()
+            }
+            Target::LinesOutput => LINE_OUTPUTS.map(CStr::to_owned).to_vec(),
+            Target::WorkingSpace => SPACES.map(|(label, _)| label.to_owned()).to_vec(),
+            _ => Vec::new(),
+        };
+        let (name, label, hint) = (text(name), text(label), text(hint));
+        self.controls.push(Control { name, label, hint, group, target, options });
+    }
+
+    /// Position of the heading, which is added when it is new.
+    fn group(&mut self, id: &str) -> usize {
+        let name = text(&format!("group_{}", id.replace(' ', "_")));
+        if let Some(at) = self.groups.iter().position(|g| g.name == name) {
+            return at;
+        }
+        let mut label = id.to_owned();
+        if let Some(first) = label.get_mut(0..1) {
+            first.make_ascii_uppercase();
+        }
+        self.groups.push(Group { name, label: text(&label), open: id != "advanced" });
+        self.groups.len() - 1
+    }
+
+    /// The effect's graph, with default values, and its nodes. `over`: lines over the picture.
+    ///
+    /// # Errors
+    /// None that a test would not have met.
+    pub fn graph(&self, over: bool) -> isophote::Result<(Graph, Vec<NodeId>)> {
+        let mut graph = Graph::new();
+        let ids: Vec<NodeId> =
+            self.nodes.iter().map(|node| graph.add(node.id, node.id)).collect::<isophote::Result<_>>()?;
+        for (node, id) in self.nodes.iter().zip(&ids) {
+            for port in node.inputs {
+                if let Some(input) = GraphInput::from_id(port.kind.id()) {
+                    graph.connect_input(input, *id, port.id)?;
+                }
+            }
+        }
+        if let [first, second] = ids[..] {
+            let port = self.nodes[1].inputs.iter().find(|p| p.kind == self.nodes[0].output.kind);
+            if let Some(port) = port {
+                graph.connect(first, second, port.id)?;
+            }
+        }
+        let shown = if self.form == Form::Lines && !over { ids[0] } else { ids[ids.len() - 1] };
+        graph.set_output(shown)?;
+        Ok((graph, ids))
+    }
+}
+
+const LINES_HINT: &str = "The edge image alone, 1 = paper and 0 = line, or its lines over the picture.";
+const SPACE_HINT: &str = "What the numbers of the pixels mean. Filters are tuned for gamma-encoded colour; linear \
+                          pictures are encoded on the way in and decoded on the way out. 'As is' changes nothing.";
+const ALPHA_HINT: &str =
+    "Filters alpha together with the colour. Off, the result has the alpha of the source.";
+const MASK_HINT: &str = "Lets the mask decide where the effect shows.";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_node_from_colour_is_an_effect_once() {
+        let ids: BTreeSet<&CStr> = EFFECTS.iter().map(|e| e.identifier.as_c_str()).collect();
+        assert_eq!(ids.len(), EFFECTS.len());
+        for node in isophote::registry::nodes() {
+            let alone = node.inputs.iter().all(|p| p.optional || p.kind == ImageKind::Color);
+            if node.group == "styles" || (node.has_mix() && alone) {
+                assert!(ids.contains(text(&format!("{HOUSE}{}", node.id)).as_c_str()), "{}", node.id);
+            }
+        }
+        assert!(ids.contains(c"org.isophote.structure"));
+    }
+
+    #[test]
+    fn names_are_unique_and_fit_for_scripts() {
+        for effect in EFFECTS.iter() {
+            let names = effect.controls.iter().map(|c| &c.name).chain(effect.groups.iter().map(|g| &g.name));
+            let mut known = BTreeSet::new();
+            for name in names {
+                let shown = name.to_string_lossy();
+                let fit = shown.starts_with(|c: char| c.is_ascii_lowercase())
+                    && shown.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+                assert!(fit && known.insert(name), "{:?}: {shown}", effect.identifier);
+            }
+            for control in &effect.controls {
+                let distinct: BTreeSet<_> = control.options.iter().collect();
+                assert_eq!(distinct.len(), control.options.len(), "{:?}", control.name);
+            }
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Where things are: OpenFX counts canonical units and pixels upwards from the bottom, the engine counts
+//! rows of the picture downwards from the top.
+
+use super::host::Host;
+use super::interface::*;
+use isophote::engine::Rect;
+use isophote::engine::image::MAX_SIDE;
+
+/// A rectangle of the host's pixels, y up.
+pub type Bounds = [i32; 4];
+
+/// The picture that an effect works on at one time and scale.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// The whole picture, in the host's pixels.
+    pub picture: Bounds,
+    /// Pixels per canonical unit, in x (with the pixel aspect ratio in it) and in y.
+    pub ratio: [f64; 2],
+    /// The one scale that lengths of the filters take.
+    pub scale: f32,
+}
+
+/// What is less than this share of a pixel is rounding.
+const ROUNDING: f64 = 1e-3;
+
+impl Frame {
+    /// The frame of a clip with the region of definition `defined` (canonical), rendered at `scale`, with
+    /// pixels of the aspect ratio `par`. `bounds` are those of its image, once there is one.
+    pub fn new(
+        host: &Host,
+        defined: Option<OfxRectD>,
+        scale: [f64; 2],
+        par: f64,
+        bounds: Option<Bounds>,
+    ) -> Option<Self> {
+        let mut ratio = [scale[0] / par, scale[1]];
+        let rounded = defined.and_then(|region| to_pixels(&region, ratio));
+        let picture = match (rounded, bounds) {
+            (Some(picture), None) => picture,
+            (None, Some(bounds)) => bounds,
+            (None, None) => return None,
+            (Some(picture), Some(bounds)) => {
+                let near = (0..4).all(|i| {
+                    let beyond = if i < 2 {
+                        i64::from(picture[i]) - i64::from(bounds[i])
+                    } else {
+                        i64::from(bounds[i]) - i64::from(picture[i])
+                    };
+                    beyond <= 1
+                });
+                if host.tiles && near {
+                    // The image is a part of the picture, or the picture itself with other rounding.
+                    if (0..4).all(|i| picture[i].abs_diff(bounds[i]) <= 1) { bounds } else { picture }
+                } else {
+                    // A host of whole pictures that gives another one than it speaks of: one that says
+                    // "full size" of a proxy has forgotten the scale, others have their own idea of regions.
+                    let widths = [picture, bounds].map(|b| f64::from(b[2]) - f64::from(b[0]));
+                    let share = widths[1] / widths[0].max(1.0);
+                    if scale == [1.0; 2] && (share < 0.98 || share > 1.02) && share.is_finite() && share > 0.0
+                    {
+                        ratio = ratio.map(|r| r * share);
+                    }
+                    bounds
+                }
+            }
+        };
+        let size = [0, 1].map(|i| i64::from(picture[i + 2]) - i64::from(picture[i]));
+        if size.iter().any(|s| *s <= 0 || *s > i64::from(MAX_SIDE)) {
+            return None;
+        }
+        // Filters know square pixels only; the mean keeps the area that they cover.
+        let scale = if ratio[0] == ratio[1] { ratio[0] } else { (ratio[0] * ratio[1]).sqrt() };
+        (scale.is_finite() && scale > 0.0).then(|| Self {
+            picture,
+            ratio,
+            scale: scale.clamp(1.0 / 1024.0, 64.0) as f32,
+        })
+    }
+
+    /// Size of the picture.
+    pub fn size(&self) -> [u32; 2] {
+        [0, 1].map(|i| self.picture[i + 2].abs_diff(self.picture[i]))
+    }
+
+    /// The pixels of the picture under a rectangle of the host's, rows downwards.
+    pub fn inside(&self, bounds: Bounds) -> Rect {
+        let [width, height] = self.size().map(|n| n as i32);
+        let x = |v: i32| v.saturating_sub(self.picture[0]).clamp(0, width);
+        let y = |v: i32| self.picture[3].saturating_sub(v).clamp(0, height);
+        Rect { x0: x(bounds[0]), y0: y(bounds[3]), x1: x(bounds[2]), y1: y(bounds[1]) }
+    }
+
+    /// The other way.
+    pub fn outside(&self, rect: Rect) -> Bounds {
+        let [left, _, _, top] = self.picture;
+        [left + rect.x0, top - rect.y1, left + rect.x1, top - rect.y0]
+    }
+
+    /// The pixels under a canonical region.
+    pub fn pixels(&self, region: &OfxRectD) -> Option<Bounds> {
+        to_pixels(region, self.ratio)
+    }
+
+    /// The canonical region of pixels.
+    pub fn canonical(&self, bounds: Bounds) -> [f64; 4] {
+        [0, 1, 2, 3].map(|i| f64::from(bounds[i]) / self.ratio[i % 2])
+    }
+}
+
+/// The pixels that a region touches; `None` when it is empty or has no end.
+fn to_pixels(region: &OfxRectD, ratio: [f64; 2]) -> Option<Bounds> {
+    let low = |v: f64, r: f64| (v * r + ROUNDING).floor();
+    let high = |v: f64, r: f64| (v * r - ROUNDING).ceil();
+    let sides = [
+        low(region.x1, ratio[0]),
+        low(region.y1, ratio[1]),
+        high(region.x2, ratio[0]),
+        high(region.y2, ratio[1]),
+    ];
+    let finite = sides.iter().all(|v| v.is_finite() && v.abs() < f64::from(1 << 24));
+    (finite && sides[0] < sides[2] && sides[1] < sides[3]).then(|| sides.map(|v| v as i32))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_survive_the_way_to_canonical_units_and_back() {
+        let frame = Frame { picture: [-3, 5, 61, 45], ratio: [0.5 / 1.0667, 0.5], scale: 0.5 };
+        for bounds in [[-3, 5, 61, 45], [0, 6, 1, 7], [-2, 30, 17, 44]] {
+            let [x1, y1, x2, y2] = frame.canonical(bounds);
+            assert_eq!(frame.pixels(&OfxRectD { x1, y1, x2, y2 }), Some(bounds));
+            assert_eq!(frame.outside(frame.inside(bounds)), bounds);
+        }
+        assert_eq!(frame.inside([-3, 44, -2, 45]), Rect { x0: 0, y0: 0, x1: 1, y1: 1 });
+        assert_eq!(frame.inside([-100, -100, 100, 100]), Rect::of_size(64, 40));
+        let endless = OfxRectD { x1: f64::NEG_INFINITY, y1: 0.0, x2: 4.0, y2: 4.0 };
+        assert_eq!(frame.pixels(&endless), None);
+    }
+}

@@ -1,0 +1,235 @@
+//! The host: its suites, fetched once, and its property sets, read with care.
+//!
+//! Hosts leave functions out, refuse properties and free strings early. Everything here answers with
+//! `None` then, or does nothing.
+
+use super::interface::*;
+use super::quirks::Quirks;
+use std::ffi::{CStr, CString, c_int};
+use std::ptr::{null, null_mut};
+
+/// Why an action failed, as the host is told.
+pub type Failure = OfxStatus;
+/// What an action comes to.
+pub type Outcome<T = OfxStatus> = Result<T, Failure>;
+
+/// The host's functions, copied, and what is known of it.
+#[derive(Debug)]
+pub struct Host {
+    pub effects: OfxImageEffectSuiteV1,
+    pub properties: OfxPropertySuiteV1,
+    pub parameters: OfxParameterSuiteV1,
+    pub threads: Option<OfxMultiThreadSuiteV1>,
+    pub messages: Option<OfxMessageSuiteV2>,
+    pub quirks: Quirks,
+    /// Whether images may hold only a part of the picture.
+    pub tiles: bool,
+    /// Whether half floats may be offered.
+    pub half: bool,
+}
+
+impl Host {
+    /// Fetches the suites.
+    ///
+    /// # Errors
+    /// Missing host feature, without one of the three that every host has.
+    ///
+    /// # Safety
+    /// `host` is null or points to the host's structure.
+    pub unsafe fn fetch(host: *const OfxHost) -> Outcome<Self> {
+        // SAFETY: as the caller promised.
+        let host = unsafe { host.as_ref() }.ok_or(kOfxStatErrMissingHostFeature)?;
+        let fetch = host.fetchSuite.ok_or(kOfxStatErrMissingHostFeature)?;
+        // SAFETY: the standard gives the function this type, and says which structure each name stands
+        // for; the structures are copied, so that it does not matter how long they live.
+        let mut found = unsafe {
+            let suite = |name: &CStr, version| fetch(host.host, name.as_ptr(), version);
+            Self {
+                effects: *suite(kOfxImageEffectSuite, 1)
+                    .cast::<OfxImageEffectSuiteV1>()
+                    .as_ref()
+                    .ok_or(kOfxStatErrMissingHostFeature)?,
+                properties: *suite(kOfxPropertySuite, 1)
+                    .cast::<OfxPropertySuiteV1>()
+                    .as_ref()
+                    .ok_or(kOfxStatErrMissingHostFeature)?,
+                parameters: *suite(kOfxParameterSuite, 1)
+                    .cast::<OfxParameterSuiteV1>()
+                    .as_ref()
+                    .ok_or(kOfxStatErrMissingHostFeature)?,
+                threads: suite(kOfxMultiThreadSuite, 1).cast::<OfxMultiThreadSuiteV1>().as_ref().copied(),
+                messages: suite(kOfxMessageSuite, 2).cast::<OfxMessageSuiteV2>().as_ref().copied(),
+                quirks: Quirks::default(),
+                tiles: true,
+                half: false,
+            }
+        };
+        let about = found.set(host.host);
+        let quirks = Quirks::of(&about.string(kOfxPropName, 0).unwrap_or_default());
+        let tiles = about.int(kOfxImageEffectPropSupportsTiles, 0) != Some(0);
+        let half = (0..8).any(|i| {
+            about.string(kOfxImageEffectPropSupportedPixelDepths, i).as_deref() == Some(kOfxBitDepthHalf)
+        });
+        (found.quirks, found.tiles, found.half) = (quirks, tiles, half);
+        Ok(found)
+    }
+
+    /// A property set of this host.
+    pub fn set(&self, handle: Handle) -> Properties<'_> {
+        Properties { host: self, handle }
+    }
+
+    /// The properties of an effect, descriptor or instance.
+    pub fn effect(&self, handle: Handle) -> Properties<'_> {
+        let mut set = null_mut();
+        if let Some(get) = self.effects.getPropertySet {
+            // SAFETY: a handle that the host gave, and a place for the answer.
+            let status = unsafe { get(handle, &raw mut set) };
+            if status != kOfxStatOK {
+                set = null_mut();
+            }
+        }
+        self.set(set)
+    }
+
+    /// The parameters of an effect.
+    ///
+    /// # Errors
+    /// Failed, when the host has none.
+    pub fn params(&self, effect: Handle) -> Outcome<Handle> {
+        let get = self.effects.getParamSet.ok_or(kOfxStatErrMissingHostFeature)?;
+        let mut set = null_mut();
+        // SAFETY: a handle that the host gave, and a place for the answer.
+        let status = unsafe { get(effect, &raw mut set) };
+        if status == kOfxStatOK && !set.is_null() { Ok(set) } else { Err(kOfxStatFailed) }
+    }
+
+    /// True when the user no longer wants the frame.
+    pub fn aborted(&self, effect: Handle) -> bool {
+        // SAFETY: a handle that the host gave; any thread may ask.
+        self.effects.abort.is_some_and(|abort| unsafe { abort(effect) } != 0)
+    }
+
+    /// Shows a message on the effect, where that is known to be safe.
+    pub fn tell(&self, effect: Handle, message: &str) {
+        if !self.quirks.messages {
+            return;
+        }
+        let Some(show) = self.messages.and_then(|m| m.setPersistentMessage) else { return };
+        // The text is an argument and not the format, in which a `%` would be one of the host's.
+        let text = CString::new(message.replace('\0', " ")).unwrap_or_default();
+        // SAFETY: strings with a closing zero that live during the call, as the format says.
+        unsafe { show(effect, kOfxMessageError.as_ptr(), null(), c"%s".as_ptr(), text.as_ptr()) };
+    }
+}
+
+/// A property set.
+#[derive(Clone, Copy, Debug)]
+pub struct Properties<'h> {
+    host: &'h Host,
+    handle: Handle,
+}
+
+impl Properties<'_> {
+    /// True when there is no set behind it.
+    pub fn is_null(&self) -> bool {
+        self.handle.is_null()
+    }
+
+    /// A number, when the host has it.
+    pub fn int(&self, name: &CStr, index: c_int) -> Option<c_int> {
+        let get = self.host.properties.propGetInt.filter(|_| !self.handle.is_null())?;
+        let mut value = 0;
+        // SAFETY: a set that the host gave, a string with a closing zero, and a place for the answer.
+        let status = unsafe { get(self.handle, name.as_ptr(), index, &raw mut value) };
+        (status == kOfxStatOK).then_some(value)
+    }
+
+    /// A number, when the host has it and it is one.
+    pub fn double(&self, name: &CStr, index: c_int) -> Option<f64> {
+        let get = self.host.properties.propGetDouble.filter(|_| !self.handle.is_null())?;
+        let mut value = 0.0;
+        // SAFETY: as in `int`.
+        let status = unsafe { get(self.handle, name.as_ptr(), index, &raw mut value) };
+        (status == kOfxStatOK && !value.is_nan()).then_some(value)
+    }
+
+    /// A copy of a text, when the host has it.
+    pub fn string(&self, name: &CStr, index: c_int) -> Option<CString> {
+        let get = self.host.properties.propGetString.filter(|_| !self.handle.is_null())?;
+        let mut value = null_mut();
+        // SAFETY: as in `int`; the text is valid until the next call, and copied before it.
+        unsafe {
+            let status = get(self.handle, name.as_ptr(), index, &raw mut value);
+            (status == kOfxStatOK && !value.is_null()).then(|| CStr::from_ptr(value).to_owned())
+        }
+    }
+
+    /// A pointer, when the host has it.
+    pub fn pointer(&self, name: &CStr) -> Option<*mut u8> {
+        let get = self.host.properties.propGetPointer.filter(|_| !self.handle.is_null())?;
+        let mut value = null_mut();
+        // SAFETY: as in `int`.
+        let status = unsafe { get(self.handle, name.as_ptr(), 0, &raw mut value) };
+        (status == kOfxStatOK && !value.is_null()).then_some(value.cast())
+    }
+
+    /// Four whole numbers, such as bounds.
+    pub fn ints<const N: usize>(&self, name: &CStr) -> Option<[c_int; N]> {
+        let mut values = [0; N];
+        for (index, value) in values.iter_mut().enumerate() {
+            *value = self.int(name, index as c_int)?;
+        }
+        Some(values)
+    }
+
+    /// Several numbers, such as a region.
+    pub fn doubles<const N: usize>(&self, name: &CStr) -> Option<[f64; N]> {
+        let mut values = [0.0; N];
+        for (index, value) in values.iter_mut().enumerate() {
+            *value = self.double(name, index as c_int)?;
+        }
+        Some(values)
+    }
+
+    /// Sets a number. A host that does not know the property is left alone.
+    pub fn set_int(&self, name: &CStr, value: c_int) {
+        self.set_int_at(name, 0, value);
+    }
+
+    /// Sets one of several numbers.
+    pub fn set_int_at(&self, name: &CStr, index: usize, value: c_int) {
+        if let Some(set) = self.host.properties.propSetInt.filter(|_| !self.handle.is_null()) {
+            // SAFETY: a set that the host gave, and a string with a closing zero.
+            unsafe { set(self.handle, name.as_ptr(), index as c_int, value) };
+        }
+    }
+
+    /// Sets numbers, from the first on; true when the host took them all.
+    pub fn set_doubles(&self, name: &CStr, values: &[f64]) -> bool {
+        let Some(set) = self.host.properties.propSetDouble.filter(|_| !self.handle.is_null()) else {
+            return false;
+        };
+        // SAFETY: as in `set_int`.
+        let one = |(i, v): (usize, &f64)| unsafe { set(self.handle, name.as_ptr(), i as c_int, *v) };
+        values.iter().enumerate().map(one).all(|status| status == kOfxStatOK)
+    }
+
+    /// Sets a text, which must be one that is never freed; true when the host took it.
+    pub fn set_string(&self, name: &CStr, index: usize, value: &'static CStr) -> bool {
+        let Some(set) = self.host.properties.propSetString.filter(|_| !self.handle.is_null()) else {
+            return false;
+        };
+        // SAFETY: as in `set_int`, and the value is valid for ever.
+        unsafe { set(self.handle, name.as_ptr(), index as c_int, value.as_ptr()) == kOfxStatOK }
+    }
+
+    /// Sets a text that the host copies during the call.
+    pub fn answer(&self, name: &CStr, value: &CStr) -> bool {
+        let Some(set) = self.host.properties.propSetString.filter(|_| !self.handle.is_null()) else {
+            return false;
+        };
+        // SAFETY: as in `set_int`; the standard has hosts copy what they are given.
+        unsafe { set(self.handle, name.as_ptr(), 0, value.as_ptr()) == kOfxStatOK }
+    }
+}

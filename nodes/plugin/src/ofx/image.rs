@@ -1,0 +1,270 @@
+//! Images of the host's, fetched, read into the engine's and written back, and released on every path.
+
+use super::frame::{Bounds, Frame};
+use super::host::{Host, Outcome, Properties};
+use super::interface::*;
+use crate::abi::contract::*;
+use crate::abi::images::Checked;
+use isophote::engine::{Image, Rect};
+use isophote::graph::GraphInput;
+use std::ffi::CStr;
+use std::ptr::null_mut;
+
+/// How colour stands to alpha in an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Alpha {
+    Premultiplied,
+    Unpremultiplied,
+    Opaque,
+}
+
+/// A clip of an instance.
+#[derive(Clone, Copy, Debug)]
+pub struct Clip<'h> {
+    host: &'h Host,
+    handle: Handle,
+    /// Its properties.
+    pub properties: Properties<'h>,
+}
+
+impl<'h> Clip<'h> {
+    /// The clip of this name, where the instance has it.
+    pub fn of(host: &'h Host, instance: Handle, name: &CStr) -> Option<Self> {
+        let get = host.effects.clipGetHandle?;
+        let (mut handle, mut set) = (null_mut(), null_mut());
+        // SAFETY: an instance that the host gave, a string with a closing zero, and places for the answers.
+        let status = unsafe { get(instance, name.as_ptr(), &raw mut handle, &raw mut set) };
+        (status == kOfxStatOK && !handle.is_null()).then(|| Self { host, handle, properties: host.set(set) })
+    }
+
+    /// Whether it says that nothing is connected.
+    pub fn is_open(&self) -> bool {
+        self.properties.int(kOfxImageClipPropConnected, 0) == Some(0)
+    }
+
+    /// Its region of definition, canonical.
+    pub fn defined(&self, time: f64) -> Option<OfxRectD> {
+        let get = self.host.effects.clipGetRegionOfDefinition?;
+        let mut region = OfxRectD::default();
+        // SAFETY: a clip that the host gave, and a place for the answer.
+        let status = unsafe { get(self.handle, time, &raw mut region) };
+        (status == kOfxStatOK).then_some(region)
+    }
+
+    /// Width over height of its pixels.
+    pub fn aspect(&self) -> f64 {
+        self.properties
+            .double(kOfxImagePropPixelAspectRatio, 0)
+            .filter(|par| (0.01..100.0).contains(par))
+            .unwrap_or(1.0)
+    }
+
+    /// Its image; `None` where there is none.
+    ///
+    /// # Errors
+    /// Image format, for one of an unknown depth or unknown components.
+    pub fn image(&self, time: f64) -> Outcome<Option<Fetched<'h>>> {
+        let Some(get) = self.host.effects.clipGetImage.filter(|_| !self.is_open()) else { return Ok(None) };
+        let mut handle = null_mut();
+        // SAFETY: a clip that the host gave, and a place for the answer; the null region asks for what the
+        // regions of interest named.
+        let status = unsafe { get(self.handle, time, std::ptr::null(), &raw mut handle) };
+        if status != kOfxStatOK || handle.is_null() {
+            return Ok(None);
+        }
+        let image = Lent { host: self.host, handle };
+        Fetched::of(image)
+    }
+}
+
+/// An image that goes back to the host when it is dropped.
+#[derive(Debug)]
+struct Lent<'h> {
+    host: &'h Host,
+    handle: Handle,
+}
+
+impl Drop for Lent<'_> {
+    fn drop(&mut self) {
+        if let Some(release) = self.host.effects.clipReleaseImage {
+            // SAFETY: an image that the host lent and that goes back once.
+            unsafe { release(self.handle) };
+        }
+    }
+}
+
+/// An image of known shape.
+#[derive(Debug)]
+pub struct Fetched<'h> {
+    data: *mut u8,
+    row_bytes: isize,
+    sample: IsophoteSample,
+    /// Samples a pixel: 1, 3 or 4.
+    pub channels: u32,
+    /// What it holds, in the host's pixels.
+    pub bounds: Bounds,
+    /// How colour stands to alpha.
+    pub alpha: Alpha,
+    /// Width over height of its pixels, where it says so.
+    pub aspect: Option<f64>,
+    blue_first: bool,
+    #[allow(dead_code, reason = "released when it is dropped")]
+    lent: Lent<'h>,
+}
+
+impl<'h> Fetched<'h> {
+    fn of(lent: Lent<'h>) -> Outcome<Option<Self>> {
+        let set = lent.host.set(lent.handle);
+        let Some(data) = set.pointer(kOfxImagePropData) else { return Ok(None) };
+        let Some(bounds) = set.ints::<4>(kOfxImagePropBounds) else { return Ok(None) };
+        if bounds[0] >= bounds[2] || bounds[1] >= bounds[3] {
+            return Ok(None);
+        }
+        let depth = set.string(kOfxImageEffectPropPixelDepth, 0).unwrap_or_default();
+        let sample = match depth.as_c_str() {
+            d if d == kOfxBitDepthFloat => ISOPHOTE_SAMPLE_F32,
+            d if d == kOfxBitDepthHalf => ISOPHOTE_SAMPLE_F16,
+            d if d == kOfxBitDepthShort => ISOPHOTE_SAMPLE_U16,
+            d if d == kOfxBitDepthByte => ISOPHOTE_SAMPLE_U8,
+            _ => return Err(kOfxStatErrImageFormat),
+        };
+        let components = set.string(kOfxImageEffectPropComponents, 0).unwrap_or_default();
+        let channels = match components.as_c_str() {
+            c if c == kOfxImageComponentRGBA => 4,
+            c if c == kOfxImageComponentRGB => 3,
+            c if c == kOfxImageComponentAlpha => 1,
+            _ => return Err(kOfxStatErrImageFormat),
+        };
+        let size = [2, 3].map(|i| i64::from(bounds[i]) - i64::from(bounds[i - 2]));
+        let row_bytes = match set.int(kOfxImagePropRowBytes, 0) {
+            Some(bytes) if bytes != 0 => bytes as isize,
+            // One row needs no distance to the next.
+            _ if size[1] == 1 => size[0] as isize * 16,
+            _ => return Err(kOfxStatErrImageFormat),
+        };
+        let alpha = match set.string(kOfxImageEffectPropPreMultiplication, 0) {
+            _ if channels != 4 => Alpha::Opaque,
+            Some(state) if state.as_c_str() == kOfxImageOpaque => Alpha::Opaque,
+            Some(state) if state.as_c_str() == kOfxImageUnPreMultiplied => Alpha::Unpremultiplied,
+            _ => Alpha::Premultiplied,
+        };
+        let aspect = set.double(kOfxImagePropPixelAspectRatio, 0).filter(|par| (0.01..100.0).contains(par));
+        let blue_first = set.string(PIXEL_ORDER, 0).as_deref() == Some(PIXEL_ORDER_BGRA) && channels == 4;
+        Ok(Some(Self { data, row_bytes, sample, channels, bounds, alpha, aspect, blue_first, lent }))
+    }
+
+    /// The image as part of the picture, rows downwards: the host's top row is the first.
+    ///
+    /// # Errors
+    /// Image format, when no image can have its shape.
+    fn checked(&self, frame: &Frame) -> Outcome<Checked> {
+        let [x1, y1, x2, y2] = self.bounds.map(i64::from);
+        let small = |v: i64| i32::try_from(v).map_err(|_| kOfxStatErrImageFormat);
+        let top = self.data.wrapping_offset((y2 - 1 - y1) as isize * self.row_bytes);
+        let target = IsophoteTarget {
+            data: top.cast(),
+            row_stride: -self.row_bytes,
+            sample: self.sample,
+            channels: self.channels,
+            width: (x2 - x1) as u32,
+            height: (y2 - y1) as u32,
+            x: small(x1 - i64::from(frame.picture[0]))?,
+            y: small(i64::from(frame.picture[3]) - y2)?,
+        };
+        Checked::new(&target, "the image").map_err(|_| kOfxStatErrImageFormat)
+    }
+
+    /// The pixels of `window`. What the image does not hold repeats its edge, or is 0 if so wanted.
+    ///
+    /// # Errors
+    /// Memory; image format, when no image can have its shape.
+    pub fn read(&self, frame: &Frame, window: Rect, input: GraphInput, beyond: Beyond) -> Outcome<Image> {
+        let checked = self.checked(frame)?;
+        let channels = input.kind().channels();
+        let mut image = Image::with_window(window, channels).map_err(|_| kOfxStatErrMemory)?;
+        let held = window.intersection(&checked.window);
+        // Normals are read as colours: integers hold them as shares of -1..=1.
+        let as_input = if input == GraphInput::Normal { GraphInput::Color } else { input };
+        if held.is_empty() && beyond == Beyond::Zero {
+            return Ok(image);
+        }
+        let held = if held.is_empty() { nearest(&window, &checked.window) } else { held };
+        // SAFETY: the host lent the image, so that its memory may be read until it is released.
+        let (mut part, _) = unsafe { checked.read(held, as_input) }.map_err(|_| kOfxStatErrMemory)?;
+        if self.blue_first && channels == 4 {
+            part.data_mut().chunks_exact_mut(4).for_each(|p| p.swap(0, 2));
+        }
+        if input == GraphInput::Normal && matches!(self.sample, ISOPHOTE_SAMPLE_U8 | ISOPHOTE_SAMPLE_U16) {
+            part.data_mut().chunks_exact_mut(4).for_each(|p| {
+                p[..3].iter_mut().for_each(|v| *v = *v * 2.0 - 1.0);
+            });
+        }
+        if held == window {
+            return Ok(part);
+        }
+        let c = channels as usize;
+        for y in window.y0..window.y1 {
+            if beyond == Beyond::Zero && !(held.y0..held.y1).contains(&y) {
+                continue;
+            }
+            let from = part.row(y.clamp(held.y0, held.y1 - 1));
+            for (x, pixel) in (window.x0..window.x1).zip(image.row_mut(y).chunks_exact_mut(c)) {
+                if beyond == Beyond::Zero && !(held.x0..held.x1).contains(&x) {
+                    continue;
+                }
+                let at = (x.clamp(held.x0, held.x1 - 1) - held.x0) as usize * c;
+                pixel.copy_from_slice(&from[at..at + c]);
+            }
+        }
+        Ok(image)
+    }
+
+    /// Alpha of an image as a mask: its alpha or, of one without, its first channel. 0 outside.
+    ///
+    /// # Errors
+    /// As [`Fetched::read`].
+    pub fn read_mask(&self, frame: &Frame, window: Rect) -> Outcome<Vec<f32>> {
+        if self.channels == 4 {
+            let image = self.read(frame, window, GraphInput::Color, Beyond::Zero)?;
+            return Ok(image.data().chunks_exact(4).map(|p| p[3]).collect());
+        }
+        Ok(self.read(frame, window, GraphInput::Depth, Beyond::Zero)?.into_data())
+    }
+
+    /// Writes the pixels of `image` that this one holds.
+    ///
+    /// # Errors
+    /// Memory; image format, when no image can have its shape.
+    pub fn write(&self, frame: &Frame, mut image: Image) -> Outcome<()> {
+        let checked = self.checked(frame)?;
+        let held = image.window().intersection(&checked.window);
+        if held.is_empty() {
+            return Ok(());
+        }
+        if held != image.window() {
+            image = image.crop(held).map_err(|_| kOfxStatErrMemory)?;
+        }
+        if self.blue_first && image.channels() == 4 {
+            image.data_mut().chunks_exact_mut(4).for_each(|p| p.swap(0, 2));
+        }
+        // SAFETY: the host lent the image to be written, until it is released.
+        unsafe { checked.write(&image) };
+        Ok(())
+    }
+}
+
+/// What lies outside the pixels that an image holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beyond {
+    /// The nearest that it holds.
+    Edge,
+    /// Nothing.
+    Zero,
+}
+
+/// The one pixel of `held` nearest to a window beside it.
+fn nearest(window: &Rect, held: &Rect) -> Rect {
+    let x = window.x0.clamp(held.x0, held.x1 - 1);
+    let y = window.y0.clamp(held.y0, held.y1 - 1);
+    Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 }
+}

@@ -1,0 +1,187 @@
+//! What hosts ask of an instance before they render: regions, clip preferences, identity.
+
+use super::describe::{MASK, OUTPUT, SOURCE, guide_clip};
+use super::effects::Effect;
+use super::frame::Frame;
+use super::host::{Host, Outcome, Properties};
+use super::image::Clip;
+use super::interface::*;
+use super::settings::Settings;
+use isophote::engine::Support;
+use isophote::request::Guides;
+use isophote::{Planned, Request};
+use std::ffi::{CStr, CString};
+
+/// Time and scale of an action.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment {
+    pub time: f64,
+    pub scale: [f64; 2],
+}
+
+impl Moment {
+    /// As the arguments say; full size at the start, where they say nothing.
+    pub fn of(args: Properties<'_>) -> Self {
+        let usable = |scale: &[f64; 2]| scale.iter().all(|s| s.is_finite() && *s > 0.0);
+        Self {
+            time: args.double(kOfxPropTime, 0).unwrap_or(0.0),
+            scale: args.doubles(kOfxImageEffectPropRenderScale).filter(usable).unwrap_or([1.0; 2]),
+        }
+    }
+}
+
+/// The plan for a frame. `guides` are those that have a picture.
+///
+/// # Errors
+/// Memory; failed, when the graph cannot be planned.
+pub fn plan(
+    settings: &Settings,
+    frame: &Frame,
+    premultiplied: bool,
+    guides: Guides,
+) -> isophote::Result<Planned> {
+    let [width, height] = frame.size();
+    let request = Request {
+        scale: frame.scale,
+        space: settings.space,
+        premultiplied,
+        guides,
+        ..Request::new(width, height)
+    };
+    Planned::new(&settings.graph, request)
+}
+
+/// The region of definition: the source's, whatever else is connected.
+///
+/// # Errors
+/// None; the host's default counts where the source has no region.
+pub fn region_of_definition(host: &Host, instance: Handle, in_args: Handle, out_args: Handle) -> Outcome {
+    let moment = Moment::of(host.set(in_args));
+    let defined = Clip::of(host, instance, SOURCE).and_then(|clip| clip.defined(moment.time));
+    let Some(OfxRectD { x1, y1, x2, y2 }) = defined else { return Ok(kOfxStatReplyDefault) };
+    let answered = host.set(out_args).set_doubles(kOfxImageEffectPropRegionOfDefinition, &[x1, y1, x2, y2]);
+    Ok(if answered { kOfxStatOK } else { kOfxStatReplyDefault })
+}
+
+/// What a region needs of each clip: as much around it as the plan's passes read.
+///
+/// # Errors
+/// Failed, when the graph cannot be planned.
+pub fn regions_of_interest(
+    effect: &Effect,
+    host: &Host,
+    instance: Handle,
+    in_args: Handle,
+    out_args: Handle,
+) -> Outcome {
+    let (args, answer) = (host.set(in_args), host.set(out_args));
+    let moment = Moment::of(args);
+    let Some(source) = Clip::of(host, instance, SOURCE) else { return Ok(kOfxStatReplyDefault) };
+    let frame = Frame::new(host, source.defined(moment.time), moment.scale, source.aspect(), None);
+    let wanted = args.doubles::<4>(kOfxImageEffectPropRegionOfInterest).map(|[x1, y1, x2, y2]| OfxRectD {
+        x1,
+        y1,
+        x2,
+        y2,
+    });
+    let (Some(frame), Some(wanted)) = (frame, wanted) else { return Ok(kOfxStatReplyDefault) };
+    let settings = Settings::read(effect, host, instance, moment.time)?;
+    let Some(bounds) = frame.pixels(&wanted) else { return Ok(kOfxStatReplyDefault) };
+    let region = frame.inside(bounds);
+    if region.is_empty() || settings.identity {
+        return Ok(kOfxStatReplyDefault);
+    }
+    let open = |name: &CStr| Clip::of(host, instance, name).is_none_or(|clip| clip.is_open());
+    let has = |guide| effect.guides.contains(&guide) && guide_clip(guide).is_some_and(|name| !open(name));
+    let guides = Guides {
+        normal: has(isophote::graph::GraphInput::Normal),
+        depth: has(isophote::graph::GraphInput::Depth),
+        object_id: false,
+    };
+    let planned = plan(&settings, &frame, true, guides).map_err(|_| kOfxStatFailed)?;
+    let plan = planned.plan();
+    let windows = plan.windows(region);
+    // Lines of the other field lend the first and last of a field their neighbours.
+    let order = source.properties.string(kOfxImageClipPropFieldOrder, 0);
+    let fields = order.is_some_and(|order| order.as_c_str() != kOfxImageFieldNone);
+    let mut answered = false;
+    let mut tell = |clip: &CStr, rect: isophote::engine::Rect| {
+        let mut bounds = frame.outside(rect);
+        if fields {
+            (bounds[1], bounds[3]) = (bounds[1] - 1, bounds[3] + 1);
+        }
+        let name = CString::new(format!("{ROI_PREFIX}{}", clip.to_string_lossy())).unwrap_or_default();
+        answered |= answer.set_doubles(&name, &frame.canonical(bounds));
+    };
+    for port in plan.inputs() {
+        let window = windows[port.image.index()].union(&region);
+        match isophote::graph::GraphInput::from_id(&port.name) {
+            Some(isophote::graph::GraphInput::Color) => tell(SOURCE, window),
+            Some(guide) => {
+                if let Some(clip) = guide_clip(guide) {
+                    tell(clip, window);
+                }
+            }
+            None => {}
+        }
+    }
+    if !open(MASK) {
+        tell(MASK, region);
+    }
+    Ok(if answered { kOfxStatOK } else { kOfxStatReplyDefault })
+}
+
+/// The result is premultiplied as the source is.
+///
+/// # Errors
+/// None; the host's default counts where it does not say.
+pub fn clip_preferences(host: &Host, instance: Handle, out_args: Handle) -> Outcome {
+    let state = Clip::of(host, instance, SOURCE)
+        .filter(|clip| !clip.is_open())
+        .and_then(|clip| clip.properties.string(kOfxImageEffectPropPreMultiplication, 0));
+    let answered =
+        state.is_some_and(|state| host.set(out_args).answer(kOfxImageEffectPropPreMultiplication, &state));
+    Ok(if answered { kOfxStatOK } else { kOfxStatReplyDefault })
+}
+
+/// Whether the result is the source as it is.
+///
+/// # Errors
+/// Failed, when the host has no parameters.
+pub fn is_identity(
+    effect: &Effect,
+    host: &Host,
+    instance: Handle,
+    in_args: Handle,
+    out_args: Handle,
+) -> Outcome {
+    let moment = Moment::of(host.set(in_args));
+    if !Settings::read(effect, host, instance, moment.time)?.identity {
+        return Ok(kOfxStatReplyDefault);
+    }
+    let answer = host.set(out_args);
+    let answered = answer.answer(kOfxPropName, SOURCE);
+    answer.set_doubles(kOfxPropTime, &[moment.time]);
+    Ok(if answered { kOfxStatOK } else { kOfxStatReplyDefault })
+}
+
+/// Says of an instance whether a tile needs only its surroundings, which some modes change.
+///
+/// # Errors
+/// Failed, when the host has no parameters.
+pub fn changed(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -> Outcome {
+    let moment = Moment::of(host.set(in_args));
+    let settings = Settings::read(effect, host, instance, moment.time)?;
+    let planned = Planned::new(&settings.graph, Request::new(256, 256)).map_err(|_| kOfxStatFailed)?;
+    let local = planned.plan().support() != Support::Global;
+    host.effect(instance).set_int(kOfxImageEffectPropSupportsTiles, local.into());
+    Ok(kOfxStatOK)
+}
+
+/// The clip that is written.
+///
+/// # Errors
+/// Failed, when there is none.
+pub fn output(host: &Host, instance: Handle) -> Outcome<Clip<'_>> {
+    Clip::of(host, instance, OUTPUT).ok_or(kOfxStatFailed)
+}

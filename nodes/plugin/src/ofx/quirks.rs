@@ -1,0 +1,63 @@
+//! What differs between hosts, by the name that a host gives itself. Whatever follows from a property
+//! or an image is not here: it is looked at where it is used.
+
+use isophote::ColourSpace;
+use std::ffi::CStr;
+
+/// How a host differs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Quirks {
+    /// What its pixels mean unless the user says otherwise.
+    pub space: ColourSpace,
+    /// Whether messages may be shown from a thread that renders.
+    pub messages: bool,
+    /// Whether its multi-thread suite is sound.
+    pub threads: bool,
+    /// Whether a clip without a picture can call itself connected, so that a mask must be asked for.
+    pub all_connected: bool,
+}
+
+impl Default for Quirks {
+    fn default() -> Self {
+        // Most hosts composite in scene-linear light.
+        Self { space: ColourSpace::Linear, messages: true, threads: true, all_connected: false }
+    }
+}
+
+impl Quirks {
+    /// The quirks of the host of this name.
+    pub fn of(name: &CStr) -> Self {
+        let name = name.to_string_lossy().to_ascii_lowercase();
+        let named = |words: &[&str]| words.iter().any(|word| name.contains(word));
+        let general = Self::default();
+        if named(&["davinciresolve", "resolve"]) {
+            // Its message functions are null or worse, and every clip is connected.
+            return Self { space: ColourSpace::Srgb, messages: false, all_connected: true, ..general };
+        }
+        if named(&["catalyst"]) {
+            // The suite lacks its mutexes.
+            return Self { space: ColourSpace::Srgb, threads: false, ..general };
+        }
+        // Editors work on pictures as they are displayed.
+        if named(&["vegas", "mlt", "kdenlive", "shotcut", "premiere", "hitfilm"]) {
+            return Self { space: ColourSpace::Srgb, ..general };
+        }
+        general
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn editors_are_display_referred_and_compositors_linear() {
+        for name in [c"DaVinciResolve", c"com.sonycreativesoftware.vegas", c"org.mltframework.mlt"] {
+            assert_eq!(Quirks::of(name).space, ColourSpace::Srgb, "{name:?}");
+        }
+        for name in [c"uk.co.thefoundry.nuke", c"fr.inria.Natron", c"com.autodesk.flame", c""] {
+            assert_eq!(Quirks::of(name).space, ColourSpace::Linear, "{name:?}");
+        }
+        assert!(!Quirks::of(c"DaVinciResolve").messages);
+    }
+}

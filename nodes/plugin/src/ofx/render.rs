@@ -1,0 +1,317 @@
+//! Rendering: the frame's plan, run over bands of rows that keep memory bounded.
+
+use super::describe::{MASK, SOURCE, guide_clip};
+use super::effects::Effect;
+use super::frame::{Bounds, Frame};
+use super::host::{Host, Outcome};
+use super::image::{Alpha, Beyond, Clip, Fetched};
+use super::instance::{self, Moment};
+use super::interface::*;
+use super::settings::Settings;
+use super::threads::FrameThreads;
+use isophote::engine::cpu::{Control, CpuExecutor};
+use isophote::engine::{Error as EngineError, Image, Plan, Rect, Support};
+use isophote::graph::GraphInput;
+use isophote::request::Guides;
+use isophote::{ColourSpace, Error};
+use std::sync::Mutex;
+
+/// Most bytes that the working images of one band may take, where the passes allow bands.
+const WORKING_MEMORY: u64 = 768 << 20;
+/// Bands of fewer rows would spend most of their time on what lies around them.
+const LEAST_ROWS: i32 = 64;
+
+/// One field of an interlaced picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Field {
+    /// 0 for the rows 0, 2, 4, ..., 1 for the others; counted upwards.
+    parity: i32,
+}
+
+/// Everything that one render action was given.
+struct Job<'h> {
+    host: &'h Host,
+    instance: Handle,
+    frame: Frame,
+    settings: Settings,
+    source: Fetched<'h>,
+    output: Fetched<'h>,
+    mask: Option<Fetched<'h>>,
+    guides: Vec<(GraphInput, Fetched<'h>)>,
+    field: Option<Field>,
+}
+
+/// Renders the window that the arguments name.
+///
+/// # Errors
+/// Failed without an output, image format for one of an unknown depth, and memory.
+pub fn render(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -> Outcome {
+    let args = host.set(in_args);
+    let moment = Moment::of(args);
+    let output = instance::output(host, instance)?.image(moment.time)?.ok_or(kOfxStatFailed)?;
+    let window = args.ints::<4>(kOfxImageEffectPropRenderWindow).unwrap_or(output.bounds);
+    let window = intersection(window, output.bounds);
+    if window[0] >= window[2] || window[1] >= window[3] || host.aborted(instance) {
+        return Ok(kOfxStatOK);
+    }
+    let clip = Clip::of(host, instance, SOURCE);
+    let source = clip.map(|clip| clip.image(moment.time)).transpose()?.flatten();
+    let (Some(clip), Some(source)) = (clip, source) else {
+        return clear(host, &output, window).map(|()| kOfxStatOK);
+    };
+    let aspect = source.aspect.unwrap_or_else(|| clip.aspect());
+    let frame = Frame::new(host, clip.defined(moment.time), moment.scale, aspect, Some(source.bounds))
+        .ok_or(kOfxStatFailed)?;
+    let settings = Settings::read(effect, host, instance, moment.time)?;
+    let fetch = |name| match Clip::of(host, instance, name) {
+        Some(clip) => clip.image(moment.time),
+        None => Ok(None),
+    };
+    let mask = if settings.mask_apply { fetch(MASK)? } else { None };
+    let mut guides = Vec::new();
+    for guide in &effect.guides {
+        if let Some(name) = guide_clip(*guide)
+            && let Some(image) = fetch(name)?
+            && (*guide != GraphInput::Normal || image.channels >= 3)
+        {
+            guides.push((*guide, image));
+        }
+    }
+    let field = args.string(kOfxImageEffectPropFieldToRender, 0).and_then(|field| match field.as_c_str() {
+        f if f == kOfxImageFieldLower => Some(Field { parity: 0 }),
+        f if f == kOfxImageFieldUpper => Some(Field { parity: 1 }),
+        _ => None,
+    });
+    let job = Job { host, instance, frame, settings, source, output, mask, guides, field };
+    match job.run(window) {
+        Ok(()) | Err(Stop::Aborted) => Ok(kOfxStatOK),
+        Err(Stop::Status(status)) => Err(status),
+        Err(Stop::Error(error)) => {
+            host.tell(instance, &error.to_string());
+            Err(match error {
+                Error::Engine(EngineError::Memory(_)) => kOfxStatErrMemory,
+                _ => kOfxStatFailed,
+            })
+        }
+    }
+}
+
+/// Why a frame was not finished.
+enum Stop {
+    /// The user no longer wants it.
+    Aborted,
+    Status(OfxStatus),
+    Error(Error),
+}
+
+impl From<OfxStatus> for Stop {
+    fn from(status: OfxStatus) -> Self {
+        Self::Status(status)
+    }
+}
+
+impl From<Error> for Stop {
+    fn from(error: Error) -> Self {
+        match error {
+            Error::Engine(EngineError::Cancelled) => Self::Aborted,
+            other => Self::Error(other),
+        }
+    }
+}
+
+fn intersection(a: Bounds, b: Bounds) -> Bounds {
+    [a[0].max(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].min(b[3])]
+}
+
+/// Writes transparent black.
+fn clear(host: &Host, output: &Fetched<'_>, window: Bounds) -> Outcome<()> {
+    let frame = Frame::new(host, None, [1.0; 2], 1.0, Some(output.bounds)).ok_or(kOfxStatErrImageFormat)?;
+    let channels = if output.channels == 1 { 1 } else { 4 };
+    let black = Image::with_window(frame.inside(window), channels).map_err(|_| kOfxStatErrMemory)?;
+    output.write(&frame, black)
+}
+
+impl Job<'_> {
+    fn run(&self, window: Bounds) -> Result<(), Stop> {
+        let inside = self.frame.inside(window);
+        if self.frame.outside(inside) != window || inside.is_empty() {
+            // Outside its picture an effect has nothing to show.
+            clear(self.host, &self.output, window)?;
+        }
+        if inside.is_empty() {
+            return Ok(());
+        }
+        if self.settings.identity {
+            for band in bands(inside, LEAST_ROWS) {
+                let copy = self.read(GraphInput::Color, &self.source, band)?;
+                self.write(copy)?;
+            }
+            return Ok(());
+        }
+        let has = |guide| self.guides.iter().any(|(g, _)| *g == guide);
+        let guides =
+            Guides { normal: has(GraphInput::Normal), depth: has(GraphInput::Depth), object_id: false };
+        let premultiplied = self.source.alpha == Alpha::Premultiplied;
+        let planned = if self.source.channels == 1 {
+            // A single channel is coverage, whatever space the colours are in.
+            let settings =
+                Settings { graph: self.settings.graph.clone(), space: ColourSpace::Srgb, ..self.settings };
+            instance::plan(&settings, &self.frame, premultiplied, guides)?
+        } else {
+            instance::plan(&self.settings, &self.frame, premultiplied, guides)?
+        };
+        let plan = planned.plan();
+        let threads = FrameThreads::of(self.host);
+        // Hosts need not expect the question from two threads at once.
+        let instance = Mutex::new(Instance(self.instance));
+        let aborted = || instance.lock().is_ok_and(|instance| self.host.aborted(instance.0));
+        let control = Control { cancelled: Some(&aborted), progress: None };
+        let mut executor = CpuExecutor::new();
+        for band in bands(inside, rows(plan, inside)) {
+            let windows = plan.windows(band);
+            let mut images = Vec::new();
+            for port in plan.inputs() {
+                let window = windows[port.image.index()];
+                let Some(input) = GraphInput::from_id(&port.name) else { continue };
+                let given = match input {
+                    GraphInput::Color => Some(&self.source),
+                    guide => self.guides.iter().find(|(g, _)| *g == guide).map(|(_, image)| image),
+                };
+                if let Some(image) = given.filter(|_| !window.is_empty()) {
+                    images.push((input, self.read(input, image, window)?));
+                }
+            }
+            let named: Vec<(&str, &Image)> = images.iter().map(|(i, image)| (i.id(), image)).collect();
+            let results =
+                executor.run(plan, &named, band, threads.threads(), control).map_err(Error::from)?;
+            let result = results.into_iter().next().ok_or(kOfxStatFailed)?;
+            drop(images);
+            self.write(self.finished(result, band)?)?;
+        }
+        Ok(())
+    }
+
+    /// The pixels of `window` of an input, as they enter the plan.
+    fn read(&self, input: GraphInput, image: &Fetched<'_>, window: Rect) -> Outcome<Image> {
+        let Some(field) = self.field else {
+            return Ok(self.opaque(input, image, image.read(&self.frame, window, input, Beyond::Edge)?));
+        };
+        // Rows of the other field take the next of this one, as hosts that double the lines have it. Then
+        // a picture of both fields and one of doubled lines come out alike.
+        let whole = Rect::of_size(self.frame.size()[0], self.frame.size()[1]);
+        let grown = Rect { y0: window.y0 - 1, y1: window.y1 + 1, ..window }.intersection(&whole);
+        let both = image.read(&self.frame, grown, input, Beyond::Edge)?;
+        let mut one = both.crop(window).map_err(|_| kOfxStatErrMemory)?;
+        for y in window.y0..window.y1 {
+            let up = self.frame.picture[3] - 1 - y;
+            if up.rem_euclid(2) != field.parity {
+                // The partner is above for the lower field's odd rows, and below for the upper's even ones.
+                let partner = if field.parity == 0 { y + 1 } else { y - 1 };
+                let other = if partner == y + 1 { y - 1 } else { y + 1 };
+                let from = if (grown.y0..grown.y1).contains(&partner) { partner } else { other };
+                if (grown.y0..grown.y1).contains(&from) {
+                    one.row_mut(y).copy_from_slice(both.row(from));
+                }
+            }
+        }
+        Ok(self.opaque(input, image, one))
+    }
+
+    fn opaque(&self, input: GraphInput, image: &Fetched<'_>, mut pixels: Image) -> Image {
+        if input == GraphInput::Color && image.alpha == Alpha::Opaque && !self.settings.identity {
+            pixels.data_mut().chunks_exact_mut(4).for_each(|p| p[3] = 1.0);
+        }
+        pixels
+    }
+
+    /// The filter's result with the source's alpha, unless alpha is filtered too, and under the mask.
+    fn finished(&self, result: Image, band: Rect) -> Outcome<Image> {
+        let keep_alpha = !self.settings.process_alpha && self.source.alpha != Alpha::Opaque;
+        if !keep_alpha && self.mask.is_none() {
+            return Ok(result);
+        }
+        let source = self.read(GraphInput::Color, &self.source, band)?;
+        let mut image = if result.channels() == 4 { result } else { spread(&result)? };
+        let premultiplied = self.source.alpha == Alpha::Premultiplied;
+        if keep_alpha {
+            for (pixel, source) in image.data_mut().chunks_exact_mut(4).zip(source.data().chunks_exact(4)) {
+                let (now, kept) = (pixel[3], source[3]);
+                if premultiplied && now != kept {
+                    if now > 0.0 {
+                        pixel[..3].iter_mut().for_each(|v| *v *= kept / now);
+                    } else {
+                        pixel[..3].copy_from_slice(&source[..3]);
+                    }
+                }
+                pixel[3] = kept;
+            }
+        }
+        if let Some(mask) = &self.mask {
+            let mask = mask.read_mask(&self.frame, band)?;
+            let pixels = image.data_mut().chunks_exact_mut(4).zip(source.data().chunks_exact(4));
+            for ((pixel, source), amount) in pixels.zip(mask) {
+                let amount = amount.clamp(0.0, 1.0);
+                for (v, s) in pixel.iter_mut().zip(source) {
+                    // Exact at both ends.
+                    *v = *v * amount + *s * (1.0 - amount);
+                }
+            }
+        }
+        Ok(image)
+    }
+
+    /// Writes what was computed: all rows, or those of the field.
+    fn write(&self, image: Image) -> Outcome<()> {
+        let Some(field) = self.field else { return self.output.write(&self.frame, image) };
+        let window = image.window();
+        for y in window.y0..window.y1 {
+            if (self.frame.picture[3] - 1 - y).rem_euclid(2) == field.parity {
+                let row = image.crop(Rect { y0: y, y1: y + 1, ..window }).map_err(|_| kOfxStatErrMemory)?;
+                self.output.write(&self.frame, row)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The host's word for the instance, for the one question that other threads ask about it.
+struct Instance(Handle);
+
+// SAFETY: the handle is never followed here, and the standard lets any thread ask whether to stop.
+unsafe impl Send for Instance {}
+
+/// Lines as opaque grey.
+fn spread(lines: &Image) -> Outcome<Image> {
+    let mut image = Image::with_window(lines.window(), 4).map_err(|_| kOfxStatErrMemory)?;
+    for (pixel, v) in image.data_mut().chunks_exact_mut(4).zip(lines.data()) {
+        pixel.copy_from_slice(&[*v, *v, *v, 1.0]);
+    }
+    Ok(image)
+}
+
+/// Bands of `rows` rows, from the top.
+fn bands(window: Rect, rows: i32) -> impl Iterator<Item = Rect> {
+    (window.y0..window.y1).step_by(rows.max(1) as usize).map(move |y0| Rect {
+        y0,
+        y1: (y0 + rows).min(window.y1),
+        ..window
+    })
+}
+
+/// Rows of a band whose working images fit into the memory that a frame may take.
+fn rows(plan: &Plan, window: Rect) -> i32 {
+    let mut rows = window.height() as i32;
+    if plan.support() == Support::Global {
+        // A part would need as much as the whole.
+        return rows;
+    }
+    while rows > LEAST_ROWS {
+        let middle = (window.y0 + window.y1 - rows) / 2;
+        let band = Rect { y0: middle, y1: middle + rows, ..window };
+        if plan.peak_bytes(&plan.windows(band)) <= WORKING_MEMORY {
+            break;
+        }
+        rows = (rows / 2).max(LEAST_ROWS);
+    }
+    rows
+}

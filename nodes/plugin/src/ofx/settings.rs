@@ -1,0 +1,125 @@
+//! The values of an instance's controls at one time, as a graph. Read when they are needed and never
+//! kept, since hosts change them without a word.
+
+use super::effects::{Effect, Form, SPACES, Target};
+use super::host::{Host, Outcome};
+use super::interface::*;
+use isophote::spec::ParamKind;
+use isophote::{ColourSpace, Graph, Value};
+use std::ffi::{CStr, c_int};
+use std::ptr::null_mut;
+
+/// What an instance is set to.
+#[derive(Debug)]
+pub struct Settings {
+    /// The effect's graph with its values.
+    pub graph: Graph,
+    /// What the pixels mean.
+    pub space: ColourSpace,
+    /// Whether alpha is filtered too.
+    pub process_alpha: bool,
+    /// Whether a mask counts.
+    pub mask_apply: bool,
+    /// Whether the values leave the picture as it is.
+    pub identity: bool,
+}
+
+impl Settings {
+    /// The values at `time`. What the host cannot tell keeps its default.
+    ///
+    /// # Errors
+    /// Failed, when the host has no parameters or the graph refuses a value.
+    pub fn read(effect: &Effect, host: &Host, instance: Handle, time: f64) -> Outcome<Self> {
+        let values = Values { host, set: host.params(instance)?, time };
+        let mut over = false;
+        let mut space = host.quirks.space;
+        let (mut process_alpha, mut mask_apply) = (false, !host.quirks.all_connected);
+        for control in &effect.controls {
+            let name = &control.name;
+            match control.target {
+                Target::LinesOutput => over = values.int(name) == Some(1),
+                Target::WorkingSpace => {
+                    let index = values.int(name).and_then(|i| usize::try_from(i).ok());
+                    space = index.and_then(|i| SPACES.get(i)).map_or(space, |(_, space)| *space);
+                }
+                Target::ProcessAlpha => process_alpha = values.bool(name).unwrap_or(process_alpha),
+                Target::MaskApply => mask_apply = values.bool(name).unwrap_or(mask_apply),
+                Target::Param(..) => {}
+            }
+        }
+        let (mut graph, ids) = effect.graph(over).map_err(|_| kOfxStatFailed)?;
+        let mut identity = false;
+        // A graph may end before the last node, which then decides nothing.
+        let last = if effect.form == Form::Lines && !over { 0 } else { ids.len() - 1 };
+        for control in &effect.controls {
+            let Target::Param(node, param) = control.target else { continue };
+            let Some(value) = values.value(&control.name, &param.kind) else { continue };
+            graph.set(ids[node], param.id, value).map_err(|_| kOfxStatFailed)?;
+            identity |= node == last && param.id == "mix" && value == Value::Float(0.0);
+        }
+        Ok(Self { graph, space, process_alpha, mask_apply, identity })
+    }
+}
+
+/// Parameters of an instance at a time.
+struct Values<'h> {
+    host: &'h Host,
+    set: Handle,
+    time: f64,
+}
+
+impl Values<'_> {
+    fn handle(&self, name: &CStr) -> Option<Handle> {
+        let get = self.host.parameters.paramGetHandle?;
+        let mut param = null_mut();
+        // SAFETY: a set that the host gave, a string with a closing zero, a place for the answer, and no
+        // wish for the properties.
+        let status = unsafe { get(self.set, name.as_ptr(), &raw mut param, null_mut()) };
+        (status == kOfxStatOK && !param.is_null()).then_some(param)
+    }
+
+    fn int(&self, name: &CStr) -> Option<c_int> {
+        let (param, get) = (self.handle(name)?, self.host.parameters.paramGetValueAtTime?);
+        let mut value: c_int = 0;
+        // SAFETY: integers, booleans and choices are given through one pointer to an int.
+        let status = unsafe { get(param, self.time, &raw mut value) };
+        (status == kOfxStatOK).then_some(value)
+    }
+
+    fn bool(&self, name: &CStr) -> Option<bool> {
+        Some(self.int(name)? != 0)
+    }
+
+    fn double(&self, name: &CStr) -> Option<f64> {
+        let (param, get) = (self.handle(name)?, self.host.parameters.paramGetValueAtTime?);
+        let mut value: f64 = 0.0;
+        // SAFETY: doubles are given through one pointer to a double.
+        let status = unsafe { get(param, self.time, &raw mut value) };
+        (status == kOfxStatOK && !value.is_nan()).then_some(value)
+    }
+
+    fn color(&self, name: &CStr) -> Option<[f64; 4]> {
+        let (param, get) = (self.handle(name)?, self.host.parameters.paramGetValueAtTime?);
+        let mut value = [0.0_f64; 4];
+        let [r, g, b, a] = &mut value;
+        // SAFETY: colours with alpha are given through four pointers to doubles.
+        let status = unsafe { get(param, self.time, &raw mut *r, &raw mut *g, &raw mut *b, &raw mut *a) };
+        (status == kOfxStatOK && !value.iter().any(|v| v.is_nan())).then_some(value)
+    }
+
+    /// A value within the range of the parameter, which not every host keeps.
+    fn value(&self, name: &CStr, kind: &ParamKind) -> Option<Value> {
+        Some(match *kind {
+            ParamKind::Float { range, .. } => {
+                Value::Float((self.double(name)? as f32).clamp(range[0], range[1]))
+            }
+            ParamKind::Int { range, .. } => Value::Int(self.int(name)?.clamp(range[0], range[1])),
+            ParamKind::Bool { .. } => Value::Bool(self.bool(name)?),
+            ParamKind::Choice { options, .. } => {
+                let index = usize::try_from(self.int(name)?).ok()?;
+                Value::Choice(index.min(options.len().saturating_sub(1)))
+            }
+            ParamKind::Color { .. } => Value::Color(self.color(name)?.map(|v| (v as f32).clamp(0.0, 1.0))),
+        })
+    }
+}

@@ -1,0 +1,340 @@
+//! Descriptors and instances of the test host, and how tests drive them.
+
+use super::interface::*;
+use super::picture::{Layout, Picture};
+use super::properties::{Set, Value};
+use super::{Host, Inner, Plugin, handle_of};
+use std::ffi::{CStr, CString};
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+pub(super) const MAGIC: u64 = 0x0ef_fec7;
+
+/// Locks, also after a test has failed.
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A parameter, described or with a value.
+#[derive(Debug)]
+pub struct Param {
+    pub(super) magic: u64,
+    /// Its type.
+    pub kind: CString,
+    /// Its name.
+    pub name: CString,
+    /// Its properties.
+    pub set: Box<Set>,
+    pub(super) value: Mutex<Vec<Value>>,
+}
+
+/// A clip, described or with a picture.
+#[derive(Debug)]
+pub struct Clip {
+    pub(super) magic: u64,
+    /// Its name.
+    pub name: CString,
+    /// Its properties.
+    pub set: Box<Set>,
+    pub(super) picture: Mutex<Option<Picture>>,
+}
+
+/// A descriptor or an instance; its address is its handle.
+#[derive(Debug)]
+pub struct Effect {
+    pub(super) magic: u64,
+    /// The host.
+    pub host: Arc<Inner>,
+    /// Whether it may be rendered.
+    pub is_instance: bool,
+    /// Its properties.
+    pub set: Box<Set>,
+    pub(super) param_set: Box<Set>,
+    pub(super) params: Mutex<Vec<Box<Param>>>,
+    pub(super) clips: Mutex<Vec<Box<Clip>>>,
+}
+
+impl Effect {
+    pub(super) fn new(host: &Arc<Inner>, is_instance: bool) -> Box<Self> {
+        let what = if is_instance { "instance" } else { "descriptor" };
+        let mut effect = Box::new(Self {
+            magic: MAGIC,
+            host: Arc::clone(host),
+            is_instance,
+            set: Set::new(host, what),
+            param_set: Set::new(host, what),
+            params: Mutex::default(),
+            clips: Mutex::default(),
+        });
+        let owner = handle_of(&*effect) as usize;
+        effect.param_set = Set::owned_by(host, what, owner);
+        effect
+    }
+
+    /// What plugins are given.
+    pub fn handle(&self) -> Handle {
+        handle_of(self)
+    }
+
+    /// Looks at the parameters, in the order of their definition.
+    pub fn each_param(&self, mut look: impl FnMut(&Param)) {
+        lock(&self.params).iter().for_each(|param| look(param));
+    }
+
+    /// Names of the clips, in the order of their definition.
+    pub fn clip_names(&self) -> Vec<String> {
+        lock(&self.clips).iter().map(|c| c.name.to_string_lossy().into_owned()).collect()
+    }
+}
+
+/// A plugin's effect, loaded and described.
+#[derive(Debug)]
+pub struct Described<'h> {
+    /// The host.
+    pub host: &'h Host,
+    /// The plugin.
+    pub plugin: Plugin,
+    /// What it said of itself.
+    pub descriptor: Box<Effect>,
+}
+
+impl<'h> Described<'h> {
+    /// Loads and describes.
+    ///
+    /// # Panics
+    /// When an action does not return OK.
+    pub fn new(host: &'h Host, plugin: Plugin) -> Self {
+        match Self::attempt(host, plugin) {
+            Ok(described) => described,
+            Err((action, status)) => panic!("{} of {}: {status}", action, plugin.identifier()),
+        }
+    }
+
+    /// Loads and describes, if the plugin will.
+    ///
+    /// # Errors
+    /// The action that failed, and its status.
+    pub fn attempt(host: &'h Host, plugin: Plugin) -> Result<Self, (&'static str, OfxStatus)> {
+        plugin.set_host(host);
+        let status = plugin.act(kOfxActionLoad, std::ptr::null_mut(), None, None);
+        if status != kOfxStatOK {
+            return Err(("Load", status));
+        }
+        let descriptor = Effect::new(&host.inner, false);
+        let status = plugin.act(kOfxActionDescribe, descriptor.handle(), None, None);
+        if status != kOfxStatOK {
+            return Err(("Describe", status));
+        }
+        Ok(Self { host, plugin, descriptor })
+    }
+
+    /// What the plugin says of itself in a context.
+    ///
+    /// # Panics
+    /// When it does not return OK.
+    pub fn in_context(&self, context: &CStr) -> Box<Effect> {
+        let effect = Effect::new(&self.host.inner, false);
+        let args = Set::new(&self.host.inner, "arguments");
+        args.put(kOfxImageEffectPropContext, vec![context.into()]);
+        let status =
+            self.plugin.act(kOfxImageEffectActionDescribeInContext, effect.handle(), Some(&args), None);
+        assert_eq!(status, kOfxStatOK, "DescribeInContext of {}", self.plugin.identifier());
+        effect
+    }
+
+    /// An instance with default values.
+    ///
+    /// # Panics
+    /// When it cannot be created.
+    pub fn instance(&self, context: &CStr) -> Instance<'h> {
+        let described = self.in_context(context);
+        let effect = Effect::new(&self.host.inner, true);
+        effect.set.put(kOfxImageEffectPropContext, vec![context.into()]);
+        for param in lock(&described.params).iter() {
+            let mut new = Box::new(Param {
+                magic: MAGIC,
+                kind: param.kind.clone(),
+                name: param.name.clone(),
+                set: Set::new(&self.host.inner, "parameter"),
+                value: Mutex::new(param.set.get(kOfxParamPropDefault)),
+            });
+            new.set = param.set.copy("parameter", handle_of(&*new) as usize);
+            lock(&effect.params).push(new);
+        }
+        for clip in lock(&described.clips).iter() {
+            let mut new = Box::new(Clip {
+                magic: MAGIC,
+                name: clip.name.clone(),
+                set: Set::new(&self.host.inner, "clip"),
+                picture: Mutex::default(),
+            });
+            new.set = clip.set.copy("clip", handle_of(&*new) as usize);
+            let connected = i32::from(self.host.inner.behaviour.all_connected);
+            new.set.put(kOfxImageClipPropConnected, vec![connected.into()]);
+            lock(&effect.clips).push(new);
+        }
+        let status = self.plugin.act(kOfxActionCreateInstance, effect.handle(), None, None);
+        assert_eq!(status, kOfxStatOK, "CreateInstance of {}", self.plugin.identifier());
+        Instance { host: self.host, plugin: self.plugin, effect }
+    }
+}
+
+/// An instance, destroyed when it is dropped.
+#[derive(Debug)]
+pub struct Instance<'h> {
+    host: &'h Host,
+    /// Its plugin.
+    pub plugin: Plugin,
+    /// The host's side of it.
+    pub effect: Box<Effect>,
+}
+
+// SAFETY: everything in an instance that changes is behind locks.
+unsafe impl Sync for Instance<'_> {}
+// SAFETY: as above.
+unsafe impl Send for Instance<'_> {}
+
+impl Drop for Instance<'_> {
+    fn drop(&mut self) {
+        let status = self.plugin.act(kOfxActionDestroyInstance, self.effect.handle(), None, None);
+        if status != kOfxStatOK {
+            super::fault(format!("DestroyInstance: {status}"));
+        }
+    }
+}
+
+/// What a host wants rendered.
+#[derive(Clone, Copy, Debug)]
+pub struct Wanted {
+    /// Pixels, y up.
+    pub window: [i32; 4],
+    /// Pixels per canonical unit.
+    pub scale: f64,
+    /// Fields.
+    pub field: &'static CStr,
+    /// Time.
+    pub time: f64,
+}
+
+impl Wanted {
+    /// A window at full size.
+    pub fn new(window: [i32; 4]) -> Self {
+        Self { window, scale: 1.0, field: kOfxImageFieldNone, time: 0.0 }
+    }
+}
+
+impl Instance<'_> {
+    /// Calls an action.
+    pub fn act(&self, action: &CStr, in_args: Option<&Set>, out_args: Option<&Set>) -> OfxStatus {
+        self.plugin.act(action, self.effect.handle(), in_args, out_args)
+    }
+
+    /// Arguments of an action.
+    pub fn args(&self) -> Box<Set> {
+        Set::new(&self.host.inner, "arguments")
+    }
+
+    /// Sets a parameter.
+    ///
+    /// # Panics
+    /// When there is none of this name.
+    pub fn set(&self, name: &str, value: impl Into<Value>) {
+        let params = lock(&self.effect.params);
+        let param = params.iter().find(|p| p.name.to_string_lossy() == name);
+        let param = param.unwrap_or_else(|| panic!("{} has no {name}", self.plugin.identifier()));
+        *lock(&param.value) = vec![value.into()];
+    }
+
+    /// Whether there is a parameter of this name.
+    pub fn has(&self, name: &str) -> bool {
+        lock(&self.effect.params).iter().any(|p| p.name.to_string_lossy() == name)
+    }
+
+    /// Connects a picture to a clip.
+    ///
+    /// # Panics
+    /// When there is no clip of this name.
+    pub fn connect(&self, name: &str, picture: Picture) {
+        let clips = lock(&self.effect.clips);
+        let clip = clips.iter().find(|c| c.name.to_string_lossy() == name).expect("a clip of this name");
+        clip.set.put(kOfxImageClipPropConnected, vec![1.into()]);
+        clip.set.put(kOfxImagePropPixelAspectRatio, vec![picture.layout.aspect.into()]);
+        if let Some(alpha) = picture.layout.alpha {
+            clip.set.put(kOfxImageEffectPropPreMultiplication, vec![alpha.into()]);
+        }
+        *lock(&clip.picture) = Some(picture);
+    }
+
+    /// Renders into a new picture of `layout` and `size` and returns it with the status.
+    ///
+    /// # Panics
+    /// When the plugin touches what is not its own.
+    pub fn try_render(&self, layout: Layout, size: [i32; 2], wanted: &Wanted) -> (OfxStatus, Picture) {
+        self.connect("Output", Picture::new(layout, size[0], size[1]));
+        let status = self.render_connected(wanted);
+        let clips = lock(&self.effect.clips);
+        let clip = clips.iter().find(|c| c.name.as_c_str() == c"Output").expect("an output");
+        let picture = lock(&clip.picture).take().expect("the picture that was connected");
+        assert_eq!(picture.touched_outside(wanted.window), 0, "{}", self.plugin.identifier());
+        (status, picture)
+    }
+
+    /// Renders into what is connected.
+    ///
+    /// # Panics
+    /// When the plugin keeps an image.
+    pub fn render_connected(&self, wanted: &Wanted) -> OfxStatus {
+        let args = self.args();
+        args.put(kOfxPropTime, vec![wanted.time.into()]);
+        args.put(kOfxImageEffectPropRenderWindow, wanted.window.map(Value::from).to_vec());
+        args.put(kOfxImageEffectPropRenderScale, vec![wanted.scale.into(); 2]);
+        args.put(kOfxImageEffectPropFieldToRender, vec![wanted.field.into()]);
+        let status = self.act(kOfxImageEffectActionRender, Some(&args), None);
+        let lent = self.host.inner.lent.load(Ordering::SeqCst);
+        // Other threads may hold images of theirs.
+        assert!(lent >= 0, "{lent} images were given back too often");
+        status
+    }
+
+    /// Renders a whole picture of `layout` at full size.
+    ///
+    /// # Panics
+    /// When it fails.
+    pub fn render(&self, layout: Layout, size: [i32; 2]) -> Picture {
+        let [x, y] = layout.origin;
+        let wanted = Wanted::new([x, y, x + size[0], y + size[1]]);
+        let (status, picture) = self.try_render(layout, size, &wanted);
+        assert_eq!(status, kOfxStatOK, "{} cannot be rendered", self.plugin.identifier());
+        picture
+    }
+
+    /// Asks what a canonical region needs of each clip, by the clip's name; `None` for the default.
+    pub fn regions(&self, region: [f64; 4], scale: f64) -> Option<Box<Set>> {
+        let (args, answer) = (self.args(), self.args());
+        args.put(kOfxPropTime, vec![0.0.into()]);
+        args.put(kOfxImageEffectPropRenderScale, vec![scale.into(); 2]);
+        args.put(kOfxImageEffectPropRegionOfInterest, region.map(Value::from).to_vec());
+        let status = self.act(kOfxImageEffectActionGetRegionsOfInterest, Some(&args), Some(&answer));
+        match status {
+            s if s == kOfxStatOK => Some(answer),
+            s if s == kOfxStatReplyDefault => None,
+            other => panic!("GetRegionsOfInterest: {other}"),
+        }
+    }
+
+    /// Whether the effect says that it changes nothing.
+    ///
+    /// # Panics
+    /// When it names another clip than the source.
+    pub fn is_identity(&self) -> bool {
+        let (args, answer) = (self.args(), self.args());
+        args.put(kOfxPropTime, vec![3.0.into()]);
+        args.put(kOfxImageEffectPropRenderScale, vec![1.0.into(); 2]);
+        let status = self.act(kOfxImageEffectActionIsIdentity, Some(&args), Some(&answer));
+        if status == kOfxStatOK {
+            assert_eq!(answer.text(kOfxPropName).as_deref(), Some("Source"));
+            assert_eq!(answer.numbers(kOfxPropTime), [3.0]);
+        }
+        status == kOfxStatOK
+    }
+}

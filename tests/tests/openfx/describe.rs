@@ -1,0 +1,228 @@
+//! Loading and describing: what every effect says of itself.
+
+use crate::reference::{Expected, binary, expected, identifier, no_faults};
+use isophote::spec::{ImageKind, Param, ParamKind};
+use isophote_tests::ofx::effect::{Described, Effect};
+use isophote_tests::ofx::interface::*;
+use isophote_tests::ofx::properties::Value;
+use isophote_tests::ofx::{Behaviour, Host};
+use std::collections::BTreeSet;
+use std::ffi::CStr;
+
+const CONTEXTS: [&CStr; 2] = [kOfxImageEffectContextFilter, kOfxImageEffectContextGeneral];
+
+#[test]
+fn every_node_that_can_be_an_effect_is_one() {
+    let found: BTreeSet<String> = binary().plugins().iter().map(|p| p.identifier()).collect();
+    assert_eq!(found.len(), binary().plugins().len());
+    for effect in expected() {
+        assert!(found.contains(&identifier(effect.node)));
+    }
+    for node in isophote::registry::nodes().iter().filter(|n| n.group == "styles") {
+        assert!(found.contains(&identifier(node)), "{}", node.id);
+    }
+    if !isophote_tests::cases::only_some() {
+        assert_eq!(found.len(), expected().len());
+    }
+}
+
+#[test]
+fn descriptors_say_what_the_standard_asks_for() {
+    let host = Host::new(Behaviour::default());
+    for Expected { node, plugin } in expected() {
+        let raw = plugin.raw();
+        assert_eq!((raw.apiVersion, raw.pluginVersionMajor), (1, 1));
+        let described = Described::new(&host, plugin);
+        let set = &described.descriptor.set;
+        let label = if node.id == "tensor_view" { "Structure" } else { node.label };
+        assert_eq!(set.text(kOfxPropLabel).unwrap(), label.replace('-', " "));
+        assert_eq!(set.text(kOfxImageEffectPluginPropGrouping).unwrap(), format!("Isophote/{}", node.group));
+        assert!(set.text(kOfxPropPluginDescription).unwrap().starts_with(node.doc));
+        let contexts = set.texts(kOfxImageEffectPropSupportedContexts);
+        assert_eq!(contexts, ["OfxImageEffectContextFilter", "OfxImageEffectContextGeneral"]);
+        let depths = set.texts(kOfxImageEffectPropSupportedPixelDepths);
+        assert_eq!(depths, ["OfxBitDepthFloat", "OfxBitDepthHalf", "OfxBitDepthShort", "OfxBitDepthByte"]);
+        let icon = format!("{}.", plugin.identifier());
+        assert_eq!(set.texts(kOfxPropIcon), [format!("{icon}svg"), format!("{icon}png")]);
+        for gpu in [
+            kOfxImageEffectPropOpenGLRenderSupported,
+            kOfxImageEffectPropOpenCLRenderSupported,
+            kOfxImageEffectPropCudaRenderSupported,
+            kOfxImageEffectPropMetalRenderSupported,
+        ] {
+            assert_eq!(set.text(gpu).unwrap(), "false");
+        }
+        assert_eq!(set.int(kOfxImageEffectPropSupportsMultiResolution), Some(1));
+        assert_eq!(set.int(kOfxImageEffectPropTemporalClipAccess), Some(0));
+        assert_eq!(
+            set.text(kOfxImageEffectPluginRenderThreadSafety).unwrap(),
+            "OfxImageEffectRenderFullySafe"
+        );
+    }
+    no_faults();
+}
+
+#[test]
+fn clips_are_source_and_output_and_in_general_a_mask_and_guides() {
+    let host = Host::new(Behaviour::default());
+    for Expected { node, plugin } in expected() {
+        let described = Described::new(&host, plugin);
+        assert_eq!(described.in_context(CONTEXTS[0]).clip_names(), ["Source", "Output"]);
+        let first = if node.id == "tensor_view" { "structure_tensor" } else { node.id };
+        let first = isophote::registry::find(first).unwrap();
+        let takes = |kind| first.inputs.iter().any(|p| p.kind == kind);
+        let mut general = vec!["Source", "Output", "Mask"];
+        general.extend(takes(ImageKind::Normal).then_some("Normal"));
+        general.extend(takes(ImageKind::Depth).then_some("Depth"));
+        assert_eq!(described.in_context(CONTEXTS[1]).clip_names(), general, "{}", node.id);
+    }
+    no_faults();
+}
+
+/// The one control of a name, by its type and properties.
+fn check(effect: &Effect, name: &str, param: &Param) {
+    let mut found = 0;
+    effect.each_param(|control| {
+        if control.name.to_string_lossy() != name {
+            return;
+        }
+        found += 1;
+        let set = &control.set;
+        assert!(set.text(kOfxParamPropHint).unwrap().starts_with(param.doc), "{name}");
+        assert_eq!(set.text(kOfxPropLabel).unwrap(), param.label);
+        assert_eq!(set.text(kOfxParamPropScriptName).unwrap(), name);
+        let ranges = [
+            kOfxParamPropDefault,
+            kOfxParamPropMin,
+            kOfxParamPropDisplayMin,
+            kOfxParamPropDisplayMax,
+            kOfxParamPropMax,
+        ]
+        .map(|p| set.numbers(p).first().map(|v| *v as f32));
+        match param.kind {
+            ParamKind::Float { default, range: [low, high], slider: [from, to] } => {
+                assert_eq!(control.kind.as_c_str(), kOfxParamTypeDouble);
+                assert_eq!(ranges, [default, low, from, to, high].map(Some), "{name}");
+                assert!(set.int(kOfxParamPropDigits) > Some(0));
+            }
+            ParamKind::Int { default, range: [low, high], slider: [from, to] } => {
+                assert_eq!(control.kind.as_c_str(), kOfxParamTypeInteger);
+                assert_eq!(ranges, [default, low, from, to, high].map(|v| Some(v as f32)), "{name}");
+            }
+            ParamKind::Bool { default } => {
+                assert_eq!(control.kind.as_c_str(), kOfxParamTypeBoolean);
+                assert_eq!(set.int(kOfxParamPropDefault), Some(default.into()));
+            }
+            ParamKind::Choice { default, options } => {
+                assert_eq!(control.kind.as_c_str(), kOfxParamTypeChoice);
+                assert_eq!(set.int(kOfxParamPropDefault), Some(default as i32));
+                let labels: Vec<&str> = options.iter().map(|o| o.label).collect();
+                assert_eq!(set.texts(kOfxParamPropChoiceOption), labels);
+            }
+            ParamKind::Color { default } => {
+                assert_eq!(control.kind.as_c_str(), kOfxParamTypeRGBA);
+                let got: Vec<f32> = set.numbers(kOfxParamPropDefault).iter().map(|v| *v as f32).collect();
+                assert_eq!(got, default);
+            }
+        }
+    });
+    assert_eq!(found, 1, "{name}");
+}
+
+#[test]
+fn controls_are_the_parameters_of_the_nodes() {
+    let host = Host::new(Behaviour::default());
+    for effect in expected() {
+        let described = Described::new(&host, effect.plugin);
+        for context in CONTEXTS {
+            let general = context == CONTEXTS[1];
+            let shown = described.in_context(context);
+            let find = |id| isophote::registry::find(id).unwrap();
+            let members = match effect.node.id {
+                "tensor_view" => vec![(find("structure_tensor"), ""), (effect.node, "view_")],
+                _ if effect.is_lines() => vec![(effect.node, ""), (find("composite_lines"), "lines_")],
+                _ => vec![(effect.node, "")],
+            };
+            let mut names: BTreeSet<String> =
+                ["working_space", "process_alpha"].map(str::to_owned).into_iter().collect();
+            names.extend(general.then(|| "mask_apply".to_owned()));
+            names.extend(effect.is_lines().then(|| "lines_output".to_owned()));
+            for (node, prefix) in members {
+                for param in node.params() {
+                    let name = format!("{prefix}{}", param.id);
+                    check(&shown, &name, param);
+                    names.insert(name);
+                }
+            }
+            let mut controls = BTreeSet::new();
+            let mut groups = BTreeSet::new();
+            let mut page = Vec::new();
+            let mut parents = BTreeSet::new();
+            shown.each_param(|param| {
+                let name = param.name.to_string_lossy().into_owned();
+                match param.kind.as_c_str() {
+                    k if k == kOfxParamTypePage => page = param.set.texts(kOfxParamPropPageChild),
+                    k if k == kOfxParamTypeGroup => assert!(groups.insert(name)),
+                    _ => assert!(controls.insert(name)),
+                }
+                parents.extend(param.set.text(kOfxParamPropParent));
+            });
+            assert_eq!(controls, names, "{}", effect.node.id);
+            assert_eq!(page.iter().cloned().collect::<BTreeSet<_>>(), names);
+            assert!(parents.is_subset(&groups));
+        }
+    }
+    no_faults();
+}
+
+#[test]
+fn the_working_space_follows_the_host() {
+    for (name, index) in
+        [(c"uk.co.thefoundry.nuke", 0), (c"fr.inria.Natron", 0), (c"DaVinciResolve", 1), (c"mlt", 1)]
+    {
+        let host = Host::new(Behaviour { name, ..Behaviour::default() });
+        let shown = Described::new(&host, binary().plugins()[0]).in_context(CONTEXTS[0]);
+        shown.each_param(|param| {
+            if param.name.as_c_str() == c"working_space" {
+                assert_eq!(param.set.get(kOfxParamPropDefault), [Value::Int(index)], "{name:?}");
+            }
+        });
+    }
+}
+
+#[test]
+fn half_floats_are_offered_to_hosts_that_have_them() {
+    let host = Host::new(Behaviour { half: false, ..Behaviour::default() });
+    let described = Described::new(&host, binary().plugins()[0]);
+    let depths = described.descriptor.set.texts(kOfxImageEffectPropSupportedPixelDepths);
+    assert_eq!(depths, ["OfxBitDepthFloat", "OfxBitDepthShort", "OfxBitDepthByte"]);
+}
+
+#[test]
+fn describing_is_the_same_every_time_and_stands_refused_properties() {
+    let told = |refuses_optional| {
+        let host = Host::new(Behaviour { refuses_optional, ..Behaviour::default() });
+        let mut all = Vec::new();
+        for Expected { plugin, .. } in expected() {
+            let described = Described::new(&host, plugin);
+            described.in_context(CONTEXTS[1]).each_param(|p| {
+                all.push((p.name.clone(), p.set.get(kOfxParamPropDefault), p.set.get(kOfxParamPropHint)));
+            });
+        }
+        all
+    };
+    assert_eq!(told(false), told(false));
+    assert_eq!(told(false).len(), told(true).len());
+    no_faults();
+}
+
+#[test]
+fn a_host_without_a_needed_suite_is_told() {
+    let missing = [kOfxPropertySuite, kOfxImageEffectSuite, kOfxParameterSuite];
+    for suite in missing {
+        let host = Host::new(Behaviour { without: vec![suite], ..Behaviour::default() });
+        let plugin = binary().plugin("org.isophote.gaussian");
+        let failed = Described::attempt(&host, plugin).err();
+        assert_eq!(failed, Some(("Load", kOfxStatErrMissingHostFeature)), "{suite:?}");
+    }
+}

@@ -1,0 +1,212 @@
+//! What the tests of the OpenFX face share: effects by the registry, and the same result through C.
+
+use isophote::graph::GraphInput;
+use isophote::spec::{ImageKind, NodeSpec};
+use isophote::{ColourSpace, Graph};
+use isophote_engine::pixels::Sample;
+use isophote_tests::cases;
+use isophote_tests::library::{self, Loaded, contract::*, text};
+use isophote_tests::ofx::picture::Layout;
+use isophote_tests::ofx::{Binary, Plugin};
+use std::ffi::CString;
+use std::ptr::{null, null_mut};
+use std::sync::OnceLock;
+
+pub const WIDTH: i32 = 41;
+pub const HEIGHT: i32 = 29;
+
+pub fn binary() -> &'static Binary {
+    static BINARY: OnceLock<Binary> = OnceLock::new();
+    BINARY.get_or_init(|| Binary::open(library::path()))
+}
+
+fn table() -> &'static Loaded {
+    static LOADED: OnceLock<Loaded> = OnceLock::new();
+    LOADED.get_or_init(Loaded::new)
+}
+
+/// An effect that there must be, and the graph that it must be like.
+#[derive(Clone, Copy)]
+pub struct Expected {
+    pub node: &'static NodeSpec,
+    pub plugin: Plugin,
+}
+
+/// The effects of the registry, or of the nodes that `ISOPHOTE_NODES` names.
+pub fn expected() -> Vec<Expected> {
+    let colour_alone = |n: &NodeSpec| {
+        n.inputs.iter().any(|p| p.kind == ImageKind::Color)
+            && n.inputs.iter().all(|p| p.optional || p.kind == ImageKind::Color)
+    };
+    let is_effect = |n: &&'static NodeSpec| {
+        n.id == "tensor_view"
+            || (matches!(n.output.kind, ImageKind::Color | ImageKind::Scalar) && colour_alone(n))
+    };
+    let nodes = cases::nodes().into_iter().filter(is_effect);
+    nodes.map(|node| Expected { node, plugin: binary().plugin(&identifier(node)) }).collect()
+}
+
+pub fn identifier(node: &NodeSpec) -> String {
+    let id = if node.id == "tensor_view" { "structure" } else { node.id };
+    format!("org.isophote.{id}")
+}
+
+impl Expected {
+    pub fn is_lines(&self) -> bool {
+        self.node.output.kind == ImageKind::Scalar
+    }
+
+    /// The graph of the effect. `over`: lines over the picture.
+    pub fn graph(&self, over: bool) -> Graph {
+        let mut graph = Graph::new();
+        let connect = |graph: &mut Graph, id, spec: &NodeSpec| {
+            for port in spec.inputs {
+                if let Some(input) = GraphInput::from_id(port.id) {
+                    graph.connect_input(input, id, port.id).unwrap();
+                }
+            }
+        };
+        let tensor = (self.node.id == "tensor_view").then(|| graph.add("t", "structure_tensor").unwrap());
+        let node = graph.add("n", self.node.id).unwrap();
+        connect(&mut graph, node, self.node);
+        graph.set_output(node).unwrap();
+        if let Some(tensor) = tensor {
+            connect(&mut graph, tensor, isophote::registry::find("structure_tensor").unwrap());
+            graph.connect(tensor, node, "tensor").unwrap();
+        }
+        if over {
+            let lines = graph.add("l", "composite_lines").unwrap();
+            graph.connect_input(GraphInput::Color, lines, "color").unwrap();
+            graph.connect(node, lines, "edges").unwrap();
+            graph.set_output(lines).unwrap();
+        }
+        graph
+    }
+}
+
+/// A picture of edges, a disc, a ramp and grain, with cut-out parts; values 0..=1, premultiplied.
+pub fn scene(width: i32, height: i32, opaque: bool) -> Vec<f32> {
+    let pixel = |x: i32, y: i32| {
+        let (s, t) = (x as f32 / width as f32, y as f32 / height as f32);
+        let disc = (s - 0.6).powi(2) + (t - 0.5).powi(2) < 0.05;
+        let edge = if s + t < 0.7 { 0.2 } else { 0.7 };
+        let grain = ((x * 7919 + y * 104_729) % 97) as f32 / 970.0;
+        let alpha = if opaque || t < 0.7 { 1.0 } else { (s * 1.6 - 0.3).clamp(0.0, 1.0) };
+        [if disc { 0.9 } else { edge }, 0.1 + 0.8 * s, 0.3 + grain, 1.0].map(|v| v * alpha)
+    };
+    (0..height).flat_map(|y| (0..width).flat_map(move |x| pixel(x, y))).collect()
+}
+
+/// Packed samples of RGBA floats in a layout.
+pub fn packed(rgba: &[f32], layout: &Layout) -> Vec<u8> {
+    let mut bytes = vec![0; rgba.len() / 4 * layout.pixel()];
+    isophote_engine::pixels::write_row(rgba, 4, &mut bytes, layout.sample(), layout.channels());
+    bytes
+}
+
+/// What the C table makes of packed pixels, in the same layout.
+pub struct Through<'a> {
+    pub graph: &'a Graph,
+    pub size: [i32; 2],
+    pub scale: f32,
+    pub space: ColourSpace,
+    pub premultiplied: bool,
+}
+
+impl Through<'_> {
+    pub fn c(&self, inputs: &[(&str, &[u8], Layout)], layout: Layout) -> Vec<u8> {
+        let api = table().api;
+        let json = CString::new(self.graph.to_json().unwrap()).unwrap();
+        let mut graph = 0;
+        let [width, height] = self.size.map(|n| n as u32);
+        let request = IsophoteRequest {
+            width,
+            height,
+            scale: self.scale,
+            space: self.space as u32,
+            alpha: if self.premultiplied { ISOPHOTE_ALPHA_PREMULTIPLIED } else { ISOPHOTE_ALPHA_STRAIGHT },
+            guides: 0,
+        };
+        let sample = |layout: &Layout| match layout.sample() {
+            Sample::U8 => ISOPHOTE_SAMPLE_U8,
+            Sample::U16 => ISOPHOTE_SAMPLE_U16,
+            Sample::F16 => ISOPHOTE_SAMPLE_F16,
+            Sample::F32 => ISOPHOTE_SAMPLE_F32,
+        };
+        let names: Vec<CString> = inputs.iter().map(|(name, ..)| CString::new(*name).unwrap()).collect();
+        let images: Vec<IsophoteInput> = inputs
+            .iter()
+            .zip(&names)
+            .map(|((_, bytes, layout), name)| IsophoteInput {
+                name: name.as_ptr(),
+                image: IsophoteImage {
+                    data: bytes.as_ptr().cast(),
+                    row_stride: width as isize * layout.pixel() as isize,
+                    sample: sample(layout),
+                    channels: layout.channels() as u32,
+                    width,
+                    height,
+                    x: 0,
+                    y: 0,
+                },
+            })
+            .collect();
+        let mut out = vec![0_u8; (width * height) as usize * layout.pixel()];
+        let target = IsophoteTarget {
+            data: out.as_mut_ptr().cast(),
+            row_stride: width as isize * layout.pixel() as isize,
+            sample: sample(&layout),
+            channels: layout.channels() as u32,
+            width,
+            height,
+            x: 0,
+            y: 0,
+        };
+        // SAFETY: text with a closing zero, images of the sizes they name, and places for the answers.
+        unsafe {
+            assert_eq!((api.graph_create_from_json)(json.as_ptr(), null_mut(), &raw mut graph), ISOPHOTE_OK);
+            let status = (api.process)(
+                graph,
+                0,
+                &raw const request,
+                images.as_ptr(),
+                images.len() as u32,
+                null(),
+                &raw const target,
+                null(),
+                null_mut(),
+            );
+            let said = text(|t| assert_eq!((api.graph_error)(graph, t), ISOPHOTE_OK));
+            assert_eq!(status, ISOPHOTE_OK, "{said}");
+            assert_eq!((api.graph_destroy)(graph), ISOPHOTE_OK);
+        }
+        out
+    }
+}
+
+/// Samples as numbers; integers in code values.
+pub fn values(bytes: &[u8], layout: &Layout) -> Vec<f32> {
+    match layout.sample() {
+        Sample::U8 => bytes.iter().map(|b| f32::from(*b)).collect(),
+        Sample::U16 => bytes.chunks_exact(2).map(|b| f32::from(u16::from_ne_bytes([b[0], b[1]]))).collect(),
+        Sample::F16 | Sample::F32 => {
+            let size = layout.sample().size();
+            let mut values = vec![0.0; bytes.len() / size];
+            isophote_engine::pixels::read_row(bytes, layout.sample(), 1, &mut values, 1);
+            values
+        }
+    }
+}
+
+/// The largest difference; in code values for integers.
+pub fn difference(a: &[u8], b: &[u8], layout: &Layout) -> f32 {
+    assert_eq!(a.len(), b.len());
+    let pairs = values(a, layout).into_iter().zip(values(b, layout));
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
+/// Fails when the host noticed that a plugin broke a rule.
+pub fn no_faults() {
+    let faults = isophote_tests::ofx::faults();
+    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+}

@@ -1,0 +1,117 @@
+//! Tiles against full frames, and regions of interest against the plan's support.
+
+use crate::reference::*;
+use crate::render::plain;
+use isophote::{Planned, Request};
+use isophote_engine::Rect;
+use isophote_tests::ofx::effect::{Described, Wanted};
+use isophote_tests::ofx::interface::*;
+use isophote_tests::ofx::picture::{Layout, Picture};
+use isophote_tests::ofx::{Behaviour, Host};
+use std::ffi::CString;
+
+const SIZE: [i32; 2] = [97, 71];
+
+fn source(layout: Layout) -> Picture {
+    Picture::packed_in(layout, SIZE[0], SIZE[1], &packed(&scene(SIZE[0], SIZE[1], false), &layout))
+}
+
+#[test]
+fn tiles_from_their_regions_of_interest_equal_the_full_frame() {
+    let host = Host::new(Behaviour::default());
+    let name = CString::new(format!("{ROI_PREFIX}Source")).unwrap();
+    for effect in expected() {
+        let described = Described::new(&host, effect.plugin);
+        let declared = described.descriptor.set.int(kOfxImageEffectPropSupportsTiles).unwrap();
+        let support = Planned::new(&effect.graph(false), Request::new(256, 256)).unwrap().plan().support();
+        let local = support != isophote_engine::Support::Global;
+        assert_eq!(declared, i32::from(local), "{}", effect.plugin.identifier());
+        for (origin, aspect) in [([0, 0], 1.0), ([-13, 7], 1.0667)] {
+            let layout = Layout { origin, aspect, padding: 6, ..Layout::default() };
+            let instance = described.instance(kOfxImageEffectContextFilter);
+            plain(&instance);
+            let source = source(layout);
+            instance.connect("Source", source.clone());
+            let full = instance.render(layout, SIZE);
+            let [x, y] = origin;
+            for window in [[0, 0, 31, 20], [31, 20, 64, 71], [40, 33, 41, 34], [90, 60, 97, 71]] {
+                let window = [window[0] + x, window[1] + y, window[2] + x, window[3] + y];
+                let [x1, y1, x2, y2] = window.map(f64::from);
+                let roi = instance.regions([x1 * aspect, y1, x2 * aspect, y2], 1.0).expect("a region");
+                let roi = roi.numbers(&name);
+                let pixels = [roi[0] / aspect, roi[1], roi[2] / aspect, roi[3]].map(|v| v.round() as i32);
+                // What the plan says, in rows from the top.
+                let planned = Planned::new(
+                    &effect.graph(false),
+                    Request { scale: scale_of(aspect), ..Request::new(SIZE[0] as u32, SIZE[1] as u32) },
+                )
+                .unwrap();
+                let region = Rect {
+                    x0: window[0] - x,
+                    x1: window[2] - x,
+                    y0: SIZE[1] - (window[3] - y),
+                    y1: SIZE[1] - (window[1] - y),
+                };
+                let windows = planned.plan().windows(region);
+                let port = planned.plan().inputs().iter().find(|p| p.name == "color").unwrap();
+                let needed = windows[port.image.index()].union(&region);
+                let wanted = [needed.x0 + x, SIZE[1] - needed.y1 + y, needed.x1 + x, SIZE[1] - needed.y0 + y];
+                assert_eq!(pixels, wanted, "{}", effect.plugin.identifier());
+                instance.connect("Source", source.crop(pixels));
+                let (status, tile) = instance.try_render(layout, SIZE, &Wanted::new(window));
+                assert_eq!(status, kOfxStatOK);
+                let worst = difference(&tile.crop(window).packed(), &full.crop(window).packed(), &layout);
+                assert_eq!(worst, 0.0, "{} at {window:?}", effect.plugin.identifier());
+                instance.connect("Source", source.clone());
+            }
+        }
+    }
+    no_faults();
+}
+
+fn scale_of(aspect: f64) -> f32 {
+    if aspect == 1.0 { 1.0 } else { (1.0 / aspect).sqrt() as f32 }
+}
+
+#[test]
+fn the_mask_is_needed_where_it_is_used_and_the_result_covers_the_source() {
+    let host = Host::new(Behaviour::default());
+    let layout = Layout { origin: [5, -9], ..Layout::default() };
+    for effect in expected() {
+        let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextGeneral);
+        instance.connect("Source", source(layout));
+        instance.connect("Mask", source(layout));
+        let regions = instance.regions([20.0, 10.0, 30.0, 20.0], 1.0).expect("regions");
+        let mask = CString::new(format!("{ROI_PREFIX}Mask")).unwrap();
+        assert_eq!(regions.numbers(&mask), [20.0, 10.0, 30.0, 20.0]);
+        let (args, answer) = (instance.args(), instance.args());
+        args.put(kOfxPropTime, vec![0.0.into()]);
+        let status = instance.act(kOfxImageEffectActionGetRegionOfDefinition, Some(&args), Some(&answer));
+        assert_eq!(status, kOfxStatOK);
+        assert_eq!(answer.numbers(kOfxImageEffectPropRegionOfDefinition), [5.0, -9.0, 102.0, 62.0]);
+        let answer = instance.args();
+        let status = instance.act(kOfxImageEffectActionGetClipPreferences, None, Some(&answer));
+        assert_eq!(status, kOfxStatOK);
+        let state = answer.text(kOfxImageEffectPropPreMultiplication).unwrap();
+        assert_eq!(state, "OfxImageAlphaPremultiplied");
+    }
+    no_faults();
+}
+
+#[test]
+fn regions_shrink_with_the_scale() {
+    let host = Host::new(Behaviour::default());
+    let name = CString::new(format!("{ROI_PREFIX}Source")).unwrap();
+    let instance = Described::new(&host, binary().plugin("org.isophote.gaussian"))
+        .instance(kOfxImageEffectContextFilter);
+    instance.set("sigma", 4.0);
+    let halo = |scale: f64| {
+        instance.connect("Source", source(Layout { scale, ..Layout::default() }));
+        let at = 40.0 / scale;
+        let roi = instance.regions([at, at, at + 4.0, at + 4.0], scale).expect("a region").numbers(&name);
+        // Canonical units: nearly the same at every scale, since they are those of the full picture.
+        at - roi[0]
+    };
+    let (full, half) = (halo(1.0), halo(0.5));
+    assert!(full >= 12.0 && (half - full).abs() <= 3.0, "{full} {half}");
+}

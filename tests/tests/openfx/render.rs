@@ -1,0 +1,347 @@
+//! Rendering: every effect, context, depth and set of components, against the C table.
+
+use crate::reference::*;
+use isophote::ColourSpace;
+use isophote_tests::ofx::effect::{Described, Instance, Wanted};
+use isophote_tests::ofx::interface::*;
+use isophote_tests::ofx::picture::{Layout, Picture};
+use isophote_tests::ofx::{Behaviour, Host, suites};
+use std::ffi::CStr;
+use std::sync::atomic::Ordering;
+
+const SIZE: [i32; 2] = [WIDTH, HEIGHT];
+const DEPTHS: [&CStr; 4] = [kOfxBitDepthFloat, kOfxBitDepthHalf, kOfxBitDepthShort, kOfxBitDepthByte];
+const COMPONENTS: [&CStr; 3] = [kOfxImageComponentRGBA, kOfxImageComponentRGB, kOfxImageComponentAlpha];
+
+/// The picture of the tests in a layout.
+pub fn source(layout: Layout, opaque: bool) -> Picture {
+    Picture::packed_in(layout, WIDTH, HEIGHT, &packed(&scene(WIDTH, HEIGHT, opaque), &layout))
+}
+
+/// Working space sRGB, alpha filtered too: what the C table does.
+pub fn plain(instance: &Instance<'_>) {
+    instance.set("working_space", 1);
+    instance.set("process_alpha", 1);
+}
+
+fn through(graph: &isophote::Graph, source: &Picture, layout: Layout, space: ColourSpace) -> Vec<u8> {
+    let through = Through {
+        graph,
+        size: SIZE,
+        scale: 1.0,
+        space,
+        premultiplied: layout.alpha != Some(kOfxImageUnPreMultiplied),
+    };
+    through.c(&[("color", &source.packed(), layout)], layout)
+}
+
+#[test]
+fn every_effect_equals_the_c_table_in_every_context_depth_and_component() {
+    let host = Host::new(Behaviour::default());
+    for effect in expected() {
+        let described = Described::new(&host, effect.plugin);
+        let graph = effect.graph(false);
+        for components in COMPONENTS {
+            for depth in DEPTHS {
+                let layout = Layout { depth, components, ..Layout::default() };
+                let source = source(layout, false);
+                let wanted = through(&graph, &source, layout, ColourSpace::Srgb);
+                for context in [kOfxImageEffectContextFilter, kOfxImageEffectContextGeneral] {
+                    let instance = described.instance(context);
+                    plain(&instance);
+                    instance.connect("Source", source.clone());
+                    let got = instance.render(layout, SIZE).packed();
+                    let worst = difference(&got, &wanted, &layout);
+                    let allowed =
+                        if depth == kOfxBitDepthFloat || depth == kOfxBitDepthHalf { 0.0 } else { 1.0 };
+                    assert!(
+                        worst <= allowed,
+                        "{} {depth:?} {components:?} {context:?}: {worst}",
+                        effect.plugin.identifier()
+                    );
+                }
+            }
+        }
+    }
+    no_faults();
+}
+
+#[test]
+fn spaces_and_relations_to_alpha_equal_the_c_table() {
+    let host = Host::new(Behaviour::default());
+    for effect in expected() {
+        let described = Described::new(&host, effect.plugin);
+        let graph = effect.graph(false);
+        let instance = described.instance(kOfxImageEffectContextFilter);
+        for alpha in [None, Some(kOfxImagePreMultiplied), Some(kOfxImageUnPreMultiplied)] {
+            for (index, space) in
+                [ColourSpace::Linear, ColourSpace::Srgb, ColourSpace::Srgb, ColourSpace::AcesCg]
+                    .into_iter()
+                    .enumerate()
+            {
+                let layout = Layout { alpha, ..Layout::default() };
+                let source = source(layout, false);
+                plain(&instance);
+                instance.set("working_space", index as i32);
+                instance.connect("Source", source.clone());
+                let got = instance.render(layout, SIZE).packed();
+                let wanted = through(&graph, &source, layout, space);
+                assert!(got == wanted, "{} {alpha:?} {space:?}", effect.plugin.identifier());
+            }
+        }
+    }
+    no_faults();
+}
+
+#[test]
+fn the_alpha_of_the_source_stays_unless_it_is_processed() {
+    let host = Host::new(Behaviour::default());
+    let layout = Layout::default();
+    for effect in expected() {
+        let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextFilter);
+        instance.set("working_space", 1);
+        let source = source(layout, false);
+        instance.connect("Source", source.clone());
+        let got = values(&instance.render(layout, SIZE).packed(), &layout);
+        let before = values(&source.packed(), &layout);
+        for (after, before) in got.chunks_exact(4).zip(before.chunks_exact(4)) {
+            assert_eq!(after[3], before[3], "{}", effect.plugin.identifier());
+            assert!(after.iter().all(|v| v.is_finite()));
+        }
+        // An opaque image is one, whatever its alpha holds.
+        let opaque = Layout { alpha: Some(kOfxImageOpaque), ..layout };
+        instance.connect("Source", source_of_opaque(&source, opaque));
+        let got = values(&instance.render(opaque, SIZE).packed(), &layout);
+        assert!(got.chunks_exact(4).all(|p| (p[3] - 1.0).abs() < 1e-6), "{}", effect.plugin.identifier());
+    }
+    no_faults();
+}
+
+fn source_of_opaque(source: &Picture, layout: Layout) -> Picture {
+    Picture::packed_in(layout, WIDTH, HEIGHT, &source.packed())
+}
+
+#[test]
+fn lines_are_shown_alone_or_over_the_source() {
+    let host = Host::new(Behaviour::default());
+    let layout = Layout::default();
+    for effect in expected().into_iter().filter(|e| e.is_lines()) {
+        let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextFilter);
+        plain(&instance);
+        let source = source(layout, true);
+        instance.connect("Source", source.clone());
+        for over in [false, true] {
+            instance.set("lines_output", i32::from(over));
+            let got = instance.render(layout, SIZE).packed();
+            assert!(got == through(&effect.graph(over), &source, layout, ColourSpace::Srgb));
+        }
+    }
+    no_faults();
+}
+
+#[test]
+fn guides_enter_in_the_general_context() {
+    let host = Host::new(Behaviour::default());
+    let layout = Layout::default();
+    let depth_layout = Layout { components: kOfxImageComponentAlpha, ..layout };
+    for effect in expected() {
+        let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextGeneral);
+        let names = instance.effect.clip_names();
+        if !names.contains(&"Normal".to_owned()) || !names.contains(&"Depth".to_owned()) {
+            continue;
+        }
+        plain(&instance);
+        if instance.has("guide_weight") {
+            instance.set("guide_weight", 1.0);
+        }
+        let step = |x: i32| if x < WIDTH / 2 { [0.0, 0.0, 1.0, 1.0] } else { [0.8, 0.0, 0.6, 1.0] };
+        let normals: Vec<f32> = (0..WIDTH * HEIGHT).flat_map(|i| step(i % WIDTH)).collect();
+        let depths: Vec<f32> =
+            (0..WIDTH * HEIGHT).map(|i| if i / WIDTH < HEIGHT / 2 { 2.0 } else { 5.0 }).collect();
+        let bytes = |values: &[f32]| values.iter().flat_map(|v| v.to_ne_bytes()).collect::<Vec<u8>>();
+        let (normals, depths) = (bytes(&normals), bytes(&depths));
+        let source = source(layout, true);
+        instance.connect("Source", source.clone());
+        instance.connect("Normal", Picture::packed_in(layout, WIDTH, HEIGHT, &normals));
+        instance.connect("Depth", Picture::packed_in(depth_layout, WIDTH, HEIGHT, &depths));
+        let got = instance.render(layout, SIZE).packed();
+        let mut graph = effect.graph(false);
+        if let Ok(node) = graph.find("n")
+            && graph.value(node, "guide_weight").is_ok()
+        {
+            graph.set_text(node, "guide_weight", "1").unwrap();
+        }
+        if let Ok(tensor) = graph.find("t") {
+            graph.set_text(tensor, "guide_weight", "1").unwrap();
+        }
+        let wanted =
+            Through { graph: &graph, size: SIZE, scale: 1.0, space: ColourSpace::Srgb, premultiplied: true }
+                .c(
+                    &[
+                        ("color", &source.packed(), layout),
+                        ("normal", &normals, layout),
+                        ("depth", &depths, depth_layout),
+                    ],
+                    layout,
+                );
+        assert!(got == wanted, "{}", effect.plugin.identifier());
+        let without = through(&graph, &source, layout, ColourSpace::Srgb);
+        assert!(got != without, "{} does not mind its guides", effect.plugin.identifier());
+    }
+    no_faults();
+}
+
+#[test]
+fn a_mask_decides_where_the_effect_shows() {
+    let host = Host::new(Behaviour::default());
+    let layout = Layout::default();
+    let mask_layout = Layout { components: kOfxImageComponentAlpha, ..layout };
+    for effect in expected() {
+        let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextGeneral);
+        plain(&instance);
+        let source = source(layout, true);
+        instance.connect("Source", source.clone());
+        let full = values(&instance.render(layout, SIZE).packed(), &layout);
+        let amount = |x: i32| [0.0_f32, 1.0, 0.25][(x * 3 / WIDTH) as usize];
+        let mask: Vec<u8> = (0..WIDTH * HEIGHT).flat_map(|i| amount(i % WIDTH).to_ne_bytes()).collect();
+        instance.connect("Mask", Picture::packed_in(mask_layout, WIDTH, HEIGHT, &mask));
+        let got = values(&instance.render(layout, SIZE).packed(), &layout);
+        let before = values(&source.packed(), &layout);
+        for (i, ((got, full), before)) in got.iter().zip(&full).zip(&before).enumerate() {
+            let a = amount(i as i32 / 4 % WIDTH);
+            let wanted = full * a + before * (1.0 - a);
+            assert!((got - wanted).abs() <= 1e-6 * wanted.abs().max(1.0), "{}", effect.plugin.identifier());
+            assert!(a == 0.25 || *got == if a == 1.0 { *full } else { *before });
+        }
+        instance.set("mask_apply", 0);
+        assert_eq!(values(&instance.render(layout, SIZE).packed(), &layout), full);
+    }
+    no_faults();
+}
+
+#[test]
+fn identity_is_what_is_rendered() {
+    let host = Host::new(Behaviour::default());
+    let layout = Layout::default();
+    for effect in expected() {
+        let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextFilter);
+        assert!(!instance.is_identity());
+        let mix = if effect.is_lines() { "lines_mix" } else { "mix" };
+        if !instance.has(mix) {
+            continue;
+        }
+        instance.set(mix, 0.0);
+        if effect.is_lines() {
+            assert!(!instance.is_identity(), "lines alone are no identity");
+            instance.set("lines_output", 1);
+        }
+        assert!(instance.is_identity(), "{}", effect.plugin.identifier());
+        let source = source(layout, false);
+        instance.connect("Source", source.clone());
+        assert!(instance.render(layout, SIZE).packed() == source.packed());
+    }
+    no_faults();
+}
+
+#[test]
+fn a_missing_source_is_transparent_black_and_a_missing_output_a_failure() {
+    let host = Host::new(Behaviour::default());
+    for effect in expected() {
+        let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextGeneral);
+        let layout = Layout::default();
+        assert!(instance.render(layout, SIZE).packed().iter().all(|b| *b == 0));
+        let alpha = Layout { components: kOfxImageComponentAlpha, depth: kOfxBitDepthByte, ..layout };
+        assert!(instance.render(alpha, SIZE).packed().iter().all(|b| *b == 0));
+        instance.connect("Source", source(layout, true));
+        let wanted = Wanted::new([0, 0, WIDTH, HEIGHT]);
+        assert_eq!(instance.render_connected(&wanted), kOfxStatFailed);
+    }
+    assert_eq!(host.inner.lent.load(Ordering::SeqCst), 0);
+    no_faults();
+}
+
+#[test]
+fn unknown_depths_are_refused() {
+    let host = Host::new(Behaviour::default());
+    let instance = Described::new(&host, binary().plugin("org.isophote.gaussian"))
+        .instance(kOfxImageEffectContextFilter);
+    let layout = Layout::default();
+    let unknown = Layout { depth: kOfxBitDepthNone, ..layout };
+    instance.connect("Source", source(unknown, true));
+    let wanted = Wanted::new([0, 0, WIDTH, HEIGHT]);
+    assert_eq!(instance.try_render(layout, SIZE, &wanted).0, kOfxStatErrImageFormat);
+    instance.connect("Source", source(layout, true));
+    assert_eq!(instance.try_render(unknown, SIZE, &wanted).0, kOfxStatErrImageFormat);
+    assert_eq!(host.inner.lent.load(Ordering::SeqCst), 0);
+}
+
+#[test]
+fn the_threads_of_the_host_give_the_same_pixels() {
+    let layout = Layout::default();
+    let render = |processors, null_functions| {
+        let host = Host::new(Behaviour { processors, null_functions, ..Behaviour::default() });
+        let mut all = Vec::new();
+        for effect in expected() {
+            let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextFilter);
+            instance.connect("Source", source(layout, true));
+            all.push(instance.render(layout, SIZE).packed());
+        }
+        all
+    };
+    let alone = render(0, false);
+    let runs = suites::RUNS.load(Ordering::SeqCst);
+    assert!(render(3, false) == alone);
+    assert!(suites::RUNS.load(Ordering::SeqCst) > runs, "the host's threads were not used");
+    assert!(render(1, false) == alone && render(0, true) == alone);
+    no_faults();
+}
+
+#[test]
+fn twelve_renders_on_four_threads_are_the_same() {
+    let host = Host::new(Behaviour::default());
+    let layout = Layout::default();
+    for effect in expected() {
+        let described = Described::new(&host, effect.plugin);
+        let render = || {
+            let instance = described.instance(kOfxImageEffectContextFilter);
+            instance.connect("Source", source(layout, false));
+            instance.render(layout, SIZE).packed()
+        };
+        let first = render();
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| {
+                    for _ in 0..3 {
+                        // As one host has it: everything anew for every frame, on every thread.
+                        let again = Described::new(&host, effect.plugin);
+                        let instance = again.instance(kOfxImageEffectContextFilter);
+                        instance.connect("Source", source(layout, false));
+                        assert!(instance.render(layout, SIZE).packed() == first);
+                    }
+                });
+            }
+        });
+    }
+    assert_eq!(host.inner.lent.load(Ordering::SeqCst), 0);
+    no_faults();
+}
+
+#[test]
+fn a_host_that_wants_to_stop_is_heard() {
+    let layout = Layout::default();
+    for after in [0, 3] {
+        let host = Host::new(Behaviour { abort_after: Some(after), ..Behaviour::default() });
+        for effect in expected() {
+            host.inner.asked.store(0, Ordering::SeqCst);
+            let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextFilter);
+            instance.connect("Source", source(layout, true));
+            let wanted = Wanted::new([0, 0, WIDTH, HEIGHT]);
+            let (status, picture) = instance.try_render(layout, SIZE, &wanted);
+            assert_eq!(status, kOfxStatOK);
+            assert_eq!(picture.touched_outside([0; 4]), 0, "{} went on", effect.plugin.identifier());
+            assert!(host.inner.asked.load(Ordering::SeqCst) > after);
+        }
+        assert_eq!(host.inner.lent.load(Ordering::SeqCst), 0);
+    }
+    no_faults();
+}

@@ -1,0 +1,145 @@
+//! The OpenFX face when things go wrong or go on for long: panics, bad calls, leaks. Alone in its process,
+//! since it measures and changes what belongs to all of it.
+
+#![allow(unsafe_code, reason = "changing the environment, and calls that no host should make")]
+
+use isophote_tests::library;
+use isophote_tests::ofx::effect::{Described, Wanted};
+use isophote_tests::ofx::interface::*;
+use isophote_tests::ofx::picture::{Layout, Picture};
+use isophote_tests::ofx::{Behaviour, Binary, Host, faults};
+use std::ffi::CStr;
+use std::ptr::null_mut;
+use std::time::{Duration, Instant};
+
+const SIZE: i32 = 32;
+
+fn picture(layout: Layout) -> Picture {
+    let values = (0..SIZE * SIZE * 4).map(|i| if i % 4 == 3 { 1.0 } else { (i * 37 % 101) as f32 / 101.0 });
+    let bytes: Vec<u8> = values.flat_map(f32::to_ne_bytes).collect();
+    Picture::packed_in(layout, SIZE, SIZE, &bytes)
+}
+
+/// Bytes of this process that are in memory.
+fn resident() -> i64 {
+    let text = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
+    text.split_whitespace().nth(1).and_then(|pages| pages.parse::<i64>().ok()).unwrap_or(0) * 4096
+}
+
+#[test]
+fn a_panic_becomes_a_status_and_the_host_goes_on() {
+    if !cfg!(debug_assertions) {
+        return;
+    }
+    let binary = Binary::open(library::path());
+    let host = Host::new(Behaviour::default());
+    let (plugin, layout) = (binary.plugin("org.isophote.gaussian"), Layout::default());
+    let ask = |action: Option<&CStr>| {
+        const VARIABLE: &str = "ISOPHOTE_OFX_PANIC";
+        // SAFETY: the host keeps all other tests of this process waiting, and nothing else runs in it.
+        unsafe {
+            match action {
+                Some(action) => {
+                    std::env::set_var(VARIABLE, format!("org.isophote.gaussian:{}", action.to_string_lossy()))
+                }
+                None => std::env::remove_var(VARIABLE),
+            }
+        }
+    };
+    ask(Some(kOfxActionDescribe));
+    assert_eq!(Described::attempt(&host, plugin).err(), Some(("Describe", kOfxStatFailed)));
+    ask(Some(kOfxActionCreateInstance));
+    let described = Described::new(&host, plugin);
+    let handle = described.descriptor.handle();
+    assert_eq!(plugin.act(kOfxActionCreateInstance, handle, None, None), kOfxStatFailed);
+    ask(None);
+    let instance = described.instance(kOfxImageEffectContextFilter);
+    instance.connect("Source", picture(layout));
+    let wanted = Wanted::new([0, 0, SIZE, SIZE]);
+    ask(Some(kOfxImageEffectActionRender));
+    assert_eq!(instance.try_render(layout, [SIZE; 2], &wanted).0, kOfxStatFailed);
+    ask(None);
+    assert_eq!(instance.try_render(layout, [SIZE; 2], &wanted).0, kOfxStatOK);
+    drop(instance);
+    assert!(faults().is_empty(), "{:?}", faults());
+}
+
+#[test]
+fn bad_calls_are_answered() {
+    let binary = Binary::open(library::path());
+    let host = Host::new(Behaviour::default());
+    for plugin in binary.plugins() {
+        plugin.set_host(&host);
+        assert_eq!(plugin.act(kOfxActionLoad, null_mut(), None, None), kOfxStatOK);
+        assert_eq!(plugin.act(c"OfxActionOfTomorrow", null_mut(), None, None), kOfxStatReplyDefault);
+        for action in [kOfxActionDescribe, kOfxImageEffectActionRender, kOfxActionCreateInstance] {
+            assert_eq!(plugin.act(action, null_mut(), None, None), kOfxStatErrBadHandle);
+        }
+        let entry = plugin.raw().mainEntry.unwrap();
+        // SAFETY: a null action is what is tested.
+        let status = unsafe { entry(std::ptr::null(), std::ptr::null(), null_mut(), null_mut()) };
+        assert_eq!(status, kOfxStatFailed);
+        // Unloaded and asked all the same, as hosts do that do not count.
+        assert_eq!(plugin.act(kOfxActionUnload, null_mut(), None, None), kOfxStatOK);
+        assert_eq!(plugin.act(kOfxActionUnload, null_mut(), None, None), kOfxStatOK);
+        let described = Described::new(&host, *plugin);
+        assert_eq!(plugin.act(kOfxActionUnload, null_mut(), None, None), kOfxStatOK);
+        drop(described.instance(kOfxImageEffectContextGeneral));
+    }
+}
+
+/// Cycles are neither slower nor larger at the end than they were at first.
+fn steady(count: usize, mut cycle: impl FnMut()) {
+    let part = count / 4;
+    let mut quarter = || {
+        let mut least = Duration::MAX;
+        for _ in 0..part {
+            let started = Instant::now();
+            cycle();
+            least = least.min(started.elapsed());
+        }
+        least
+    };
+    let first = quarter();
+    let before = resident();
+    quarter();
+    quarter();
+    let last = quarter();
+    let grown = resident() - before;
+    assert!(grown < 3 << 20, "{grown} bytes more after {count} cycles");
+    // The fastest of many, since other work disturbs the others.
+    assert!(last < first * 3 + Duration::from_millis(2), "{first:?} at first, {last:?} at last");
+}
+
+#[test]
+fn a_thousand_instances_leak_nothing() {
+    let binary = Binary::open(library::path());
+    let host = Host::new(Behaviour::default());
+    let (plugin, layout) = (binary.plugin("org.isophote.gaussian"), Layout::default());
+    let described = Described::new(&host, plugin);
+    let source = picture(layout);
+    steady(1000, || {
+        let instance = described.instance(kOfxImageEffectContextFilter);
+        instance.connect("Source", source.clone());
+        instance.render(layout, [SIZE; 2]);
+    });
+    assert!(faults().is_empty(), "{:?}", faults());
+}
+
+#[test]
+fn a_hundred_loads_leak_nothing() {
+    let layout = Layout::default();
+    let host = Host::new(Behaviour::default());
+    let source = picture(layout);
+    steady(100, || {
+        let binary = Binary::open(library::path());
+        let plugin = binary.plugin("org.isophote.gaussian");
+        {
+            let instance = Described::new(&host, plugin).instance(kOfxImageEffectContextFilter);
+            instance.connect("Source", source.clone());
+            instance.render(layout, [SIZE; 2]);
+        }
+        assert_eq!(plugin.act(kOfxActionUnload, null_mut(), None, None), kOfxStatOK);
+    });
+    assert!(faults().is_empty(), "{:?}", faults());
+}

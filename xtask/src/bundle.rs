@@ -1,0 +1,162 @@
+//! `cargo xtask bundle`: the dynamic library as an OpenFX bundle, with its property list and an icon for
+//! every effect, and its installation.
+
+mod icon;
+
+use crate::error::{Context, Failure, Result};
+use crate::tools::{cargo, heading, host, target_dir};
+use icon::Icon;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// Options of `cargo xtask bundle`.
+#[derive(clap::Args)]
+pub struct Options {
+    /// Copies the bundle to the system's folder of OpenFX plugins, or to that of --to
+    #[arg(long)]
+    install: bool,
+    /// The folder to install to; the system's may need an administrator
+    #[arg(long, value_name = "DIR", requires = "install")]
+    to: Option<PathBuf>,
+    /// Takes the build for development, which is slow
+    #[arg(long)]
+    debug: bool,
+}
+
+const NAME: &str = "Isophote.ofx";
+
+/// Where hosts look for plugins.
+const SYSTEM: &str = if cfg!(target_os = "windows") {
+    r"C:\Program Files\Common Files\OFX\Plugins"
+} else if cfg!(target_os = "macos") {
+    "/Library/OFX/Plugins"
+} else {
+    "/usr/OFX/Plugins"
+};
+
+/// The standard's name for this machine.
+const ARCHITECTURE: &str = if cfg!(target_os = "windows") {
+    "Win64"
+} else if cfg!(target_os = "macos") {
+    "MacOS"
+} else if cfg!(target_arch = "aarch64") {
+    "Linux-aarch64"
+} else {
+    "Linux-x86-64"
+};
+
+/// Builds and writes the bundle, and installs it if asked to.
+///
+/// # Errors
+/// The first step that fails.
+pub fn run(options: &Options) -> Result<()> {
+    heading("build");
+    let profile = if options.debug { "debug" } else { "release" };
+    let mut build = vec!["build", "--workspace", "--lib", "--bins"];
+    if !options.debug {
+        build.push("--release");
+    }
+    cargo(&build)?;
+    let bundle = target_dir("bundle").join(format!("{NAME}.bundle"));
+    write(&bundle, profile)?;
+    println!("{}", bundle.display());
+    if options.install {
+        let folder = options.to.clone().unwrap_or_else(|| PathBuf::from(SYSTEM));
+        let installed = folder.join(format!("{NAME}.bundle"));
+        remove(&installed)?;
+        copy(&bundle, &installed)?;
+        println!("{}", installed.display());
+    }
+    Ok(())
+}
+
+fn write(bundle: &Path, profile: &str) -> Result<()> {
+    remove(bundle)?;
+    let contents = bundle.join("Contents");
+    let (binaries, resources) = (contents.join(ARCHITECTURE), contents.join("Resources"));
+    for folder in [&binaries, &resources] {
+        std::fs::create_dir_all(folder).context(|| format!("cannot create {}", folder.display()))?;
+    }
+    let library = format!("{}isophote{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let library = target_dir(profile).join(library);
+    std::fs::copy(&library, binaries.join(NAME)).context(|| format!("cannot copy {}", library.display()))?;
+    let list = contents.join("Info.plist");
+    std::fs::write(&list, property_list()).context(|| format!("cannot write {}", list.display()))?;
+    for (id, group) in effects(profile)? {
+        let icon = Icon::new(&id, &group);
+        let file = |ending: &str| resources.join(format!("org.isophote.{id}.{ending}"));
+        let (png, svg) = (file("png"), file("svg"));
+        icon.raster().save(&png).context(|| format!("cannot write {}", png.display()))?;
+        std::fs::write(&svg, icon.drawing()).context(|| format!("cannot write {}", svg.display()))?;
+    }
+    Ok(())
+}
+
+fn property_list() -> String {
+    let entry = |key: &str, value: &str| format!("  <key>{key}</key>\n  <string>{value}</string>\n");
+    let entries: String = [
+        ("CFBundleDevelopmentRegion", "English"),
+        ("CFBundleExecutable", NAME),
+        ("CFBundleIdentifier", "org.isophote.ofx"),
+        ("CFBundleInfoDictionaryVersion", "6.0"),
+        ("CFBundleName", "Isophote"),
+        ("CFBundlePackageType", "BNDL"),
+        ("CFBundleShortVersionString", env!("CARGO_PKG_VERSION")),
+        ("CFBundleVersion", env!("CARGO_PKG_VERSION")),
+    ]
+    .map(|(key, value)| entry(key, value))
+    .concat();
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+         <!DOCTYPE plist PUBLIC \"-//Apple//DTD PLIST 1.0//EN\" \
+         \"http://www.apple.com/DTDs/PropertyList-1.0.dtd\">\n\
+         <plist version=\"1.0\">\n<dict>\n{entries}</dict>\n</plist>\n"
+    )
+}
+
+/// Ids and groups of the effects, by the rule that the library follows, from the catalogue that it gives.
+fn effects(profile: &str) -> Result<Vec<(String, String)>> {
+    let output =
+        host(profile).args(["nodes", "--json"]).output().context(|| "cannot run `isophote nodes`".into())?;
+    if !output.status.success() {
+        return Err(Failure(format!("`isophote nodes`: {}", String::from_utf8_lossy(&output.stderr))));
+    }
+    let catalogue: Value =
+        serde_json::from_slice(&output.stdout).context(|| "`isophote nodes` gave no JSON".into())?;
+    let nodes =
+        catalogue["nodes"].as_array().ok_or_else(|| Failure("`isophote nodes` lists no nodes".into()))?;
+    let effect = |node: &Value| {
+        let (id, group) = (node["id"].as_str()?, node["group"].as_str()?);
+        if id == "tensor_view" {
+            return Some(("structure".to_owned(), group.to_owned()));
+        }
+        let inputs = node["inputs"].as_array()?;
+        let colour = |port: &Value| port["kind"] == "color";
+        let alone = inputs.iter().any(colour) && inputs.iter().all(|p| colour(p) || p["optional"] == true);
+        let shown = node["output"]["kind"] == "color" || node["output"]["kind"] == "scalar";
+        (alone && shown).then(|| (id.to_owned(), group.to_owned()))
+    };
+    Ok(nodes.iter().filter_map(effect).collect())
+}
+
+fn remove(folder: &Path) -> Result<()> {
+    if folder.exists() {
+        std::fs::remove_dir_all(folder).context(|| format!("cannot replace {}", folder.display()))?;
+    }
+    Ok(())
+}
+
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    std::fs::create_dir_all(to).context(|| format!("cannot create {}", to.display()))?;
+    let entries = std::fs::read_dir(from).context(|| format!("cannot read {}", from.display()))?;
+    for entry in entries {
+        let entry = entry.context(|| format!("cannot read {}", from.display()))?;
+        let (source, target) = (entry.path(), to.join(entry.file_name()));
+        if source.is_dir() {
+            copy(&source, &target)?;
+        } else {
+            std::fs::copy(&source, &target).context(|| format!("cannot write {}", target.display()))?;
+        }
+    }
+    Ok(())
+}
