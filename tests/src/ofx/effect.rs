@@ -50,7 +50,9 @@ pub struct Effect {
     /// Its properties.
     pub set: Box<Set>,
     pub(super) param_set: Box<Set>,
+    #[expect(clippy::vec_box, reason = "plugins hold their addresses as handles")]
     pub(super) params: Mutex<Vec<Box<Param>>>,
+    #[expect(clippy::vec_box, reason = "plugins hold their addresses as handles")]
     pub(super) clips: Mutex<Vec<Box<Clip>>>,
 }
 
