@@ -79,14 +79,11 @@ fn difference(upright: &Image, turned: &Image, degrees: f64) -> f64 {
 #[test]
 fn oriented_filtering_shows_no_artefacts_along_the_axes() {
     let common = [("iterations", "5")];
-    let variants: [(&str, &str, Vec<(&str, &str)>); 3] = [
-        ("full", "bilateral", vec![("kernel", "full"), ("sigma_r", "5")]),
-        ("xy-separable", "bilateral", vec![("kernel", "xy"), ("sigma_r", "5")]),
-        (
-            "oriented",
-            "oriented_bilateral",
-            vec![("sampling", "manual"), ("sigma_rg", "5"), ("sigma_rt", "5")],
-        ),
+    let oriented: &[(&str, &str)] = &[("sampling", "manual"), ("sigma_rg", "5"), ("sigma_rt", "5")];
+    let variants = [
+        ("full", "bilateral", &[("kernel", "full"), ("sigma_r", "5")][..]),
+        ("xy-separable", "bilateral", &[("kernel", "xy"), ("sigma_r", "5")]),
+        ("oriented", "oriented_bilateral", oriented),
     ];
     let angles = [15.0, 30.0, 45.0];
     let mut table = Table::new(

@@ -56,7 +56,10 @@ impl Frame {
                     // "full size" of a proxy has forgotten the scale, others have their own idea of regions.
                     let widths = [picture, bounds].map(|b| f64::from(b[2]) - f64::from(b[0]));
                     let share = widths[1] / widths[0].max(1.0);
-                    if scale == [1.0; 2] && (share < 0.98 || share > 1.02) && share.is_finite() && share > 0.0
+                    if scale == [1.0; 2]
+                        && !(0.98..=1.02).contains(&share)
+                        && share.is_finite()
+                        && share > 0.0
                     {
                         ratio = ratio.map(|r| r * share);
                     }
