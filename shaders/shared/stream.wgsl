@@ -21,7 +21,7 @@ struct Stream {
     position: vec2f,
     // Unit vector of the last step; the next one takes the sign that turns less.
     direction: vec2f,
-    // Cosine of the angle between the last two steps, 0..1.
+    // Cosine of the angle between the last two steps, 0..1 up to rounding.
     turn: f32,
     // True until the first step, whose tangent is already known.
     begins: bool,
@@ -37,22 +37,25 @@ fn stream_begin(p: vec2f, direction: vec2f) -> Stream {
     return Stream(p, direction, 1.0, true);
 }
 
+// The same on the side of the unit vector `direction`.
+fn stream_tangent_along(field: texture_2d<f32>, slot: u32, p: vec2f, direction: vec2f) -> Along {
+    let tensor = sample_linear(field, slot, p);
+    return tensor_tangent_along(tensor.x - tensor.z, tensor.y, direction);
+}
+
 // Moves by `h` pixels: Euler's method (2.176, 2.177) or, with `midpoint`, the second-order
 // Runge-Kutta method (2.182).
 fn stream_step(line: ptr<function, Stream>, field: texture_2d<f32>, slot: u32, h: f32, midpoint: bool) {
     let from_here = (*line).position;
     let last = (*line).direction;
-    var t = last;
+    var next = Along(last, 1.0);
     if !(*line).begins {
-        t = stream_tangent(field, slot, from_here);
+        next = stream_tangent_along(field, slot, from_here, last);
     }
     if midpoint {
-        let k1 = select(t, -t, dot(last, t) < 0.0);
-        t = stream_tangent(field, slot, from_here + (0.5 * h) * k1);
+        next = stream_tangent_along(field, slot, from_here + (0.5 * h) * next.tangent, last);
     }
-    let along = dot(last, t);
-    t = select(t, -t, along < 0.0);
-    *line = Stream(from_here + h * t, t, abs(along), false);
+    *line = Stream(from_here + h * next.tangent, next.tangent, next.cosine, false);
 }
 
 // True when p has left the picture of input `slot`.

@@ -18,6 +18,7 @@ struct Axis {
 }
 
 const TENSOR_SMALLEST: f32 = 1.1754944e-38;
+const TENSOR_LARGEST: f32 = 3.4028235e38;
 
 // 2^-n for 2^n <= v < 2^(n+1), v normal and below 2^127; finite for 0.
 fn tensor_scale(v: f32) -> f32 {
@@ -69,6 +70,25 @@ fn tensor_eigen(t: vec4f) -> Eigen {
 fn tensor_tangent(t: vec4f) -> vec2f {
     let major = tensor_axis((t.x - t.z) * 0.5, t.y).major;
     return vec2f(-major.y, major.x);
+}
+
+struct Along {
+    tangent: vec2f,
+    // Of the angle between the tangent and the direction that it was asked for.
+    cosine: f32,
+}
+
+// The unit minor eigenvector of tensors with E - G = `difference` and F = `f`, of the sign that turns less from
+// the unit vector `p`: `p` projected on it, (I + M / r) p / 2 with M = (-d, -f; -f, d), d = (E - G) / 2 and
+// r^2 = d^2 + f^2. Where there is no direction (r at most 1e-18 or above 1e18), or where it lies straight across, `p`.
+fn tensor_tangent_along(difference: f32, f: f32, p: vec2f) -> Along {
+    let d = 0.5 * difference;
+    let rr = d * d + f * f;
+    let r = sqrt(rr);
+    let q = vec2f((r - d) * p.x - f * p.y, (r + d) * p.y - f * p.x);
+    let size = dot(q, q);
+    let t = q * inverseSqrt(max(size, TENSOR_SMALLEST));
+    return Along(select(p, t, size > 1e-8 * rr && size <= TENSOR_LARGEST), select(1.0, dot(p, t), rr > 1e-36));
 }
 
 // (lambda1 - lambda2) / (lambda1 + lambda2), 0..1 (2.137); zero tensor: 0.

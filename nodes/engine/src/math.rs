@@ -22,6 +22,8 @@ pub trait Elementary: Sized {
     fn ln(self) -> Self;
     /// x^y for positive x; 0 for x <= 0.
     fn powf(self, y: f32) -> Self;
+    /// 1 / sqrt(x) of a positive, normal number; relative error below 1e-6, in half the time of the exact root.
+    fn inverse_sqrt(self) -> Self;
     /// Hyperbolic tangent.
     fn tanh(self) -> Self;
 }
@@ -116,6 +118,20 @@ macro_rules! elementary {
                 let log2 = p.mul_add(x, exponent.to_float::<$float<S>>());
                 let power = (log2 * $float::splat(simd, y)).exp2();
                 self.simd_gt(zero).select(power, zero)
+            }
+
+            #[inline(always)]
+            fn inverse_sqrt(self) -> Self {
+                let simd = self.simd;
+                // Half the exponent, negated, is a first guess; J. Kadlec's step makes the best of it
+                // (error 6.5e-4), one of Newton's squares the error. Unlike the instructions for this, all
+                // processors agree on it.
+                let bits: $int<S> = self.bitcast();
+                let y: $float<S> = ($int::splat(simd, 0x5f1f_fff9) - (bits >> 1)).bitcast();
+                let xy = self * y;
+                let y = (y * 0.703_952_25) * (-xy).mul_add(y, $float::splat(simd, 2.389_244_6));
+                let xy = self * y;
+                (y * 0.5) * (-xy).mul_add(y, $float::splat(simd, 3.0))
             }
 
             #[inline(always)]
@@ -268,6 +284,8 @@ mod tests {
         apply(|x| f64::from(x).tanh(), run(|v| v.tanh()), -9.0, -1e-4, 3e-7);
         apply(|x| f64::from(x).powf(1.0 / 2.4), run(|v| v.powf(1.0 / 2.4)), 1e-5, 9e3, 1e-6);
         apply(|x| f64::from(x).ln(), run(|v| v.ln()), 2.0, 1e6, 3e-7);
+        apply(|x| f64::from(x).sqrt().recip(), run(|v| v.inverse_sqrt()), 1e-3, 7.0, 1e-6);
+        apply(|x| f64::from(x).sqrt().recip(), run(|v| v.inverse_sqrt()), 1e-30, 1e33, 1e-6);
     }
 
     #[test]

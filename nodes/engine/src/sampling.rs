@@ -57,8 +57,10 @@ pub fn sample_linear4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S
 pub struct InnerPlace<S: Simd> {
     column: i32x8<S>,
     row: i32x8<S>,
-    right: f32x8<S>,
-    below: [f32x8<S>; 4],
+    /// Share of the pixels to the right, 0..1.
+    pub right: f32x8<S>,
+    /// Share of the pixels below, 0..1.
+    pub below: f32x8<S>,
 }
 
 impl<S: Simd> InnerPlace<S> {
@@ -66,16 +68,18 @@ impl<S: Simd> InnerPlace<S> {
     #[inline(always)]
     pub fn new(x: f32x8<S>, y: f32x8<S>) -> Self {
         let (x, y) = (x - 0.5, y - 0.5);
-        let (left, top) = (x.floor(), y.floor());
-        Self { column: left.to_int(), row: top.to_int(), right: x - left, below: spread(y - top) }
+        // Inner places are positive, where cutting off the fraction is rounding down, and faster.
+        let (column, row) = (x.to_int::<i32x8<S>>(), y.to_int::<i32x8<S>>());
+        let (left, top) = (column.to_float::<f32x8<S>>(), row.to_float::<f32x8<S>>());
+        Self { column, row, right: x - left, below: y - top }
     }
 
-    /// Where the pixels begin in the data of `view`.
+    /// Where the pixels above and to the left begin in the data of `view`.
     #[inline(always)]
-    fn offsets(&self, view: &View<'_>) -> [i32; 8] {
-        let held = view.window();
-        let (row, column) = (self.row - held.y0, self.column - held.x0);
-        (row * view.stride() as i32 + column * view.channels() as i32).to_array()
+    pub fn offsets(&self, view: &View<'_>) -> [i32; 8] {
+        let (held, stride, channels) = (view.window(), view.stride() as i32, view.channels() as i32);
+        let first = held.y0 * stride + held.x0 * channels;
+        (self.row * stride + self.column * channels - first).to_array()
     }
 }
 
@@ -83,7 +87,7 @@ impl<S: Simd> InnerPlace<S> {
 #[inline(always)]
 pub fn sample_inner4<S: Simd>(simd: S, view: &View<'_>, place: &InnerPlace<S>) -> [f32x8<S>; 4] {
     let (at, stride, fx, fy) =
-        (place.offsets(view), view.stride() as u32 as usize, spread(place.right), place.below);
+        (place.offsets(view), view.stride() as u32 as usize, spread(place.right), spread(place.below));
     // Two slices of one length share the check of the range.
     let (data, mut pixels) = (view.data(), [f32x8::splat(simd, 0.0); 4]);
     let (upper, lower) = (&data[..data.len() - stride], &data[stride..]);
@@ -103,14 +107,14 @@ pub fn sample_inner4<S: Simd>(simd: S, view: &View<'_>, place: &InnerPlace<S>) -
 /// [`sample_linear2`] at an inner place.
 #[inline(always)]
 pub fn sample_inner2<S: Simd>(simd: S, view: &View<'_>, place: &InnerPlace<S>) -> [f32x8<S>; 2] {
-    let (at, stride) = (place.offsets(view), view.stride() as u32 as usize);
+    let (at, stride, below) = (place.offsets(view), view.stride() as u32 as usize, spread(place.below));
     let (data, mut pixels) = (view.data(), [f32x8::splat(simd, 0.0); 4]);
     let (upper, lower) = (&data[..data.len() - stride], &data[stride..]);
     for i in 0..4 {
         let (low, high) = (at[i] as u32 as usize, at[i + 4] as u32 as usize);
         let a = load_pixels(simd, &upper[low..low + 4], &upper[high..high + 4]);
         let b = load_pixels(simd, &lower[low..low + 4], &lower[high..high + 4]);
-        pixels[i] = (b - a).mul_add(place.below[i], a);
+        pixels[i] = (b - a).mul_add(below[i], a);
     }
     let [l0, l1, r0, r1] = transposed(pixels);
     [(r0 - l0).mul_add(place.right, l0), (r1 - l1).mul_add(place.right, l1)]

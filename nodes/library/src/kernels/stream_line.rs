@@ -8,10 +8,10 @@
 //! Cost: a step samples one tensor (Euler) or two (second order), bilinearly, and finds their axes;
 //! the first step saves one.
 
-use crate::kernels::tensor_algebra::tangent;
-use isophote_engine::View;
+use crate::kernels::tensor_algebra::{tangent, tangent_along};
 use isophote_engine::fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
 use isophote_engine::math::{InnerPlace, sample_inner2, sample_linear2, sample_linear4};
+use isophote_engine::{Rect, View};
 
 /// A tensor field and how its stream lines are stepped.
 ///
@@ -36,7 +36,7 @@ pub struct Stream<S: Simd> {
     pub y: f32x8<S>,
     /// Unit vectors of the last step; the next one takes the sign that turns less.
     pub direction: [f32x8<S>; 2],
-    /// Cosine of the angle between the last two steps, 0..=1.
+    /// Cosine of the angle between the last two steps, 0..=1 up to rounding.
     pub turn: f32x8<S>,
     begins: bool,
 }
@@ -55,23 +55,30 @@ impl<S: Simd> Stream<S> {
         [Self::begin(x, y, [-tx, -ty]), Self::begin(x, y, [tx, ty])]
     }
 
-    /// Half a step of Euler's method along `t` or its opposite.
+    /// Half a step of Euler's method, where the field is `here`.
     #[inline(always)]
-    fn halfway(&self, t: [f32x8<S>; 2], h: f32x8<S>) -> [f32x8<S>; 2] {
-        let [kx, ky] = signed(t, dot(self.direction, t));
+    fn halfway(&self, here: [f32x8<S>; 2], h: f32x8<S>) -> [f32x8<S>; 2] {
+        // The first direction is the tangent already.
+        let [kx, ky] =
+            if self.begins { self.direction } else { tangent_along(here[0], here[1], self.direction).0 };
         let half = h * 0.5;
         [half.mul_add(kx, self.x), half.mul_add(ky, self.y)]
     }
 
-    /// A step of length `h` along `t` or its opposite.
+    /// A step of length `h` along the tangent of the field.
     #[inline(always)]
-    fn follow(&mut self, t: [f32x8<S>; 2], h: f32x8<S>) {
-        let cosine = dot(self.direction, t);
-        let [tx, ty] = signed(t, cosine);
-        self.x = h.mul_add(tx, self.x);
-        self.y = h.mul_add(ty, self.y);
+    fn follow(&mut self, [difference, f]: [f32x8<S>; 2], h: f32x8<S>) {
+        let ([tx, ty], turn) = tangent_along(difference, f, self.direction);
         self.direction = [tx, ty];
-        self.turn = cosine.abs();
+        self.turn = turn;
+        self.straight(h);
+    }
+
+    /// A step of length `h` in the direction of the last one.
+    #[inline(always)]
+    fn straight(&mut self, h: f32x8<S>) {
+        self.x = h.mul_add(self.direction[0], self.x);
+        self.y = h.mul_add(self.direction[1], self.y);
         self.begins = false;
     }
 }
@@ -88,16 +95,33 @@ impl StreamField<'_> {
         tangent(e, f, g)
     }
 
+    /// (E - G, F) at (x, y), which is all that orientation needs.
+    #[inline(always)]
+    fn at<S: Simd>(&self, simd: S, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
+        if self.tensors.channels() == 2 {
+            return sample_linear2(simd, &self.tensors, x, y);
+        }
+        let [e, f, g, _] = sample_linear4(simd, &self.tensors, x, y);
+        [e - g, f]
+    }
+
     /// Moves the `active` lanes by one step.
     #[inline(always)]
     pub fn advance<S: Simd>(&self, simd: S, line: &mut Stream<S>, active: mask32x8<S>) {
         let h = self.steps(simd, active);
-        let mut t = if line.begins { line.direction } else { self.tangent(simd, line.x, line.y) };
-        if self.midpoint {
-            let [x, y] = line.halfway(t, h);
-            t = self.tangent(simd, x, y);
+        let begins = line.begins;
+        let mut field = [h; 2];
+        if !begins {
+            field = self.at(simd, line.x, line.y);
         }
-        line.follow(t, h);
+        if self.midpoint {
+            let [x, y] = line.halfway(field, h);
+            line.follow(self.at(simd, x, y), h);
+        } else if begins {
+            line.straight(h);
+        } else {
+            line.follow(field, h);
+        }
     }
 
     /// Moves both sides of eight lines by one step.
@@ -107,65 +131,85 @@ impl StreamField<'_> {
     #[inline(always)]
     pub fn advance_both<S: Simd>(&self, simd: S, lines: &mut [Stream<S>; 2], active: [mask32x8<S>; 2]) {
         let h = [self.steps(simd, active[0]), self.steps(simd, active[1])];
-        let mut t = [lines[0].direction, lines[1].direction];
-        if !lines[0].begins {
-            t[0] = self.tangent(simd, lines[0].x, lines[0].y);
-            t[1] = self.tangent(simd, lines[1].x, lines[1].y);
+        let begins = lines[0].begins;
+        let mut field = [h; 2];
+        if !begins {
+            field = [self.at(simd, lines[0].x, lines[0].y), self.at(simd, lines[1].x, lines[1].y)];
         }
         if self.midpoint {
-            let [x0, y0] = lines[0].halfway(t[0], h[0]);
-            let [x1, y1] = lines[1].halfway(t[1], h[1]);
-            t = [self.tangent(simd, x0, y0), self.tangent(simd, x1, y1)];
+            let [x0, y0] = lines[0].halfway(field[0], h[0]);
+            let [x1, y1] = lines[1].halfway(field[1], h[1]);
+            field = [self.at(simd, x0, y0), self.at(simd, x1, y1)];
+        } else if begins {
+            lines[0].straight(h[0]);
+            lines[1].straight(h[1]);
+            return;
         }
-        lines[0].follow(t[0], h[0]);
-        lines[1].follow(t[1], h[1]);
+        lines[0].follow(field[0], h[0]);
+        lines[1].follow(field[1], h[1]);
     }
 
-    /// Moves all lanes of `N` times eight lines by one step, from places where the tangents are `t`.
+    /// Moves all lanes of `N` times eight lines by one step, from places where the field is `here`; what
+    /// is there does not matter for the first step.
     ///
     /// The lines are inner ones, which stay off the picture's edges, and the field is (E - G, F). The
     /// arithmetic is that of [`StreamField::advance_both`] without what the edges ask for; whoever takes
-    /// samples at the new positions asks for the tangents there with [`StreamField::tangent_at`] as well,
+    /// samples at the new positions asks for the field there with [`StreamField::at_inner`] as well,
     /// so that both share the place and the wait.
     #[inline(always)]
     pub fn advance_inner<S: Simd, const N: usize>(
         &self,
         simd: S,
         lines: &mut [Stream<S>; N],
-        mut t: [[f32x8<S>; 2]; N],
+        here: &[[f32x8<S>; 2]; N],
     ) {
         let h = f32x8::splat(simd, self.step);
+        let begins = lines[0].begins;
         if self.midpoint {
-            let mut field = t;
+            // In stages: what waits in one line is filled by the same of the others.
+            let mut middle = *here;
             for i in 0..N {
-                let [x, y] = lines[i].halfway(t[i], h);
-                field[i] = sample_inner2(simd, &self.tensors, &InnerPlace::new(x, y));
+                middle[i] = lines[i].halfway(here[i], h);
             }
             for i in 0..N {
-                t[i] = tangent(field[i][0], field[i][1], f32x8::splat(simd, 0.0));
+                middle[i] = self.at_inner(simd, &InnerPlace::new(middle[i][0], middle[i][1]));
             }
-        }
-        for i in 0..N {
-            lines[i].follow(t[i], h);
+            for i in 0..N {
+                lines[i].follow(middle[i], h);
+            }
+        } else {
+            for i in 0..N {
+                if begins {
+                    lines[i].straight(h);
+                } else {
+                    lines[i].follow(here[i], h);
+                }
+            }
         }
     }
 
-    /// Unit minor eigenvectors of (E - G, F) at an inner place, of either sign.
+    /// (E - G, F) at an inner place of a field of these two.
     #[inline(always)]
-    pub fn tangent_at<S: Simd>(&self, simd: S, place: &InnerPlace<S>) -> [f32x8<S>; 2] {
-        let [difference, f] = sample_inner2(simd, &self.tensors, place);
-        tangent(difference, f, f32x8::splat(simd, 0.0))
+    pub fn at_inner<S: Simd>(&self, simd: S, place: &InnerPlace<S>) -> [f32x8<S>; 2] {
+        sample_inner2(simd, &self.tensors, place)
     }
 
     /// True when lines of length `radius` through `len` pixels from (x, y) on stay off the edges.
     #[inline(always)]
     pub fn is_inner(&self, x: i32, y: i32, len: i32, radius: i32) -> bool {
+        let inner = self.inner(radius);
+        x >= inner.x0 && y >= inner.y0 && x + len <= inner.x1 && y < inner.y1
+    }
+
+    /// The pixels through which lines of length `radius` stay off the edges; empty (x1 below x0) when there
+    /// are none, or when the field holds more than (E - G, F).
+    #[inline(always)]
+    pub fn inner(&self, radius: i32) -> Rect {
         let ([w, h], margin) = (self.tensors.full(), radius + 2);
-        self.tensors.channels() == 2
-            && x >= margin
-            && y >= margin
-            && x + len - 1 + margin < w
-            && y + margin < h
+        if self.tensors.channels() != 2 {
+            return Rect { x0: 0, y0: 0, x1: 0, y1: 0 };
+        }
+        Rect { x0: margin, y0: margin, x1: w - margin, y1: h - margin }
     }
 
     #[inline(always)]
@@ -187,18 +231,6 @@ impl StreamField<'_> {
         let zero = f32x8::splat(simd, 0.0);
         x.simd_ge(zero) & x.simd_lt(w) & y.simd_ge(zero) & y.simd_lt(h)
     }
-}
-
-#[inline(always)]
-fn dot<S: Simd>(a: [f32x8<S>; 2], b: [f32x8<S>; 2]) -> f32x8<S> {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-/// The tangent or its opposite, whichever has a positive scalar product with the last one.
-#[inline(always)]
-fn signed<S: Simd>([x, y]: [f32x8<S>; 2], along: f32x8<S>) -> [f32x8<S>; 2] {
-    let back = along.simd_lt(f32x8::splat(along.simd, 0.0));
-    [back.select(-x, x), back.select(-y, y)]
 }
 
 /// Centres of the eight pixels from column `x` of row `y` on. Columns past `last`, the last one to be

@@ -6,6 +6,7 @@
 //! Cost: about 20 operations, two of them square roots and one a division.
 
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*, u32x8};
+use isophote_engine::math::Elementary;
 
 /// Eigenvalues and the major eigenvector of eight tensors.
 #[derive(Clone, Copy)]
@@ -70,6 +71,38 @@ pub fn eigen<S: Simd>(e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> Eigen<S> {
 pub fn tangent<S: Simd>(e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> [f32x8<S>; 2] {
     let (_, [x, y]) = axis((e - g) * 0.5, f);
     [-y, x]
+}
+
+/// Squared differences of eigenvalues below this have no direction.
+const FLAT: f32 = 1e-36;
+
+/// The unit minor eigenvector of tensors with E - G = `difference` and F = `f`, of the sign that turns less
+/// from the unit vector `p`, and the cosine of that turn.
+///
+/// That is `p` projected on the eigenvector, (I + M / r) p / 2 with M = (-d, -f; -f, d), d = (E - G) / 2
+/// and r^2 = d^2 + f^2, and made a unit vector: no sign to choose, and little that waits for each other.
+/// Where there is no direction (r at most 1e-18, or above 1e18), `p` goes on straight; where the
+/// eigenvector lies straight across, so that its sign cannot be told, it goes on as well, with a cosine
+/// of about 0.
+#[inline(always)]
+pub fn tangent_along<S: Simd>(
+    difference: f32x8<S>,
+    f: f32x8<S>,
+    [px, py]: [f32x8<S>; 2],
+) -> ([f32x8<S>; 2], f32x8<S>) {
+    let d = difference * 0.5;
+    let rr = d.mul_add(d, f * f);
+    let r = rr.sqrt();
+    let x = (r - d).mul_add(px, -(f * py));
+    let y = (r + d).mul_add(py, -(f * px));
+    let size = x.mul_add(x, y * y);
+    let inverse = size.max(f32x8::splat(d.simd, f32::MIN_POSITIVE)).inverse_sqrt();
+    let (x, y) = (x * inverse, y * inverse);
+    let cosine = px.mul_add(x, py * y);
+    // False for what has overflowed too.
+    let told = size.simd_gt(rr * 1e-8) & size.simd_le(f32x8::splat(d.simd, f32::MAX));
+    let directed = rr.simd_gt(f32x8::splat(d.simd, FLAT));
+    ([told.select(x, px), told.select(y, py)], directed.select(cosine, f32x8::splat(d.simd, 1.0)))
 }
 
 /// (lambda1 - lambda2) / (lambda1 + lambda2), 0..=1 (2.137); zero tensor: 0.
@@ -227,5 +260,37 @@ mod tests {
                 }
             });
         }
+    }
+
+    #[test]
+    fn the_tangent_along_is_the_tangent_on_that_side() {
+        let direction = |angle: f32| [angle.cos(), angle.sin()];
+        dispatch!(Level::new(), simd => {
+            for (i, [e, f, g]) in tensors().into_iter().enumerate() {
+                let [px, py] = direction(i as f32);
+                let lanes = |v: f32| f32x8::splat(simd, v);
+                let ([x, y], cosine) = tangent_along(lanes(e - g), lanes(f), [lanes(px), lanes(py)]);
+                let ([x, y], cosine) = ([x[0], y[0]], cosine[0]);
+                let radius = ((e - g) * 0.5).hypot(f);
+                if radius < 1e-17 {
+                    continue;
+                }
+                if radius > 1e17 {
+                    assert!(x.is_finite() && y.is_finite());
+                    continue;
+                }
+                let [tx, ty] = scalar::tangent(e, f, g);
+                let along = tx * px + ty * py;
+                // Near the normal the sign hangs on the last bits.
+                if along.abs() > 1e-2 {
+                    let (tx, ty) = (tx * along.signum(), ty * along.signum());
+                    assert!((x - tx).abs() + (y - ty).abs() < 1e-4, "{:?} for {:?}", [x, y], [tx, ty]);
+                    assert!((cosine - along.abs()).abs() < 1e-4);
+                }
+            }
+            let (none, p) = (f32x8::splat(simd, 0.0), direction(1.0));
+            let ([x, y], cosine) = tangent_along(none, none, p.map(|v| f32x8::splat(simd, v)));
+            assert_eq!([x[0], y[0], cosine[0]], [p[0], p[1], 1.0]);
+        });
     }
 }

@@ -126,14 +126,14 @@ fn inner<S: Simd>(
     let ([a, b], [c, d]) = (begun(simd, field, &blocks[0]), begun(simd, field, &blocks[1]));
     let mut lines = [a, b, c, d];
     let mut sums = [blocks[0].read2(simd, response), blocks[1].read2(simd, response)];
-    let mut t = [a.direction, b.direction, c.direction, d.direction];
+    let mut here = [a.direction, b.direction, c.direction, d.direction];
     for (u, weight) in weights.iter().enumerate() {
-        field.advance_inner(simd, &mut lines, t);
+        field.advance_inner(simd, &mut lines, &here);
         let weight = f32x8::splat(simd, *weight);
         for i in 0..4 {
             let place = InnerPlace::new(lines[i].x, lines[i].y);
             if u + 1 < weights.len() {
-                t[i] = field.tangent_at(simd, &place);
+                here[i] = field.at_inner(simd, &place);
             }
             let [v, alpha] = sample_inner2(simd, response, &place);
             let [sum, norm] = sums[i / 2];
