@@ -44,9 +44,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let tensor = fetch(tensors, 1u, p);
     let t = tensor_tangent(tensor);
     let stretch = 1.0 + params.elongation * tensor_anisotropy(tensor);
-    // Rows of S R_-phi (5.32) for a disc of radius 1.
-    let along = t / (params.radius * stretch);
-    let across = vec2f(-t.y, t.x) * (stretch / params.radius);
+    let ellipse = sector_ellipse(t, params.radius, stretch);
     let eight = params.sectors == 8u;
     let mask = select(vec4f(1.0, 0.0, 1.0, 0.0), vec4f(1.0), eight);
 
@@ -58,22 +56,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var full = centre;
     sector_add(&sum, 2.0 * centre, vec3f(0.0), origin.a);
 
-    // The ellipse |v|^2 = a i^2 + 2 b i j + c j^2 <= 1, a c - b^2 = `area`, row by row.
-    let a = along.x * along.x + across.x * across.x;
-    let b = along.x * along.y + across.x * across.y;
-    let area = 1.0 / (params.radius * params.radius * params.radius * params.radius);
-    let rows = i32(sqrt(SECTOR_INSIDE * a / area));
-    for (var j = 0; j <= rows; j++) {
-        let y = f32(j);
-        let half = sqrt(max(SECTOR_INSIDE * a - area * y * y, 0.0)) / a;
-        var first = i32(ceil(-b * y / a - half - 1e-3));
-        let last = i32(floor(-b * y / a + half + 1e-3));
-        if j == 0 {
-            first = 1;
-        }
-        for (var i = first; i <= last; i++) {
-            let d = vec2f(f32(i), y);
-            let v = vec2f(dot(along, d), dot(across, d));
+    for (var j = 0; j <= ellipse.rows; j++) {
+        let columns = sector_columns(ellipse, j);
+        for (var i = columns.x; i <= columns.y; i++) {
+            let v = sector_point(ellipse, vec2i(i, j));
             let distance2 = dot(v, v);
             if distance2 > SECTOR_INSIDE {
                 continue;

@@ -2,11 +2,9 @@
 // with fixed weighting functions, here taken pixel by pixel. The CPU twin may take them by the fast
 // Fourier transform, which is another way to the same sums.
 //
-// Two pixels opposite each other share one evaluation of the weights.
-//
 // Cost: pi radius^2 pixels, each one load and half of eight table lookups and 80 multiply-adds.
 #import grid
-#import sectors
+#import sampled_sectors
 
 struct Params {
     // 1 / radius, per pixel.
@@ -30,22 +28,6 @@ struct Params {
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
 
-// Texel `at` and its right neighbour, interpolated.
-fn texels(at: u32, f: f32) -> vec4f {
-    return mix(params.weights[at], params.weights[at + 1u], f);
-}
-
-// The four weights at a point of the unit disc, interpolated. The lower half mirrors the upper one, with
-// the second and the fourth sector exchanged.
-fn table(v: vec2f) -> vec4f {
-    let p = vec2f(max((v.x + 1.0) * 21.0, 0.0), abs(v.y) * 21.0);
-    let corner = min(floor(p), vec2f(41.0, 20.0));
-    let f = min(p - corner, vec2f(1.0));
-    let at = u32(corner.y) * 43u + u32(corner.x);
-    let w = mix(texels(at, f.x), texels(at + 43u, f.x), f.y);
-    return select(w, w.xwzy, v.y < 0.0);
-}
-
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
@@ -56,11 +38,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let eight = params.sectors == 8u;
     // Four sectors a quarter turn apart, and the four between them.
     var even = SectorSums();
-    var odd = SectorSums();
-    var even_full = table(vec2f(0.0));
-    var odd_full = even_full;
+    var even_full = sector_table(vec2f(0.0));
     sector_add(&even, even_full, vec3f(0.0), origin.a);
-    sector_add(&odd, odd_full, vec3f(0.0), origin.a);
+    var odd = even;
+    var odd_full = even_full;
     for (var j = 0; j <= params.reach; j++) {
         for (var i = select(-params.reach, 1, j == 0); i <= params.reach; i++) {
             let v = vec2f(vec2i(i, j)) * params.scale;
@@ -71,15 +52,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             let p1 = fetch(source, 0u, p - vec2i(i, j));
             let c0 = p0.rgb - origin.rgb;
             let c1 = p1.rgb - origin.rgb;
-            let w = table(v);
-            sector_add(&even, w, c0, p0.a);
-            sector_add(&even, w.zwxy, c1, p1.a);
-            even_full += w + w.zwxy;
+            sampled_add(&even, &even_full, v, c0, p0.a, c1, p1.a);
             if eight {
-                let t = table(vec2f(v.x + v.y, v.y - v.x) * 0.70710678);
-                sector_add(&odd, t, c0, p0.a);
-                sector_add(&odd, t.zwxy, c1, p1.a);
-                odd_full += t + t.zwxy;
+                sampled_add(&odd, &odd_full, sector_between(v), c0, p0.a, c1, p1.a);
             }
         }
     }

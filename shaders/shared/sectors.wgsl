@@ -85,3 +85,42 @@ fn sector_response(s: SectorMeans, least: f32, threshold: f32, q: f32) -> vec4f 
 fn sector_deviations(s: SectorMeans, least: f32) -> vec4f {
     return max(sqrt(s.variance), vec4f(least));
 }
+
+// The ellipse |v|^2 = a i^2 + 2 b i j + c j^2 <= 1 of the pixels (i, j) around a pixel, for v the point of the
+// unit disc that (i, j) is mapped to (5.32); a c - b^2 = `area`.
+struct SectorEllipse {
+    // Rows of S R_-phi for a disc of radius 1.
+    along: vec2f,
+    across: vec2f,
+    a: f32,
+    b: f32,
+    area: f32,
+    // Rows below the centre.
+    rows: i32,
+}
+
+// The ellipse along the unit tangent `t` of a disc of `radius` pixels, `stretch` times as long (5.22).
+fn sector_ellipse(t: vec2f, radius: f32, stretch: f32) -> SectorEllipse {
+    let along = t / (radius * stretch);
+    let across = vec2f(-t.y, t.x) * (stretch / radius);
+    let a = along.x * along.x + across.x * across.x;
+    let b = along.x * along.y + across.x * across.y;
+    let area = 1.0 / (radius * radius * radius * radius);
+    return SectorEllipse(along, across, a, b, area, i32(sqrt(SECTOR_INSIDE * a / area)));
+}
+
+// The first and the last column of row j >= 0; in row 0 those to the right of the centre, since every pixel
+// stands for the one opposite it too.
+fn sector_columns(ellipse: SectorEllipse, j: i32) -> vec2i {
+    let y = f32(j);
+    let half = sqrt(max(SECTOR_INSIDE * ellipse.a - ellipse.area * y * y, 0.0)) / ellipse.a;
+    let middle = -ellipse.b * y / ellipse.a;
+    let columns = vec2i(i32(ceil(middle - half - 1e-3)), i32(floor(middle + half + 1e-3)));
+    return select(columns, vec2i(1, columns.y), j == 0);
+}
+
+// The point of the unit disc that pixel (i, j) is mapped to.
+fn sector_point(ellipse: SectorEllipse, offset: vec2i) -> vec2f {
+    let d = vec2f(offset);
+    return vec2f(dot(ellipse.along, d), dot(ellipse.across, d));
+}

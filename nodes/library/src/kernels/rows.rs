@@ -45,6 +45,12 @@ impl Rows {
         &self.data[start..start + self.len]
     }
 
+    /// The four channels of row `y`, from `radius` pixels before the strip.
+    #[inline(always)]
+    pub fn channels(&self, y: i32) -> [&[f32]; 4] {
+        [self.row(y, 0), self.row(y, 1), self.row(y, 2), self.row(y, 3)]
+    }
+
     /// Takes in row `y` of a four-channel image, which replaces the oldest.
     #[inline(always)]
     pub fn load4<S: Simd>(
@@ -86,6 +92,16 @@ impl Rows {
             map(f32x8::from_slice(simd, &padded)).store_slice(target);
         }
     }
+}
+
+/// Eight pixels of the four channels of a row, from index `at` on.
+#[inline(always)]
+pub fn pixels<S: Simd>(simd: S, channels: &[&[f32]; 4], at: usize) -> [f32x8<S>; 4] {
+    let mut values = [f32x8::splat(simd, 0.0); 4];
+    for c in 0..4 {
+        values[c] = f32x8::from_slice(simd, &channels[c][at..at + 8]);
+    }
+    values
 }
 
 /// The strips of columns `x0..x1`.

@@ -9,7 +9,7 @@
 //! Cost: 100 operations; 140 with the constraint. Memory takes longer than these: rows are read once
 //! and gradients kept in rings.
 
-use crate::kernels::rows::{Rows, strips};
+use crate::kernels::rows::{Rows, pixels, strips};
 use crate::kernels::support::{get_pixels4, put_pixels4};
 use crate::kernels::tensor_algebra::tangent;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
@@ -119,16 +119,16 @@ struct Around<'a> {
 impl<'a> Around<'a> {
     #[inline(always)]
     fn new(rows: &'a Rows, y: i32) -> Self {
-        Self { above: channels(rows, y - 1), centre: channels(rows, y), below: channels(rows, y + 1) }
+        Self { above: rows.channels(y - 1), centre: rows.channels(y), below: rows.channels(y + 1) }
     }
 
     /// Central differences of the colour times its squared coverage.
     #[inline(always)]
     fn gradient<S: Simd>(&self, simd: S, at: usize) -> [[f32x8<S>; 3]; 2] {
         let zero = f32x8::splat(simd, 0.0);
-        let centre = load(simd, &self.centre, at);
-        let (left, right) = (load(simd, &self.centre, at - 1), load(simd, &self.centre, at + 1));
-        let (above, below) = (load(simd, &self.above, at), load(simd, &self.below, at));
+        let centre = pixels(simd, &self.centre, at);
+        let (left, right) = (pixels(simd, &self.centre, at - 1), pixels(simd, &self.centre, at + 1));
+        let (above, below) = (pixels(simd, &self.above, at), pixels(simd, &self.below, at));
         let (mut x, mut y) = ([zero; 3], [zero; 3]);
         let (across, down) = (right[3] - left[3], below[3] - above[3]);
         for c in 0..3 {
@@ -137,22 +137,6 @@ impl<'a> Around<'a> {
         }
         [x, y]
     }
-}
-
-/// Row `y`, channel by channel.
-#[inline(always)]
-fn channels(rows: &Rows, y: i32) -> [&[f32]; 4] {
-    [rows.row(y, 0), rows.row(y, 1), rows.row(y, 2), rows.row(y, 3)]
-}
-
-#[inline(always)]
-fn load<S: Simd>(simd: S, rows: &[&[f32]; 4], at: usize) -> [f32x8<S>; 4] {
-    [
-        f32x8::from_slice(simd, &rows[0][at..at + 8]),
-        f32x8::from_slice(simd, &rows[1][at..at + 8]),
-        f32x8::from_slice(simd, &rows[2][at..at + 8]),
-        f32x8::from_slice(simd, &rows[3][at..at + 8]),
-    ]
 }
 
 #[inline(always)]
@@ -234,10 +218,10 @@ fn block<S: Simd>(
     let down = double / (above * below);
     let shares = [right * across, left * across, below * down, above * down];
     let neighbours = [
-        load(simd, &around.centre, at - 1),
-        load(simd, &around.centre, at + 1),
-        load(simd, &around.above, at),
-        load(simd, &around.below, at),
+        pixels(simd, &around.centre, at - 1),
+        pixels(simd, &around.centre, at + 1),
+        pixels(simd, &around.above, at),
+        pixels(simd, &around.below, at),
     ];
     let zero = f32x8::splat(simd, 0.0);
     let mut sum = [zero; 4];

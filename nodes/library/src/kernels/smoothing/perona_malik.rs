@@ -7,7 +7,7 @@
 //!
 //! Cost: 60 operations (exponential: 100); memory takes longer.
 
-use crate::kernels::rows::{Rows, strips};
+use crate::kernels::rows::{Rows, pixels, strips};
 use crate::kernels::support::put_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
@@ -87,37 +87,21 @@ fn diffused<S: Simd, const EXPONENTIAL: bool>(
         }
         for y in window.y0..window.y1 {
             rows.load4(simd, view, y + 1, #[inline(always)] |v| v);
-            let (above, centre, below) = (channels(&rows, y - 1), channels(&rows, y), channels(&rows, y + 1));
+            let (above, centre, below) = (rows.channels(y - 1), rows.channels(y), rows.channels(y + 1));
             let target = &mut band.row_mut(0, y)[4 * (x0 - window.x0) as usize..4 * (x1 - window.x0) as usize];
             for (i, target) in target.chunks_mut(32).enumerate() {
                 let at = 8 * i + 1;
-                let origin = load(simd, &centre, at);
+                let origin = pixels(simd, &centre, at);
                 let neighbours = [
-                    load(simd, &centre, at - 1),
-                    load(simd, &centre, at + 1),
-                    load(simd, &above, at),
-                    load(simd, &below, at),
+                    pixels(simd, &centre, at - 1),
+                    pixels(simd, &centre, at + 1),
+                    pixels(simd, &above, at),
+                    pixels(simd, &below, at),
                 ];
                 put_pixels4(block::<S, EXPONENTIAL>(simd, &origin, &neighbours, params), target);
             }
         }
     }
-}
-
-/// Row `y`, channel by channel.
-#[inline(always)]
-fn channels(rows: &Rows, y: i32) -> [&[f32]; 4] {
-    [rows.row(y, 0), rows.row(y, 1), rows.row(y, 2), rows.row(y, 3)]
-}
-
-#[inline(always)]
-fn load<S: Simd>(simd: S, rows: &[&[f32]; 4], at: usize) -> [f32x8<S>; 4] {
-    [
-        f32x8::from_slice(simd, &rows[0][at..at + 8]),
-        f32x8::from_slice(simd, &rows[1][at..at + 8]),
-        f32x8::from_slice(simd, &rows[2][at..at + 8]),
-        f32x8::from_slice(simd, &rows[3][at..at + 8]),
-    ]
 }
 
 #[inline(always)]

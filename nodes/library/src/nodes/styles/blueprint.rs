@@ -2,10 +2,9 @@
 
 use crate::kernels::colour::blueprint_paper::{Sheet, draw};
 use crate::kernels::colour::{lightness, rgb_to_lab};
-use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
-use crate::look::{self, ADVANCED, LOOK, Lines};
+use crate::look::{self, ADVANCED, LOOK};
 use crate::nodes::lines::difference_of_gaussians as dog;
-use crate::nodes::lines::flow_dog::{self, FlowDog};
+use crate::nodes::lines::flow_dog;
 use crate::nodes::styles::cartoon::{self, Abstraction};
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
@@ -76,17 +75,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let n_e = scope.int("n_e");
     let lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
     let smooth = abstraction.apply(scope.plan, lab, tensor, n_e);
-    let lines = Lines::of(scope);
-    let flow = FlowDog {
-        sigma_e: lines.sigma_e,
-        k: scope.float("k"),
-        sigma_m: lines.sigma_m,
-        xdog: lines.xdog(),
-        iterations: scope.int("line_iterations"),
-        stepping: Stepping::Midpoint,
-        two_dimensional: false,
-        guide_weight,
-    };
+    let flow = cartoon::flow(scope, guide_weight);
     let lightness = lightness::of_lab(scope.plan, smooth);
     let edges = flow.edges(scope.plan, lightness, tensor, &guides);
     let sheet = Sheet {

@@ -175,6 +175,21 @@ impl Abstraction {
     }
 }
 
+/// The lines of a style with the parameters of this one.
+pub(crate) fn flow(scope: &Scope<'_>, guide_weight: f32) -> FlowDog {
+    let lines = Lines::of(scope);
+    FlowDog {
+        sigma_e: lines.sigma_e,
+        k: scope.float("k"),
+        sigma_m: lines.sigma_m,
+        xdog: lines.xdog(),
+        iterations: scope.int("line_iterations"),
+        stepping: Stepping::Midpoint,
+        two_dimensional: false,
+        guide_weight,
+    }
+}
+
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = scope.required("color");
     let guide_weight = scope.float("guide_weight");
@@ -185,17 +200,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
 
     let lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
     let for_lines = abstraction.apply(scope.plan, lab, tensor, n_e);
-    let lines = Lines::of(scope);
-    let flow = FlowDog {
-        sigma_e: lines.sigma_e,
-        k: scope.float("k"),
-        sigma_m: lines.sigma_m,
-        xdog: lines.xdog(),
-        iterations: scope.int("line_iterations"),
-        stepping: Stepping::Midpoint,
-        two_dimensional: false,
-        guide_weight,
-    };
+    let flow = flow(scope, guide_weight);
     let lightness = lightness::of_lab(scope.plan, for_lines);
     let edges = flow.edges(scope.plan, lightness, tensor, &guides);
 
