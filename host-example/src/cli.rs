@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::apply::GuideChoice;
 use crate::stylize::style::Setting;
 
 /// Renders scenes and stylizes what it renders.
@@ -119,9 +120,26 @@ pub struct ApplyArgs {
     /// Where the work is done; auto takes a graphics card if there is one, otherwise the CPU.
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub backend: Backend,
-    /// What the numbers of the picture mean; without it sRGB for PNG and JPEG, linear for EXR.
+    /// What the numbers of the picture mean, and the result's; without it sRGB for PNG and JPEG, what its
+    /// chromaticities say or else linear for EXR.
     #[arg(long, value_enum)]
     pub space: Option<Space>,
+    /// The layer of an EXR file that is read and replaced; without it the main one.
+    #[arg(long, value_name = "LAYER")]
+    pub layer: Option<String>,
+    /// The view of an EXR file with several; without it all views are filtered, each by itself.
+    #[arg(long, value_name = "VIEW")]
+    pub view: Option<String>,
+    /// The channel of an EXR file that is the layer's alpha, or none; without it the layer's A.
+    #[arg(long, value_name = "CHANNEL")]
+    pub alpha: Option<String>,
+    /// Adds the result to the EXR file as a new layer, and leaves the one that was read as it was.
+    #[arg(long, value_name = "NEWLAYER")]
+    pub into: Option<String>,
+    /// The layer of an EXR file that is a guide: normal=LAYER, depth=LAYER or object_id=LAYER; =none for
+    /// no such guide. Without it guides are found by names such as N, normal, Z, depth, P and id. May be repeated.
+    #[arg(long, value_name = "GUIDE=LAYER")]
+    pub guide: Vec<GuideChoice>,
     /// Threads on the CPU; 0 for one per core.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1024))]
     pub threads: u32,
@@ -144,9 +162,16 @@ pub enum Space {
     /// Gamma-encoded sRGB.
     Srgb,
     /// Linear light, Rec.709 primaries.
+    #[value(alias = "rec709")]
     Linear,
     /// ACEScg: linear light, AP1 primaries.
     Acescg,
+    /// Linear light, P3 primaries, white D65.
+    #[value(alias = "linear-p3")]
+    P3,
+    /// Linear light, Rec.2020 primaries.
+    #[value(alias = "linear-rec2020")]
+    Rec2020,
 }
 
 /// Options of `nodes`.

@@ -1,16 +1,13 @@
 //! From the numbers of one family of files to those of the other.
 
+use super::primaries::{AP1, Change, Chromaticities, P3, REC709, REC2020};
 use super::read::Family;
 use crate::cli::Space;
 use crate::output::srgb_encode;
 use crate::pixels::{Pixels, Samples};
 
-/// ACEScg (AP1, white of ACES) to linear Rec.709 (white D65), adapted by the Bradford method.
-const REC709_FROM_AP1: [[f32; 3]; 3] = [
-    [1.705_050_99, -0.621_792_12, -0.083_258_87],
-    [-0.130_256_42, 1.140_804_74, -0.010_548_32],
-    [-0.024_003_36, -0.128_968_98, 1.152_972_33],
-];
+/// What an infinity becomes.
+const LARGEST_HALF: f32 = 65504.0;
 
 /// Turns colours that a graph gave for a picture of `from` in `space` into what a file of `to` holds. PNG and
 /// JPEG become sRGB from whatever EXR held; EXR becomes light of the same primaries.
@@ -19,6 +16,7 @@ pub fn between(pixels: Pixels, from: Family, space: Space, to: Family) -> Pixels
         return pixels;
     }
     let (width, height, channels) = (pixels.width(), pixels.height(), pixels.channels());
+    let change = primaries(space).and_then(|from| Change::new(from, REC709));
     let mut numbers = pixels.to_f32();
     for pixel in numbers.chunks_exact_mut(channels as usize) {
         let (color, alpha) = match pixel {
@@ -33,8 +31,8 @@ pub fn between(pixels: Pixels, from: Family, space: Space, to: Family) -> Pixels
                 if alpha > 0.0 {
                     rgb = rgb.map(|v| v / alpha);
                 }
-                if space == Space::Acescg {
-                    rgb = REC709_FROM_AP1.map(|row| row[0] * rgb[0] + row[1] * rgb[1] + row[2] * rgb[2]);
+                if let Some(change) = &change {
+                    rgb = change.apply(rgb);
                 }
                 if space != Space::Srgb {
                     rgb = rgb.map(srgb_encode);
@@ -52,6 +50,35 @@ pub fn between(pixels: Pixels, from: Family, space: Space, to: Family) -> Pixels
     let samples = Samples::F32(numbers);
     // The number of samples is that of `pixels`.
     Pixels::new(width, height, channels, samples).unwrap_or(pixels)
+}
+
+/// The primaries of a space that are not Rec.709's.
+pub fn primaries(space: Space) -> Option<Chromaticities> {
+    match space {
+        Space::Srgb | Space::Linear => None,
+        Space::Acescg => Some(AP1),
+        Space::P3 => Some(P3),
+        Space::Rec2020 => Some(REC2020),
+    }
+}
+
+/// Colours of other primaries, premultiplied or not; what is no number or infinite is mended first, as the
+/// library would, and counted, lest it spread to the other channels.
+pub fn changed(pixels: &Pixels, change: &Change) -> (Pixels, u64) {
+    let mut numbers = pixels.to_f32();
+    let mut mended = 0;
+    for pixel in numbers.chunks_exact_mut(pixels.channels() as usize) {
+        if let Some(rgb) = pixel.first_chunk_mut::<3>() {
+            for value in rgb.iter_mut().filter(|v| !v.is_finite()) {
+                *value = if value.is_nan() { 0.0 } else { LARGEST_HALF.copysign(*value) };
+                mended += 1;
+            }
+            *rgb = change.apply(*rgb);
+        }
+    }
+    // As many numbers as there were.
+    let changed = Pixels::new(pixels.width(), pixels.height(), pixels.channels(), Samples::F32(numbers));
+    (changed.unwrap_or_else(|| pixels.clone()), mended)
 }
 
 /// Linear light of a gamma-encoded value (IEC 61966-2-1).

@@ -6,11 +6,13 @@ use std::path::Path;
 
 use image::{DynamicImage, ImageDecoder};
 
-use super::exr_file::{self, Layers};
+use super::exr::{ExrFile, Picture, Selection};
 use super::jpeg;
 use crate::error::{Error, Result};
 use crate::pixels::{Pixels, Samples};
 
+/// First bytes of an EXR file.
+const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// Most pixels of a picture.
 const MOST_PIXELS: u64 = 1 << 28;
 
@@ -26,23 +28,29 @@ pub enum Family {
 /// A picture with what is to be kept beside its pixels.
 #[derive(Debug)]
 pub struct Source {
-    /// Grey, RGB or RGBA.
-    pub pixels: Pixels,
+    /// What is to be filtered: one picture, or one for each view of an EXR file.
+    pub pictures: Vec<Picture>,
     /// What the numbers mean.
     pub family: Family,
     /// The colour profile of a PNG or JPEG file.
     pub profile: Option<Vec<u8>>,
-    /// All layers, channels and attributes of an EXR file.
-    pub layers: Option<Layers>,
+    /// Everything else in an EXR file.
+    pub exr: Option<ExrFile>,
 }
 
-/// Reads a picture.
+/// Reads a picture, of an EXR file what `selection` chooses.
 ///
 /// # Errors
-/// [`Error::Input`] when the file is missing, of another kind, truncated, malformed or too large.
-pub fn read(path: &Path) -> Result<Source> {
+/// [`Error::Input`] when the file is missing, of another kind, truncated, malformed or too large, or lacks what was
+/// chosen.
+pub fn read(path: &Path, selection: &Selection) -> Result<Source> {
     let bytes = fs::read(path)
         .map_err(|e| Error::file(path, format!("cannot be read: {e}"), "name a PNG, JPEG or EXR file"))?;
+    if !bytes.starts_with(&EXR)
+        && let Some(option) = selection.option()
+    {
+        return Err(Error::input(option, format!("'{}' is no EXR file", path.display()), "leave it out"));
+    }
     match bytes.as_slice() {
         [0x89, b'P', b'N', b'G', ..] => {
             let decoder = image::codecs::png::PngDecoder::new(Cursor::new(&bytes));
@@ -55,7 +63,11 @@ pub fn read(path: &Path) -> Result<Source> {
             let decoder = image::codecs::jpeg::JpegDecoder::new(Cursor::new(&bytes));
             decode(path, decoder.map_err(|e| malformed(path, "JPEG", e))?, "JPEG")
         }
-        [0x76, 0x2f, 0x31, 0x01, ..] => exr_file::read(path, &bytes),
+        start if start.starts_with(&EXR) => {
+            let exr = ExrFile::new(path, bytes, selection)?;
+            let pictures = exr.pictures(path)?;
+            Ok(Source { pictures, family: Family::Light, profile: None, exr: Some(exr) })
+        }
         [] => Err(Error::file(path, "is empty", "name a PNG, JPEG or EXR file")),
         _ => Err(Error::file(path, "is neither PNG, JPEG nor EXR", "convert it to one of them")),
     }
@@ -101,5 +113,6 @@ fn decode(path: &Path, mut decoder: impl ImageDecoder, kind: &str) -> Result<Sou
     };
     let pixels = Pixels::new(width, height, channels, samples)
         .ok_or_else(|| malformed(path, kind, "it does not hold as many pixels as it says"))?;
-    Ok(Source { pixels, family: Family::Display, profile, layers: None })
+    let picture = Picture { pixels, guides: Vec::new(), chromaticities: None };
+    Ok(Source { pictures: vec![picture], family: Family::Display, profile, exr: None })
 }

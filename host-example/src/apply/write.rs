@@ -4,7 +4,7 @@ use std::path::Path;
 
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
 
-use super::exr_file;
+use super::exr::{Picture, fresh};
 use super::read::{Family, Source};
 use crate::error::{Error, Result};
 use crate::output;
@@ -52,16 +52,29 @@ impl Format {
     }
 }
 
-/// Writes `pixels`, the result of what `source` held, in the meaning of `format`'s family.
+/// Writes the results of what `source` held, one for each of its pictures, in the meaning of `format`'s family.
+/// All of them go into an EXR file that came from one; of other files there is one picture.
 ///
 /// # Errors
 /// [`Error::Input`] when the folder is missing or cannot be written.
-pub fn write(path: &Path, format: Format, pixels: Pixels, source: Source) -> Result<()> {
+pub fn write(path: &Path, format: Format, mut results: Vec<Pixels>, source: Source) -> Result<()> {
+    if let (Format::Exr, Some(mut exr)) = (format, source.exr) {
+        for (at, result) in results.drain(..).enumerate() {
+            exr.replace(at, &result);
+        }
+        return output::write_beside(path, |file| exr.write(file));
+    }
+    let (Some(pixels), Some(picture)) = (results.into_iter().next(), source.pictures.first()) else {
+        return Err(Error::file(path, "would be empty", "choose another picture"));
+    };
     match format {
-        Format::Exr => exr_file::write(path, &as_precise(pixels, &source), source.layers),
+        Format::Exr => {
+            let pixels = as_precise(pixels, picture);
+            output::write_beside(path, |file| fresh::write(file, &pixels))
+        }
         Format::Png => {
             // A float result has more to tell than 8 bits hold.
-            let precision = match source.pixels.precision() {
+            let precision = match picture.pixels.precision() {
                 Precision::U8 => Precision::U8,
                 _ => Precision::U16,
             };
@@ -87,8 +100,8 @@ pub fn write(path: &Path, format: Format, pixels: Pixels, source: Source) -> Res
 }
 
 /// EXR in the precision that the source deserves: 8 bits fit into halves, 16 do not.
-fn as_precise(pixels: Pixels, source: &Source) -> Pixels {
-    let precision = match source.pixels.precision() {
+fn as_precise(pixels: Pixels, picture: &Picture) -> Pixels {
+    let precision = match picture.pixels.precision() {
         Precision::U8 | Precision::F16 => Precision::F16,
         Precision::U16 | Precision::F32 => Precision::F32,
     };

@@ -1,0 +1,313 @@
+//! Choosing what of a file is the picture and what guides it.
+
+use std::str::FromStr;
+
+use super::Fault;
+use super::container::{Container, Sample};
+use super::names::{Group, Model, groups, is_matte, rank};
+
+/// What is read of a file, and where the result goes.
+#[derive(Clone, Debug, Default)]
+pub struct Selection {
+    /// The layer; the main one without.
+    pub layer: Option<String>,
+    /// The view; all without.
+    pub view: Option<String>,
+    /// The channel that is alpha, or `none`; `A` of the layer without.
+    pub alpha: Option<String>,
+    /// A new layer for the result, instead of the one that was read.
+    pub into: Option<String>,
+    /// Guides that are not to be found by name.
+    pub guides: Vec<GuideChoice>,
+    /// Guides that the style can use.
+    pub wanted: Vec<Guide>,
+}
+
+impl Selection {
+    /// The first option that asks for something that only EXR files have.
+    pub fn option(&self) -> Option<&'static str> {
+        let asked = [
+            ("--layer", self.layer.is_some()),
+            ("--view", self.view.is_some()),
+            ("--alpha", self.alpha.is_some()),
+            ("--into", self.into.is_some()),
+            ("--guide", self.guides.iter().any(|g| g.layer.is_some())),
+        ];
+        asked.into_iter().find(|(_, asked)| *asked).map(|(name, _)| name)
+    }
+}
+
+/// What a renderer knows beside colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Guide {
+    /// Normals.
+    Normal,
+    /// Distances.
+    Depth,
+    /// Numbers of objects.
+    ObjectId,
+}
+
+impl Guide {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Normal, Self::Depth, Self::ObjectId];
+
+    /// The name of the graph's input.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Normal => "normal",
+            Self::Depth => "depth",
+            Self::ObjectId => "object_id",
+        }
+    }
+}
+
+/// One `--guide`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct GuideChoice {
+    /// Which.
+    pub guide: Guide,
+    /// The layer or channel; nothing for none.
+    pub layer: Option<String>,
+}
+
+impl FromStr for GuideChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, layer) =
+            text.split_once('=').ok_or("write normal=LAYER, depth=LAYER or object_id=LAYER")?;
+        let guide = match name {
+            "normal" => Guide::Normal,
+            "depth" => Guide::Depth,
+            "object_id" | "id" => Guide::ObjectId,
+            _ => return Err("write normal=LAYER, depth=LAYER or object_id=LAYER".into()),
+        };
+        Ok(Self { guide, layer: (layer != "none").then(|| layer.to_owned()) })
+    }
+}
+
+/// A picture in a file.
+#[derive(Clone, Debug)]
+pub struct Chosen {
+    /// Its channels with their view.
+    pub group: Group,
+    /// How its colour is made of channels.
+    pub model: Model,
+    /// The channels of its colour.
+    pub colors: Vec<usize>,
+    /// The channel of its alpha.
+    pub alpha: Option<usize>,
+    /// What guides it.
+    pub guides: Vec<Source>,
+}
+
+/// Where a guide comes from.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// Which.
+    pub guide: Guide,
+    /// Index of the part.
+    pub part: usize,
+    /// Its channels.
+    pub channels: Vec<usize>,
+    /// Positions in the world, of which depth is to be reckoned.
+    pub position: bool,
+}
+
+/// The pictures of a file that are asked for: one for every view that has the layer.
+pub fn choose(container: &Container, selection: &Selection) -> Result<Vec<Chosen>, Fault> {
+    let groups = groups(container);
+    let mut found = Vec::new();
+    for group in &groups {
+        let named = selection.layer.as_deref().is_some_and(|wanted| is_named(container, group, wanted));
+        let rank = if selection.layer.is_some() { named.then_some(0) } else { rank(group) };
+        if let (Some(rank), Some((model, colors))) = (rank, group.picture(container, named)) {
+            found.push((rank, model, group.part, group, colors));
+        }
+    }
+    found.sort_by_key(|(rank, model, part, ..)| (*rank, *model, *part));
+    let Some((_, _, _, first, _)) = found.first() else {
+        return Err(match &selection.layer {
+            Some(layer) => Fault::Unsupported {
+                problem: format!("has no layer '{layer}' with colours"),
+                mend: format!("choose from {}", layers(container, &groups)),
+            },
+            None => Fault::Unsupported {
+                problem: "has no layer with channels R, G and B of floats".into(),
+                mend: "name a layer by --layer, or a picture with colours".into(),
+            },
+        });
+    };
+    let layer = first.layer.clone();
+    let mut chosen: Vec<Chosen> = Vec::new();
+    for (_, model, _, group, colors) in &found {
+        let is_wanted = match &selection.view {
+            Some(view) => group.view.as_ref() == Some(view),
+            None => true,
+        };
+        if group.layer != layer || !is_wanted || chosen.iter().any(|c| c.group.view == group.view) {
+            continue;
+        }
+        chosen.push(Chosen {
+            group: (*group).clone(),
+            model: *model,
+            colors: colors.clone(),
+            alpha: alpha(container, group, selection)?,
+            guides: sources(container, &groups, group, selection)?,
+        });
+    }
+    if chosen.is_empty() {
+        let mut views: Vec<&str> = groups.iter().filter_map(|g| g.view.as_deref()).collect();
+        views.dedup();
+        let view = selection.view.as_deref().unwrap_or_default();
+        return Err(Fault::Unsupported {
+            problem: format!("does not show the layer in a view '{view}'"),
+            mend: if views.is_empty() {
+                "leave --view out: the file has only one".into()
+            } else {
+                format!("choose from {}", unique(views.into_iter()))
+            },
+        });
+    }
+    Ok(chosen)
+}
+
+fn is_named(container: &Container, group: &Group, wanted: &str) -> bool {
+    let part = &container.parts[group.part].name;
+    group.layer == wanted
+        || (!group.prefix.is_empty() && group.prefix == wanted)
+        || (group.prefix.is_empty() && part == wanted)
+}
+
+fn layers(container: &Container, groups: &[Group]) -> String {
+    let names = groups.iter().filter(|g| g.picture(container, true).is_some());
+    let list = unique(names.map(|g| g.layer.as_str()).filter(|l| !l.is_empty()));
+    if list.is_empty() { "none: leave --layer out".into() } else { list }
+}
+
+fn unique<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let mut list: Vec<&str> = Vec::new();
+    for name in names {
+        if !list.contains(&name) {
+            list.push(name);
+        }
+    }
+    list.join(", ")
+}
+
+fn alpha(container: &Container, group: &Group, selection: &Selection) -> Result<Option<usize>, Fault> {
+    let part = &container.parts[group.part];
+    let usable =
+        |at: &usize| part.channels[*at].sample != Sample::Uint && part.channels[*at].sampling == (1, 1);
+    match selection.alpha.as_deref() {
+        None => Ok(group.member("A").filter(usable)),
+        Some("none") => Ok(None),
+        Some(name) => {
+            let own = group.members.iter().find(|(c, _)| c == name).map(|m| m.1);
+            let any = || part.channels.iter().position(|c| c.name == name);
+            own.or_else(any).filter(usable).map(Some).ok_or_else(|| Fault::Unsupported {
+                problem: format!("has no float channel '{name}' beside the layer's colours"),
+                mend: "name one of its channels by --alpha, or none".into(),
+            })
+        }
+    }
+}
+
+/// The guides that the style can use and that the file has, for the view of `picture`.
+fn sources(
+    container: &Container,
+    groups: &[Group],
+    picture: &Group,
+    selection: &Selection,
+) -> Result<Vec<Source>, Fault> {
+    let mut sources = Vec::new();
+    for guide in Guide::ALL {
+        let choice = selection.guides.iter().rev().find(|c| c.guide == guide);
+        if !selection.wanted.contains(&guide) || choice.is_some_and(|c| c.layer.is_none()) {
+            continue;
+        }
+        let name = choice.and_then(|c| c.layer.as_deref());
+        let mut near: Vec<&Group> =
+            groups.iter().filter(|g| g.view == picture.view || g.view.is_none()).collect();
+        near.sort_by_key(|g| (g.part != picture.part, g.view != picture.view, g.prefix != picture.prefix));
+        let found = near.iter().find_map(|group| source(container, group, guide, name));
+        let found = found.or_else(|| {
+            let has_camera = container.parts[picture.part].world_to_camera.is_some();
+            (guide == Guide::Depth && name.is_none() && has_camera).then_some(())?;
+            near.iter().find_map(|group| {
+                let channels =
+                    xyz(group).filter(|_| matches!(group.word().as_str(), "p" | "pworld" | "position"))?;
+                Some(Source { guide, part: group.part, channels, position: true })
+            })
+        });
+        match (found, name) {
+            (Some(source), _) => sources.push(source),
+            (None, Some(name)) => {
+                return Err(Fault::Unsupported {
+                    problem: format!("has no layer or channel '{name}' that could be the {}", guide.id()),
+                    mend: format!("name another by --guide {}=LAYER, or none", guide.id()),
+                });
+            }
+            (None, None) => {}
+        }
+    }
+    // Channels with fewer samples than pixels guide nothing.
+    sources.retain(|s| s.channels.iter().all(|c| container.parts[s.part].channels[*c].sampling == (1, 1)));
+    Ok(sources)
+}
+
+fn xyz(group: &Group) -> Option<Vec<usize>> {
+    group.all(["X", "Y", "Z"]).or_else(|| group.all(["R", "G", "B"]))
+}
+
+/// The channels of a guide in a group; `name` is the layer or channel that was asked for.
+fn source(container: &Container, group: &Group, guide: Guide, name: Option<&str>) -> Option<Source> {
+    let part = &container.parts[group.part];
+    let found = |channels: Vec<usize>| Source { guide, part: group.part, channels, position: false };
+    let single = |components: &[&str]| {
+        let known = components.iter().find_map(|c| group.member(c));
+        known.or_else(|| match group.members.as_slice() {
+            [(_, one)] => Some(*one),
+            _ => None,
+        })
+    };
+    if let Some(name) = name {
+        let channel = group.members.iter().find(|(_, at)| part.channels[*at].name == name).map(|m| m.1);
+        if guide != Guide::Normal && channel.is_some() {
+            return channel.map(|c| found(vec![c]));
+        }
+        if !is_named(container, group, name) {
+            return None;
+        }
+        return match guide {
+            Guide::Normal => xyz(group),
+            Guide::Depth => single(&["Z", "depth", "Y", "V", "R"]).map(|c| vec![c]),
+            Guide::ObjectId => single(&["id", "object_id", "Y", "R"]).map(|c| vec![c]),
+        }
+        .map(found);
+    }
+    if is_matte(&group.layer) {
+        return None;
+    }
+    let word = group.word();
+    let channels = match guide {
+        Guide::Normal => match word.as_str() {
+            "n" | "normal" | "normals" => xyz(group)?,
+            _ => return None,
+        },
+        Guide::Depth => match word.as_str() {
+            "depth" | "z" => vec![single(&["Z", "depth", "Y", "V", "R"])?],
+            // A vector's third component is none.
+            _ if group.member("X").is_none() => {
+                vec![group.member("Z").or_else(|| group.member("depth"))?]
+            }
+            _ => return None,
+        },
+        Guide::ObjectId => match word.as_str() {
+            "id" | "object_id" | "objectid" => vec![single(&["id", "Y", "R", "X"])?],
+            _ => vec![["id", "object_id", "objectid"].iter().find_map(|c| group.member(c))?],
+        },
+    };
+    Some(found(channels))
+}

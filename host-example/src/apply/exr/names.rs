@@ -1,0 +1,165 @@
+//! Which channels of a file belong together, by their names: layers, views and components.
+//!
+//! A channel's full name is `layer.view.component`, where layers may nest and the default view has no name
+//! ("Storing Multi-View Images in OpenEXR Files"); in files of several parts a part may name the layer and the
+//! view instead.
+
+use super::container::{Container, Sample};
+
+/// Channels of one layer and view in one part.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// Index of the part.
+    pub part: usize,
+    /// Layer within the part; empty for its main one.
+    pub prefix: String,
+    /// Name of the layer: the prefix, or what the part's name says.
+    pub layer: String,
+    /// The view that is shown, where there are views.
+    pub view: Option<String>,
+    /// Components with the index of their channels in the part.
+    pub members: Vec<(String, usize)>,
+}
+
+/// Components of layers that are pictures, and how their colour is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Model {
+    /// Red, green, blue.
+    Rgb,
+    /// Luminance with two chroma channels.
+    LuminanceChroma,
+    /// One channel.
+    Grey,
+}
+
+impl Group {
+    /// The channel of a component, whatever its case.
+    pub fn member(&self, component: &str) -> Option<usize> {
+        let exact = self.members.iter().find(|(c, _)| c == component);
+        exact.or_else(|| self.members.iter().find(|(c, _)| c.eq_ignore_ascii_case(component))).map(|m| m.1)
+    }
+
+    /// The channels of all these components.
+    pub fn all<const N: usize>(&self, components: [&str; N]) -> Option<Vec<usize>> {
+        components.iter().map(|c| self.member(c)).collect()
+    }
+
+    /// The last word of the layer's name, in lower case.
+    pub fn word(&self) -> String {
+        self.layer.rsplit('.').next().unwrap_or_default().to_ascii_lowercase()
+    }
+
+    /// The channels of the group's colours, in order. `named` says that the layer was asked for, so that a
+    /// single channel of any name is a grey picture.
+    pub fn picture(&self, container: &Container, named: bool) -> Option<(Model, Vec<usize>)> {
+        let part = &container.parts[self.part];
+        let full = |index: &usize| {
+            part.channels[*index].sampling == (1, 1) && part.channels[*index].sample != Sample::Uint
+        };
+        let floats = |index: &usize| part.channels[*index].sample != Sample::Uint;
+        if let Some(rgb) = self.all(["R", "G", "B"]).filter(|c| c.iter().all(full)) {
+            return Some((Model::Rgb, rgb));
+        }
+        if let Some(chroma) = self.all(["Y", "RY", "BY"]).filter(|c| full(&c[0]) && c.iter().all(floats)) {
+            let chroma_sampling = part.channels[chroma[1]].sampling;
+            if chroma_sampling == part.channels[chroma[2]].sampling {
+                return Some((Model::LuminanceChroma, chroma));
+            }
+        }
+        if let Some(grey) = self.all(["Y"]).filter(|c| c.iter().all(full)) {
+            return Some((Model::Grey, grey));
+        }
+        let colours: Vec<usize> = ["R", "G", "B"].iter().filter_map(|c| self.member(c)).collect();
+        match (colours.as_slice(), self.members.as_slice()) {
+            ([one], _) if full(one) && (named || self.layer.is_empty()) => Some((Model::Grey, vec![*one])),
+            (_, [(_, one)]) if full(one) && named => Some((Model::Grey, vec![*one])),
+            _ => None,
+        }
+    }
+}
+
+/// All groups of a file, in the order of its channels.
+pub fn groups(container: &Container) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
+    let several = container.parts.len() > 1;
+    for (index, part) in container.parts.iter().enumerate() {
+        for (channel, described) in part.channels.iter().enumerate() {
+            let mut words: Vec<&str> = described.name.split('.').collect();
+            let component = words.pop().unwrap_or_default().to_owned();
+            let view = if let Some(view) = &part.view {
+                if words.last() == Some(&view.as_str()) {
+                    words.pop();
+                }
+                Some(view.clone())
+            } else if let Some(at) = words.last().and_then(|w| part.views.iter().position(|v| v == w)) {
+                words.pop();
+                Some(part.views[at].clone())
+            } else if words.is_empty() {
+                part.views.first().cloned()
+            } else {
+                None
+            };
+            let prefix = words.join(".");
+            let layer = if prefix.is_empty() && several { own_name(part) } else { prefix.clone() };
+            match groups.iter_mut().find(|g| g.part == index && g.prefix == prefix && g.view == view) {
+                Some(group) => group.members.push((component, channel)),
+                None => groups.push(Group {
+                    part: index,
+                    prefix,
+                    layer,
+                    view,
+                    members: vec![(component, channel)],
+                }),
+            }
+        }
+    }
+    groups
+}
+
+/// The name of a part without that of its view.
+fn own_name(part: &super::container::Part) -> String {
+    let bare = part.view.as_deref().and_then(|view| part.name.strip_suffix(view));
+    bare.map_or(part.name.as_str(), |name| name.trim_end_matches(['.', '_', '-'])).to_owned()
+}
+
+/// How likely a layer is the picture that an artist means when naming none: less is more likely.
+pub fn rank(group: &Group) -> Option<u32> {
+    const MAIN: [&str; 9] = ["rgba", "rgb", "beauty", "combined", "color", "colour", "main", "c", "image"];
+    const DATA: [&str; 20] = [
+        "n",
+        "normal",
+        "normals",
+        "p",
+        "pworld",
+        "pcam",
+        "position",
+        "motion",
+        "forward",
+        "backward",
+        "vector",
+        "velocity",
+        "uv",
+        "st",
+        "z",
+        "depth",
+        "id",
+        "object_id",
+        "disparityl",
+        "disparityr",
+    ];
+    let word = group.word();
+    if word.is_empty() {
+        Some(0)
+    } else if let Some(at) = MAIN.iter().position(|m| *m == word) {
+        Some(1 + at as u32)
+    } else if DATA.contains(&word.as_str()) || is_matte(&group.layer) {
+        None
+    } else {
+        Some(100)
+    }
+}
+
+/// Whether a layer is a Cryptomatte, whose numbers are neither colours nor ids.
+pub fn is_matte(layer: &str) -> bool {
+    layer.to_ascii_lowercase().contains("crypto")
+}

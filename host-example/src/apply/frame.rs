@@ -1,0 +1,188 @@
+//! What is done to every frame: the graph on each of its pictures.
+
+use super::convert;
+use super::exr::{Guide, Picture};
+use super::primaries::{AP1, Change, REC709, same};
+use super::read::{Family, Source};
+use super::write::Format;
+use crate::cli::{Backend, Space};
+use crate::error::Result;
+use crate::loader::catalogue::Kind;
+use crate::loader::contract::{
+    ISOPHOTE_ALPHA_PREMULTIPLIED, ISOPHOTE_ALPHA_STRAIGHT, ISOPHOTE_NO_DEVICE, ISOPHOTE_SPACE_ACESCG,
+    ISOPHOTE_SPACE_LINEAR, ISOPHOTE_SPACE_SRGB, IsophoteRequest,
+};
+use crate::loader::{Control, Device, Input, Library};
+use crate::pixels::{Pixels, Precision};
+use crate::stylize::style::Style;
+
+/// A style with what it runs on.
+#[derive(Debug)]
+pub struct Filter {
+    library: Library,
+    style: Style,
+    device: Option<Device>,
+    space: Option<Space>,
+    threads: u32,
+}
+
+/// Results of one frame.
+#[derive(Debug)]
+pub struct Filtered {
+    /// One for each picture that is written.
+    pub results: Vec<Pixels>,
+    /// Samples that were NaN or infinite and were replaced.
+    pub mended: u64,
+}
+
+impl Filter {
+    /// A style on the device that `backend` asks for.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Failure`] when there is no such device.
+    pub fn new(
+        library: Library,
+        style: Style,
+        backend: Backend,
+        space: Option<Space>,
+        threads: u32,
+    ) -> Result<Self> {
+        let device = device(&library, backend)?;
+        Ok(Self { library, style, device, space, threads })
+    }
+
+    /// Filters all pictures of `source`, or the first where `format` holds one.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Input`] for pictures that the library refuses,
+    /// [`crate::error::Error::Failure`] when it or the device fails.
+    pub fn run(
+        &mut self,
+        name: &str,
+        source: &Source,
+        format: Format,
+        progress: &mut dyn FnMut(f32),
+    ) -> Result<Filtered> {
+        let in_place = source.exr.as_ref().filter(|_| format == Format::Exr);
+        let pictures = if in_place.is_some() {
+            source.pictures.as_slice()
+        } else {
+            source.pictures.get(..1).unwrap_or_default()
+        };
+        let scalar = self.style.kind != Kind::Color;
+        let mut filtered = Filtered { results: Vec::with_capacity(pictures.len()), mended: 0 };
+        for (at, picture) in pictures.iter().enumerate() {
+            let channels = match in_place {
+                Some(exr) => exr.result_channels(at, scalar),
+                None if scalar => 1,
+                None => picture.pixels.channels().max(3),
+            };
+            let light = Light::of(self.space, source.family, picture);
+            let there = light.change.map(|(there, _)| convert::changed(&picture.pixels, &there));
+            let (color, bad) = there.as_ref().map_or((&picture.pixels, 0), |(pixels, bad)| (pixels, *bad));
+            filtered.mended += bad;
+            let precision = if format.family() == source.family { color.precision() } else { Precision::F32 };
+            let mut result = Pixels::zeroed(color.width(), color.height(), channels, precision);
+            let request = self.request(name, color, source.family, light.space)?;
+            let mut inputs = vec![Input { name: "color", pixels: color }];
+            inputs.extend(picture.guides.iter().map(|(name, pixels)| Input { name, pixels }));
+            let share = 1.0 / pictures.len() as f32;
+            let mut report = |done: f32| progress((at as f32 + done) * share);
+            let mut control = Control { threads: self.threads, progress: Some(&mut report), measured: None };
+            let report = self
+                .style
+                .graph
+                .process(self.device.as_ref(), &request, &inputs, &mut result, &mut control)
+                .map_err(|e| e.at(name, "choose another picture or style"))?;
+            filtered.mended += report.mended;
+            if !scalar {
+                result = convert::between(result, source.family, light.space, format.family());
+                let is_shown = source.family == Family::Light && format.family() == Family::Display;
+                if let Some((_, back)) = light.change.filter(|_| !is_shown) {
+                    result = convert::changed(&result, &back).0;
+                }
+            }
+            filtered.results.push(result);
+        }
+        Ok(filtered)
+    }
+
+    fn request(&self, name: &str, color: &Pixels, family: Family, space: Space) -> Result<IsophoteRequest> {
+        let size = (color.width(), color.height());
+        let request = self.library.request(size).map_err(|e| e.at(name, "use a smaller picture"))?;
+        Ok(IsophoteRequest {
+            space: match space {
+                Space::Srgb => ISOPHOTE_SPACE_SRGB,
+                Space::Acescg => ISOPHOTE_SPACE_ACESCG,
+                _ => ISOPHOTE_SPACE_LINEAR,
+            },
+            alpha: match family {
+                Family::Display => ISOPHOTE_ALPHA_STRAIGHT,
+                Family::Light => ISOPHOTE_ALPHA_PREMULTIPLIED,
+            },
+            ..request
+        })
+    }
+}
+
+/// What the library is told of a picture's numbers, and what it does not know and is done here.
+struct Light {
+    space: Space,
+    /// To Rec.709 and back.
+    change: Option<(Change, Change)>,
+}
+
+impl Light {
+    fn of(space: Option<Space>, family: Family, picture: &Picture) -> Self {
+        let told = |space| Self { space, change: None };
+        let primaries = match (space, family) {
+            (Some(Space::P3 | Space::Rec2020), _) => space.and_then(convert::primaries),
+            (Some(space), _) => return told(space),
+            (None, Family::Display) => return told(Space::Srgb),
+            (None, Family::Light) => picture.chromaticities,
+        };
+        let change = |from| Some((Change::new(from, REC709)?, Change::new(REC709, from)?));
+        match primaries {
+            Some(c) if same(c, AP1) => told(Space::Acescg),
+            Some(c) if !same(c, REC709) && picture.pixels.channels() > 1 => {
+                Self { space: Space::Linear, change: change(c) }
+            }
+            _ => told(Space::Linear),
+        }
+    }
+}
+
+/// Guides that a style can use, whether or not they are connected.
+///
+/// # Errors
+/// [`crate::error::Error::Failure`] when the library fails.
+pub fn usable_guides(style: &Style) -> Result<Vec<Guide>> {
+    let mut guides = Vec::new();
+    for node in 0..style.graph.count() {
+        let spec = style.graph.spec(node).map_err(|e| e.at(&style.name, "choose another style"))?;
+        for port in spec.inputs {
+            match port.kind {
+                Kind::Normal => guides.push(Guide::Normal),
+                Kind::Depth => guides.push(Guide::Depth),
+                Kind::ObjectId => guides.push(Guide::ObjectId),
+                _ => {}
+            }
+        }
+    }
+    Ok(guides)
+}
+
+/// The library's own device, or nothing for the CPU.
+fn device(library: &Library, backend: Backend) -> Result<Option<Device>> {
+    let place = "--backend";
+    match backend {
+        Backend::Cpu => Ok(None),
+        Backend::Gpu => library.device(None).map(Some).map_err(|e| e.at(place, "use --backend cpu")),
+        // A driver that computes on the CPU is slower there than the library itself.
+        Backend::Auto => match library.device(Some("gpu")) {
+            Ok(device) => Ok(Some(device)),
+            Err(refused) if refused.status == ISOPHOTE_NO_DEVICE => Ok(None),
+            Err(refused) => Err(refused.at(place, "use --backend cpu")),
+        },
+    }
+}
