@@ -25,6 +25,8 @@ pub enum Command {
     Apply(ApplyArgs),
     /// Opens a window that renders a scene and stylizes every frame.
     View(ViewArgs),
+    /// Saves, shows and checks presets: styles with their parameters as JSON files.
+    Preset(PresetArgs),
     /// Lists the nodes, or the parameters of one.
     Nodes(NodesArgs),
     /// Measures how fast the nodes are.
@@ -71,7 +73,7 @@ pub struct RenderArgs {
     /// Image that colours an OBJ without textures.
     #[arg(long, value_name = "FILE")]
     pub texture: Option<PathBuf>,
-    /// How frames are stylized: none, the id of a node, or a graph file (.json).
+    /// How frames are stylized: none, the id of a node, or a graph file or preset (.json).
     #[arg(long, default_value = "none")]
     pub style: String,
     /// Sets a parameter of the style; node.id=value for one node of a graph. May be repeated.
@@ -108,7 +110,7 @@ pub struct ViewArgs {
 /// Options of `apply`.
 #[derive(Args, Debug)]
 pub struct ApplyArgs {
-    /// The id of a node, or a graph file (.json).
+    /// The id of a node, or a graph file or preset (.json).
     pub style: String,
     /// The picture: PNG, JPEG or EXR.
     pub input: PathBuf,
@@ -143,6 +145,50 @@ pub struct ApplyArgs {
     /// Threads on the CPU; 0 for one per core.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1024))]
     pub threads: u32,
+}
+
+/// Options of `preset`.
+#[derive(Args, Debug)]
+pub struct PresetArgs {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: PresetCommand,
+}
+
+/// What can be done to presets. Parameters in them may have keyframes instead of a value:
+/// `"sigma_d": {"1001": 2, "1050": 6}`, with `"between": "step"` for values that hold until the next key.
+#[derive(Debug, Subcommand)]
+pub enum PresetCommand {
+    /// Writes a style with its parameters to a file.
+    Save {
+        /// The id of a node, a graph file or another preset.
+        style: String,
+        /// The file: .json.
+        file: PathBuf,
+        /// Sets a parameter; node.id=value for one node of a graph. May be repeated.
+        #[arg(long, value_name = "ID=VALUE")]
+        set: Vec<Setting>,
+        /// Writes the parameters that are not set too, so that other defaults would change nothing.
+        #[arg(long)]
+        all: bool,
+        /// Replaces the file if there is one.
+        #[arg(long)]
+        force: bool,
+    },
+    /// Prints the parameters of a preset.
+    Show {
+        /// The preset.
+        file: PathBuf,
+        /// With the values at this frame instead of keyframes.
+        #[arg(long, value_name = "N", allow_negative_numbers = true)]
+        frame: Option<i64>,
+    },
+    /// Tells whether presets can be used as they are, and what is wrong with those that cannot.
+    Check {
+        /// The presets.
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+    },
 }
 
 /// Where a graph runs.

@@ -44,6 +44,19 @@ impl Error {
         Self::Failure { problem: one_line(problem), mend: one_line(mend) }
     }
 
+    /// The same of a file that names the place at fault.
+    #[must_use]
+    pub fn within(self, path: &Path) -> Self {
+        match self {
+            Self::Input { place, problem, mend } => {
+                Self::Input { place: format!("{}: {place}", path.display()), problem, mend }
+            }
+            Self::Failure { problem, mend } => {
+                Self::Failure { problem: format!("{}: {problem}", path.display()), mend }
+            }
+        }
+    }
+
     /// The process exit code: 2 for bad usage or input, 1 for everything else.
     pub fn exit_code(&self) -> u8 {
         match self {

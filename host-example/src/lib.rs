@@ -8,6 +8,7 @@ pub mod loader;
 pub mod nodes_verb;
 pub mod output;
 pub mod pixels;
+pub mod preset_verb;
 pub mod render;
 pub mod render_verb;
 pub mod scene;

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::ErrorKind;
 use isophote_host::cli::{Cli, Command};
-use isophote_host::{apply, bench, nodes_verb, render_verb, view};
+use isophote_host::{apply, bench, nodes_verb, preset_verb, render_verb, view};
 
 fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
@@ -16,6 +16,7 @@ fn main() -> ExitCode {
         Command::Render(args) => render_verb::run(&args),
         Command::View(args) => view::run(&args),
         Command::Apply(args) => apply::run(&args),
+        Command::Preset(args) => preset_verb::run(&args),
         Command::Nodes(args) => nodes_verb::run(&args),
         Command::Bench(args) => bench::run(&args),
     };

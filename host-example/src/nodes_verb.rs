@@ -1,7 +1,5 @@
 //! `isophote nodes`: what the library can do, for people and for programs.
 
-use std::io::{self, Write};
-
 use crate::cli::NodesArgs;
 use crate::error::{Error, Result};
 use crate::loader::Library;
@@ -26,14 +24,7 @@ pub fn run(args: &NodesArgs) -> Result<()> {
             if args.json { json(&catalogue)? } else { list(&library, &catalogue) }
         }
     };
-    match io::stdout().write_all(text.as_bytes()) {
-        // Whoever reads has read enough.
-        Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        Err(e) => {
-            Err(Error::failure(format!("cannot write to standard output: {e}"), "redirect it elsewhere"))
-        }
-        Ok(()) => Ok(()),
-    }
+    crate::output::print(&text)
 }
 
 fn json(value: &impl serde::Serialize) -> Result<String> {

@@ -178,6 +178,19 @@ pub fn write_beside(
     Ok(())
 }
 
+/// Prints to standard output; whoever has read enough and closed it is no error.
+///
+/// # Errors
+/// [`Error::Failure`] when it cannot be written.
+pub fn print(text: &str) -> Result<()> {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Error::failure(format!("cannot write to standard output: {e}"), "redirect it elsewhere"))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// The name of frame `index` (from 1) of `count`: itself for a single frame; `####` in the name is replaced by
 /// the number, otherwise `.0001` goes before the extension.
 pub fn frame_path(path: &Path, index: usize, count: usize) -> PathBuf {

@@ -78,6 +78,12 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     for frame in 0..count {
         pose.update(&scene, animation, args.start + frame as f32 / args.fps);
         let view = camera.view(&scene, &pose, frame as f32 / count as f32);
+        if let Some(stylizer) = &mut stylizer {
+            stylizer.at_frame(frame as i64 + 1)?;
+            if stylizer.update()? {
+                stylizer.bind(renderer.targets())?;
+            }
+        }
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         renderer.encode(&mut encoder, &scene, &pose, &view, &look);
         if let Some(stylizer) = &stylizer {

@@ -4,6 +4,7 @@
 //! after the scene's, and read the renderer's textures directly. Once warm, a frame creates no GPU object and
 //! is one submission.
 
+pub mod preset;
 pub mod style;
 
 use std::sync::Arc;
@@ -72,6 +73,16 @@ impl Stylizer {
     pub fn set(&mut self, setting: &Setting) -> Result<()> {
         self.style.set(setting)?;
         self.edited = true;
+        Ok(())
+    }
+
+    /// Gives animated parameters their values at a frame; they take effect with the next
+    /// [`Stylizer::update`].
+    ///
+    /// # Errors
+    /// As [`Style::at_frame`].
+    pub fn at_frame(&mut self, frame: i64) -> Result<()> {
+        self.edited |= self.style.at_frame(frame)?;
         Ok(())
     }
 

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::str::FromStr;
 
+use super::preset::{self, Animated, Preset, Track};
 use crate::error::{Error, Result};
 use crate::loader::catalogue::{Kind, Node, Port};
 use crate::loader::{Answer, Graph, Library, Refusal};
@@ -59,14 +60,16 @@ pub struct Style {
     pub kind: Kind,
     /// Whether it is one node, index 0, with what feeds it.
     single: bool,
+    /// Parameters that change from frame to frame.
+    animated: Vec<Animated>,
 }
 
 impl Style {
-    /// Makes the graph of `name`, which is the id of a node or the path of a graph file, and sets its
-    /// parameters.
+    /// Makes the graph of `name`, which is the id of a node or the path of a graph file or preset, and sets
+    /// its parameters; animated ones have the value of their first keyframe.
     ///
     /// # Errors
-    /// [`Error::Input`] for names that are neither, graph files that cannot be read, graphs that yield something
+    /// [`Error::Input`] for names that are neither, files that cannot be read, graphs that yield something
     /// that is no picture, and parameters that do not exist or cannot have their value.
     pub fn load(library: &Library, name: &str, settings: &[Setting]) -> Result<Self> {
         let style = Self::any(library, name, settings)?;
@@ -85,24 +88,83 @@ impl Style {
     /// # Errors
     /// As [`Style::load`].
     pub fn any(library: &Library, name: &str, settings: &[Setting]) -> Result<Self> {
-        let (graph, single) = open(library, name)?;
+        let Opened { graph, single, preset } = open(library, name)?;
         let kind =
             graph.output_kind().map_err(|e| e.at(name, "name the node whose output is the graph's"))?;
-        let style = Self { name: name.to_owned(), graph, kind, single };
+        let mut style = Self { name: name.to_owned(), graph, kind, single, animated: Vec::new() };
+        for (param, track) in preset.iter().flat_map(|p| &p.params) {
+            style.follow(param, track)?;
+        }
         for setting in settings {
-            style.set(setting)?;
+            let (node, _) = style.set(setting)?;
+            style.animated.retain(|a| (a.node, &a.param) != (node, &setting.param));
         }
         Ok(style)
     }
 
-    /// Sets a parameter of the node that is named, or of the only one that has it.
+    /// Gives animated parameters their values at a frame, and says whether there are any.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the library refuses a value.
+    pub fn at_frame(&self, frame: i64) -> Result<bool> {
+        for animated in &self.animated {
+            let value = animated.at(frame);
+            self.graph.set(animated.node, &animated.param, &value).map_err(|e| {
+                e.at(
+                    format!("{}: parameter '{}' at frame {frame}", self.name, animated.param),
+                    "choose other keys",
+                )
+            })?;
+        }
+        Ok(!self.animated.is_empty())
+    }
+
+    /// The value at a frame of the animated parameter that a preset names `name`.
+    pub fn animated_at(&self, name: &str, frame: i64) -> Option<String> {
+        self.animated.iter().find(|a| a.name == name).map(|a| a.at(frame))
+    }
+
+    /// Takes over what a preset says of a parameter.
+    fn follow(&mut self, name: &str, track: &Track) -> Result<()> {
+        let place = format!("{}: parameter '{name}'", self.name);
+        let named = |value: &str| {
+            let text = format!("{name}={value}");
+            text.parse::<Setting>()
+                .map_err(|_| Error::input(&place, "is no name", "write the id of a parameter"))
+        };
+        match track {
+            Track::Still(value) => {
+                self.put(&named(value)?, &place)?;
+            }
+            Track::Keys { keys, step } => {
+                // From the last to the first, whose value stays.
+                for (frame, value) in keys.iter().rev() {
+                    let setting = named(value)?;
+                    let (node, spec) = self.put(&setting, &format!("{place} at frame {frame}"))?;
+                    if *frame == keys[0].0
+                        && let Some(param) = spec.params.iter().find(|p| p.id == setting.param)
+                    {
+                        self.animated.push(Animated::new(&place, (name, node, param), keys, *step)?);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Sets a parameter of the node that is named, or of the only one that has it. Tells the index of the node
+    /// and what it says about itself.
     ///
     /// # Errors
     /// [`Error::Input`] when there is no such node or parameter, several nodes have the parameter, or it cannot
     /// have the value.
-    pub fn set(&self, setting: &Setting) -> Result<()> {
-        let place = format!("--set {setting}");
-        let fail = |e: Refusal| e.at(&place, "see the graph's nodes");
+    pub fn set(&self, setting: &Setting) -> Result<(u32, Node)> {
+        self.put(setting, &format!("--set {setting}"))
+    }
+
+    /// [`Style::set`], where `place` says in messages who wants it.
+    fn put(&self, setting: &Setting, place: &str) -> Result<(u32, Node)> {
+        let fail = |e: Refusal| e.at(place, "see the graph's nodes");
         let graph = &self.graph;
         let mut named = Vec::new();
         for node in 0..graph.count() {
@@ -110,13 +172,14 @@ impl Style {
         }
         let put = |(node, _, spec): &(u32, String, Node)| {
             let mend = format!("`isophote nodes {}` lists its parameters", spec.id);
-            graph.set(*node, &setting.param, &setting.value).map_err(|e| e.at(&place, mend))
+            graph.set(*node, &setting.param, &setting.value).map_err(|e| e.at(place, mend))?;
+            Ok((*node, spec.clone()))
         };
         if let Some(wanted) = &setting.node {
             let Some(node) = named.iter().find(|(_, name, _)| name == wanted) else {
                 let names: Vec<&str> = named.iter().map(|(_, name, _)| name.as_str()).collect();
                 return Err(Error::input(
-                    &place,
+                    place,
                     format!("the graph has no node '{wanted}'"),
                     format!("choose from {}", names.join(", ")),
                 ));
@@ -134,42 +197,72 @@ impl Style {
             (None, ..) => {
                 let names: Vec<&str> = named.iter().map(|(_, _, spec)| spec.id).collect();
                 Err(Error::input(
-                    &place,
+                    place,
                     format!("no node of the graph has a parameter '{}'", setting.param),
                     format!("`isophote nodes NODE` lists the parameters of {}", names.join(", ")),
                 ))
             }
             (Some((_, first, _)), Some((_, second, _)), _) => Err(Error::input(
-                &place,
+                place,
                 format!("several nodes of the graph have a parameter '{}'", setting.param),
-                format!("write {first}.{0}=... or {second}.{0}=...", setting.param),
+                format!("write {first}.{0} or {second}.{0}", setting.param),
             )),
         }
     }
 }
 
-/// The graph, and whether it is a single node with what feeds it.
-fn open(library: &Library, style: &str) -> Result<(Graph, bool)> {
+/// What the name of a style stands for.
+struct Opened {
+    graph: Graph,
+    /// Whether it is a single node with what feeds it.
+    single: bool,
+    /// What sets its parameters.
+    preset: Option<Preset>,
+}
+
+fn open(library: &Library, style: &str) -> Result<Opened> {
     let path = Path::new(style);
     let refused = match library.single(style) {
-        Ok(graph) => return Ok((fed(library, graph).map_err(|e| e.at(style, "use a graph file"))?, true)),
+        Ok(graph) => {
+            let graph = fed(library, graph).map_err(|e| e.at(style, "use a graph file"))?;
+            return Ok(Opened { graph, single: true, preset: None });
+        }
         Err(refused) => refused,
     };
     let looks_like_file = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"))
         || path.components().count() > 1
         || path.exists();
     if !looks_like_file {
-        return Err(refused.at(style, "name a node that `isophote nodes` lists, or a graph file (.json)"));
+        return Err(
+            refused.at(style, "name a node that `isophote nodes` lists, or a graph file or preset (.json)")
+        );
     }
+    let json = read(path)?;
+    if preset::is_graph(&json) {
+        let graph =
+            library.graph_from_json(&json).map_err(|e| e.at(path.display(), "correct the graph file"))?;
+        return Ok(Opened { graph, single: false, preset: None });
+    }
+    let preset = Preset::parse(path, &json)?;
+    let inner = preset.style_beside(path);
+    if Path::new(&inner).is_file() && !preset::is_graph(&read(Path::new(&inner))?) {
+        return Err(Error::file(
+            path,
+            format!("its style '{inner}' is no graph"),
+            "name a node or a graph file",
+        ));
+    }
+    let opened = open(library, &inner).map_err(|e| e.within(path))?;
+    Ok(Opened { preset: Some(preset), ..opened })
+}
+
+fn read(path: &Path) -> Result<String> {
+    let mend = "name a graph file or a preset (.json), or a node";
     let size = fs::metadata(path).map_or(0, |m| m.len());
     if size > MOST_BYTES {
-        return Err(Error::file(path, "is too large for a graph", "name a graph file (.json)"));
+        return Err(Error::file(path, "is too large for a graph or a preset", mend));
     }
-    let json = fs::read_to_string(path).map_err(|e| {
-        Error::file(path, format!("cannot be read as a graph: {e}"), "name a graph file (.json) or a node")
-    })?;
-    let graph = library.graph_from_json(&json).map_err(|e| e.at(path.display(), "correct the graph file"))?;
-    Ok((graph, false))
+    fs::read_to_string(path).map_err(|e| Error::file(path, format!("cannot be read: {e}"), mend))
 }
 
 /// Feeds what a single node needs and no picture gives, such as a tensor, from the first node of the catalogue

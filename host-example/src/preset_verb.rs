@@ -1,0 +1,165 @@
+//! `isophote preset`: styles with their parameters as files.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::cli::{PresetArgs, PresetCommand};
+use crate::error::{Error, Result};
+use crate::loader::Library;
+use crate::loader::catalogue::ParamKind;
+use crate::output;
+use crate::stylize::preset::{self, Preset, Track};
+use crate::stylize::style::{Setting, Style};
+
+/// Runs the verb.
+///
+/// # Errors
+/// [`Error::Input`] for styles, parameters, values and files that are not as they should be,
+/// [`Error::Failure`] without a library.
+pub fn run(args: &PresetArgs) -> Result<()> {
+    let library = Library::open()?;
+    match &args.command {
+        PresetCommand::Save { style, file, set, all, force } => {
+            if file.exists() && !force {
+                return Err(Error::file(file, "is there already", "name another file, or add --force"));
+            }
+            save(&library, style, file, set, *all)
+        }
+        PresetCommand::Show { file, frame } => show(&library, file, *frame),
+        PresetCommand::Check { files } => check(&library, files),
+    }
+}
+
+fn save(library: &Library, name: &str, file: &Path, settings: &[Setting], all: bool) -> Result<()> {
+    let style = Style::any(library, name, settings)?;
+    let base = Path::new(name);
+    let mut preset = if library.find_node(name).is_ok() {
+        Preset { style: name.to_owned(), params: Vec::new() }
+    } else {
+        let text = fs::read_to_string(base).map_err(|e| Error::file(base, e, "name a readable file"))?;
+        if preset::is_graph(&text) {
+            Preset { style: from(file, base), params: Vec::new() }
+        } else {
+            let preset = Preset::parse(base, &text)?;
+            let inner = preset.style_beside(base);
+            let style = if inner == preset.style { inner } else { from(file, Path::new(&inner)) };
+            Preset { style, ..preset }
+        }
+    };
+    for setting in settings {
+        let param = match &setting.node {
+            Some(node) => format!("{node}.{}", setting.param),
+            None => setting.param.clone(),
+        };
+        preset.params.retain(|(name, _)| *name != param);
+        preset.params.push((param, Track::Still(setting.value.clone())));
+    }
+    if all {
+        if library.find_node(&preset.style).is_err() {
+            let problem = "is for nodes; a graph file holds the values of its own parameters";
+            return Err(Error::input("--all", problem, "leave --all out"));
+        }
+        let spec = style.graph.spec(0).map_err(|e| e.at(name, "choose another style"))?;
+        for param in &spec.params {
+            if !preset.params.iter().any(|(name, _)| name == param.id) {
+                preset.params.push((param.id.to_owned(), Track::Still(default(&param.kind))));
+            }
+        }
+    }
+    let text = preset.to_json();
+    output::write_beside(file, |out| {
+        std::io::Write::write_all(out, text.as_bytes()).map_err(|e| e.to_string())
+    })
+}
+
+/// The path of a graph file as a preset names it: relative where both lie in one folder, whole otherwise.
+fn from(preset: &Path, graph: &Path) -> String {
+    let folder = |path: &Path| {
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        fs::canonicalize(folder).ok()
+    };
+    match (folder(preset), folder(graph), graph.file_name()) {
+        (Some(a), Some(b), Some(name)) if a == b => name.to_string_lossy().into_owned(),
+        (_, Some(folder), Some(name)) => folder.join(name).display().to_string(),
+        _ => graph.display().to_string(),
+    }
+}
+
+fn show(library: &Library, file: &Path, frame: Option<i64>) -> Result<()> {
+    let (style, preset) = open(library, file)?;
+    let mut text = format!("{}\n", preset.style);
+    for (name, track) in &preset.params {
+        let value = match track {
+            Track::Still(value) => value.clone(),
+            Track::Keys { keys, step } => match frame.and_then(|frame| style.animated_at(name, frame)) {
+                Some(value) => value,
+                None => {
+                    let keys: Vec<String> =
+                        keys.iter().map(|(frame, value)| format!("{value} at {frame}")).collect();
+                    let held = if *step == Some(true) { ", held between" } else { "" };
+                    keys.join(", ") + held
+                }
+            },
+        };
+        text += &format!("  {name} = {value}\n");
+    }
+    if preset.params.is_empty() {
+        text += "  nothing but defaults\n";
+    }
+    output::print(&text)
+}
+
+fn check(library: &Library, files: &[PathBuf]) -> Result<()> {
+    let mut wrong = 0;
+    for file in files {
+        match open(library, file) {
+            Ok((_, preset)) => {
+                let frames: Vec<i64> = preset.params.iter().flat_map(|(_, track)| track.frames()).collect();
+                let animated = match (frames.iter().min(), frames.iter().max()) {
+                    (Some(first), Some(last)) => format!(", keyframes {first} to {last}"),
+                    _ => String::new(),
+                };
+                let count = preset.params.len();
+                output::print(&format!(
+                    "{}: {} with {count} parameter{}{animated}\n",
+                    file.display(),
+                    preset.style,
+                    if count == 1 { "" } else { "s" }
+                ))?;
+            }
+            Err(error @ Error::Failure { .. }) => return Err(error),
+            Err(error) => {
+                eprintln!("error: {error}");
+                wrong += 1;
+            }
+        }
+    }
+    if wrong > 0 {
+        let problem = format!("{wrong} of {} cannot be used", files.len());
+        return Err(Error::input("presets", problem, "correct what is told above"));
+    }
+    Ok(())
+}
+
+/// The preset of a file, and the style that it makes.
+fn open(library: &Library, file: &Path) -> Result<(Style, Preset)> {
+    let text = fs::read_to_string(file)
+        .map_err(|e| Error::file(file, format!("cannot be read: {e}"), "name a preset (.json)"))?;
+    if preset::is_graph(&text) {
+        return Err(Error::file(file, "is a graph and no preset", "name a preset"));
+    }
+    let preset = Preset::parse(file, &text)?;
+    let style = Style::any(library, &file.display().to_string(), &[])?;
+    Ok((style, preset))
+}
+
+/// The default of a parameter as `--set` takes it.
+fn default(kind: &ParamKind) -> String {
+    match kind {
+        ParamKind::Float { default, .. } => default.to_string(),
+        ParamKind::Int { default, .. } => default.to_string(),
+        ParamKind::Bool { default } => default.to_string(),
+        ParamKind::Choice { default, .. } => (*default).to_owned(),
+        ParamKind::Color { default } => default.map(|v| v.to_string()).join(","),
+    }
+}
