@@ -25,6 +25,8 @@ pub enum Command {
     Apply(ApplyArgs),
     /// Opens a window that renders a scene and stylizes every frame.
     View(ViewArgs),
+    /// Puts pictures side by side with their names, to be looked at.
+    Sheet(SheetArgs),
     /// Saves, shows and checks presets: styles with their parameters as JSON files.
     Preset(PresetArgs),
     /// Lists the nodes, or the parameters of one.
@@ -145,6 +147,26 @@ pub struct ApplyArgs {
     /// Threads on the CPU; 0 for one per core.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1024))]
     pub threads: u32,
+}
+
+/// Options of `sheet`. Pictures are shown as displays show them: light is encoded for sRGB, and what is brighter
+/// than white is white.
+#[derive(Args, Debug)]
+pub struct SheetArgs {
+    /// The sheet: .png.
+    pub sheet: PathBuf,
+    /// The pictures, in the order of the sheet; all views of EXR files.
+    #[arg(required = true)]
+    pub pictures: Vec<PathBuf>,
+    /// Pictures in a row; without it up to four.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub columns: Option<u32>,
+    /// Width of each picture in pixels.
+    #[arg(long, value_name = "PIXELS", default_value_t = 640, value_parser = clap::value_parser!(u32).range(16..=8192))]
+    pub width: u32,
+    /// What stands under a picture instead of its name; may be given for each, in their order.
+    #[arg(long, value_name = "TEXT")]
+    pub label: Vec<String>,
 }
 
 /// Options of `preset`.

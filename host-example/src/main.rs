@@ -16,6 +16,7 @@ fn main() -> ExitCode {
         Command::Render(args) => render_verb::run(&args),
         Command::View(args) => view::run(&args),
         Command::Apply(args) => apply::run(&args),
+        Command::Sheet(args) => apply::sheet::run(&args),
         Command::Preset(args) => preset_verb::run(&args),
         Command::Nodes(args) => nodes_verb::run(&args),
         Command::Bench(args) => bench::run(&args),

@@ -126,14 +126,16 @@ impl Filter {
 }
 
 /// What the library is told of a picture's numbers, and what it does not know and is done here.
-struct Light {
-    space: Space,
+pub struct Light {
+    /// The space that the library is told.
+    pub space: Space,
     /// To Rec.709 and back.
-    change: Option<(Change, Change)>,
+    pub change: Option<(Change, Change)>,
 }
 
 impl Light {
-    fn of(space: Option<Space>, family: Family, picture: &Picture) -> Self {
+    /// What `space` says, or what the file says without.
+    pub fn of(space: Option<Space>, family: Family, picture: &Picture) -> Self {
         let told = |space| Self { space, change: None };
         let primaries = match (space, family) {
             (Some(Space::P3 | Space::Rec2020), _) => space.and_then(convert::primaries),

@@ -6,6 +6,7 @@ mod frame;
 mod jpeg;
 mod primaries;
 mod read;
+pub mod sheet;
 mod write;
 
 pub use self::exr::GuideChoice;
