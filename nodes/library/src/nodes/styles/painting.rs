@@ -15,7 +15,7 @@ pub static NODE: NodeSpec = NodeSpec {
     label: "Painting",
     group: "styles",
     doc: "Flat strokes of paint that follow the forms of the picture, coarse where little happens and fine \
-          where it varies: the anisotropic Kuwahara filter from coarse to fine scales (Fig. 5.25).",
+          where it varies: the anisotropic Kuwahara filter from coarse to fine scales.",
     section: "5.5",
     inputs: &[ports::COLOR, ports::TENSOR],
     output: ports::color_output("The painting."),
