@@ -11,6 +11,8 @@ use fearless_simd::{Level, Simd, f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, pre
 
 const LN2_HIGH: f32 = 0.693_359_4;
 const LN2_LOW: f32 = -2.121_944_4e-4;
+/// 1.5 2^23: the sum with a small number is rounded to a whole one, which stays in its lowest bits.
+const WHOLE: f32 = 12_582_912.0;
 
 /// exp, exp2, log, pow and tanh on lanes.
 pub trait Elementary: Sized {
@@ -18,6 +20,8 @@ pub trait Elementary: Sized {
     fn exp(self) -> Self;
     /// 2^x; saturated below -126 and above 127.
     fn exp2(self) -> Self;
+    /// 2^x for x <= 127, as weights that fall off have it; saturated below -126.
+    fn exp2_falling(self) -> Self;
     /// Natural logarithm of a positive, normal number.
     fn ln(self) -> Self;
     /// x^y for positive x; 0 for x <= 0.
@@ -53,10 +57,16 @@ macro_rules! elementary {
 
             #[inline(always)]
             fn exp2(self) -> Self {
+                self.min($float::splat(self.simd, 127.0)).exp2_falling()
+            }
+
+            #[inline(always)]
+            fn exp2_falling(self) -> Self {
                 let simd = self.simd;
-                let x = self.min($float::splat(simd, 127.0)).max($float::splat(simd, -126.0));
-                let n = x.round_ties_even();
-                let r = x - n;
+                let x = self.max($float::splat(simd, -126.0));
+                let shift = $float::splat(simd, WHOLE);
+                let shifted = x + shift;
+                let r = x - (shifted - shift);
                 // In pairs, so that no more than four operations wait for each other.
                 let rr = r * r;
                 let a = r.mul_add($float::splat(simd, 6.931_472e-1), $float::splat(simd, 1.0));
@@ -64,9 +74,9 @@ macro_rules! elementary {
                 let c = r.mul_add($float::splat(simd, 1.339_887_4e-3), $float::splat(simd, 9.618_437e-3));
                 let c = rr.mul_add($float::splat(simd, 1.535_336_2e-4), c);
                 let p = rr.mul_add(c, b).mul_add(rr, a);
-                let n: $int<S> = n.to_int();
-                let scale: $float<S> = ((n + $int::splat(simd, 127)) << 23).bitcast();
-                p * scale
+                // The whole part goes to the exponent: p is at least 0.7, so that it does not run over.
+                let n = shifted.bitcast::<$int<S>>() << 23;
+                (p.bitcast::<$int<S>>() + n).bitcast()
             }
 
             #[inline(always)]

@@ -7,6 +7,7 @@
 
 pub mod block_convolution;
 pub mod blocks;
+pub mod colour_lines;
 pub mod colour_space;
 pub mod coverage;
 pub mod edge_threshold;

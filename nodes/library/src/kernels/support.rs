@@ -96,6 +96,21 @@ pub fn get_pixels4<S: Simd>(simd: S, view: &View<'_>, x: i32, y: i32, last: i32)
     load4(simd, &block)
 }
 
+/// Eight four-channel pixels of `row` from its pixel `i` on; past its end they repeat the last one.
+#[inline(always)]
+pub fn row_pixels4<S: Simd>(simd: S, row: &[f32], i: usize) -> [f32x8<S>; 4] {
+    let rest = &row[4 * i..];
+    if let Some(full) = rest.get(..32) {
+        return load4(simd, full);
+    }
+    let mut block = [0.0; 32];
+    for (lane, pixel) in block.chunks_exact_mut(4).enumerate() {
+        let at = (4 * lane).min(rest.len() - 4);
+        pixel.copy_from_slice(&rest[at..at + 4]);
+    }
+    load4(simd, &block)
+}
+
 /// Eight two-channel pixels of row `y` from column `x` on; columns past `last` repeat it.
 #[inline(always)]
 pub fn get_pixels2<S: Simd>(simd: S, view: &View<'_>, x: i32, y: i32, last: i32) -> [f32x8<S>; 2] {

@@ -5,15 +5,14 @@
 //! pixels (3.6, 3.7). The range is measured as Euclidean distance of the three colour channels, taps
 //! count by their coverage, and coverage itself passes: the edge of a cut-out is an edge to preserve.
 //!
-//! Cost: about 1.8 cutoff taps of two loads, one interpolation and one exponential (manual: two).
+//! Cost: about 1.8 cutoff taps of one interpolation and one exponential (manual: two or more).
 
-use crate::kernels::blocks::for_blocks_in_tiles;
-use crate::kernels::coverage::Covered;
-use crate::kernels::support::{get_pixels4, put_pixels4};
+use crate::kernels::colour_lines::{ColourLines, Lines, strips};
+use crate::kernels::support::{put_pixels4, row_pixels4};
 use crate::kernels::tensor_algebra::{anisotropy, tangent};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, f32x8, i32x8, mask32x8, prelude::*};
-use isophote_engine::math::{Elementary, channels, load_pixel, load_pixels, spread, transposed};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::math::Elementary;
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance, View};
 
 crate::params! {
     /// Uniform block.
@@ -112,72 +111,77 @@ fn reach(params: &Params) -> i32 {
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    let covered = (params.manual == 0).then(|| Covered::new(&pass.inputs[0], band, reach(&params)));
-    let block = Blocks {
-        params,
-        origins: pass.inputs[0],
-        source: covered.as_ref().map_or(pass.inputs[0], |c| c.view(&pass.inputs[0])),
-        tensors: pass.inputs[1],
-        opaque: covered.as_ref().is_some_and(Covered::is_opaque),
-    };
-    if block.opaque {
-        dispatch!(pass.level, simd => block.rows::<_, true>(simd, band));
-    } else {
-        dispatch!(pass.level, simd => block.rows::<_, false>(simd, band));
+    dispatch!(pass.level, simd => filter(simd, pass, &params, band));
+}
+
+#[inline(always)]
+fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
+    let (radius, left) = (reach(params), band.window.x0);
+    let mut colours = ColourLines::default();
+    for strip in strips(band, radius) {
+        colours.load(simd, &pass.inputs[0], strip, radius, params.manual == 0);
+        let mode = match (params.manual != 0, colours.is_opaque()) {
+            (true, _) => MANUAL,
+            (false, true) => OPAQUE,
+            (false, false) => COVERED,
+        };
+        let values = |view: &View<'_>, y: i32| view.offset(strip.x0, y)..view.offset(strip.x1 - 1, y) + 4;
+        let (colour, tensors) = (&pass.inputs[0], &pass.inputs[1]);
+        for y in strip.y0..strip.y1 {
+            let row = Row {
+                params,
+                colours: &colours,
+                origins: &colour.data()[values(colour, y)],
+                tensors: &tensors.data()[values(tensors, y)],
+                strip,
+                y,
+            };
+            let target = &mut band.row_mut(0, y)[4 * (strip.x0 - left) as usize..];
+            let (mut i, count) = (0, strip.width() as usize);
+            while i < count {
+                let result = match mode {
+                    MANUAL => row.filtered::<S, MANUAL>(simd, i),
+                    OPAQUE => row.filtered::<S, OPAQUE>(simd, i),
+                    _ => row.filtered::<S, COVERED>(simd, i),
+                };
+                put_pixels4(result, &mut target[4 * i..4 * count.min(i + 8)]);
+                i += 8;
+            }
+        }
     }
 }
 
-/// What all blocks of a band share.
-struct Blocks<'a> {
-    params: Params,
-    origins: View<'a>,
-    /// Colours times coverage for linear sampling, as they are for manual.
-    source: View<'a>,
-    tensors: View<'a>,
-    /// All coverage is 1.
-    opaque: bool,
+/// Linear sampling where all coverage is 1, and where it is not; manual sampling.
+const OPAQUE: u32 = 0;
+const COVERED: u32 = 1;
+const MANUAL: u32 = 2;
+
+/// A row of a strip.
+struct Row<'a> {
+    params: &'a Params,
+    colours: &'a ColourLines,
+    origins: &'a [f32],
+    tensors: &'a [f32],
+    strip: Rect,
+    y: i32,
 }
 
-/// Where the taps of eight lines lie.
+/// Weights of eight lines: origins, exponents of the range weight per squared distance and of the domain
+/// weight per squared step.
 #[derive(Clone, Copy)]
-struct Lines<S: Simd> {
-    x: i32x8<S>,
-    y: i32x8<S>,
-    /// Lanes whose axis nearer to the direction is x.
-    along_x: mask32x8<S>,
-    /// Advance along the other axis per pixel of that one.
-    slope: f32x8<S>,
-    /// Offset of the pixel in the middle, and offsets per pixel of the two axes.
-    start: i32x8<S>,
-    major: i32x8<S>,
-    minor: i32x8<S>,
+struct Weights<S: Simd> {
+    origin: [f32x8<S>; 4],
+    range: f32,
+    domain: f32x8<S>,
 }
 
-impl<S: Simd> Lines<S> {
-    /// Offsets of the first of the two pixels around the taps `k` pixels along the axis, and the second
-    /// one's share.
+impl Row<'_> {
+    /// The eight pixels from pixel `i` of the row on; past its end they repeat the last one.
     #[inline(always)]
-    fn first(&self, k: f32x8<S>) -> (i32x8<S>, f32x8<S>) {
-        let o = self.slope * k;
-        let i = o.floor();
-        (self.start + self.major * k.to_int::<i32x8<S>>() + self.minor * i.to_int::<i32x8<S>>(), o - i)
-    }
-}
-
-impl Blocks<'_> {
-    /// All blocks; the compiler is told when all coverage is 1.
-    #[inline(always)]
-    fn rows<S: Simd, const OPAQUE: bool>(&self, simd: S, band: &mut Band<'_>) {
-        let last = band.window.x1 - 1;
-        for_blocks_in_tiles::<4>(band, #[inline(always)] |block, target| {
-            put_pixels4(self.filtered::<S, OPAQUE>(simd, block.x, block.y, last), target);
-        });
-    }
-
-    #[inline(always)]
-    fn filtered<S: Simd, const OPAQUE: bool>(&self, simd: S, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
-        let params = &self.params;
-        let [e, f, g, _] = get_pixels4(simd, &self.tensors, x, y, last);
+    fn filtered<S: Simd, const MODE: u32>(&self, simd: S, i: usize) -> [f32x8<S>; 4] {
+        let params = self.params;
+        let at = [self.strip.x0 + i as i32, self.y];
+        let [e, f, g, _] = row_pixels4(simd, self.tensors, i);
         let [tx, ty] = tangent(e, f, g);
         let stretch = if params.elongation > 0.0 {
             anisotropy(e, f, g) * params.elongation + 1.0
@@ -193,218 +197,101 @@ impl Blocks<'_> {
         let slope = along_x.select(ty, tx) / major;
         let steps = ((scale * params.cutoff + 1e-3) * major.abs()).floor();
         let sigma_d = scale * params.sigma_d * major.abs();
-        let domain = f32x8::splat(simd, -0.721_347_52) / (sigma_d * sigma_d).max(f32x8::splat(simd, 1e-6));
-        let range = -0.721_347_52 / (params.sigma_r * params.sigma_r).max(1e-6);
-
-        let origin = get_pixels4(simd, &self.origins, x, y, last);
+        let origin = if MODE == OPAQUE {
+            let [r, g, b] = self.colours.centres(simd, at);
+            [r, g, b, f32x8::splat(simd, 1.0)]
+        } else {
+            row_pixels4(simd, self.origins, i)
+        };
+        let weights = Weights {
+            origin,
+            range: -0.721_347_52 / (params.sigma_r * params.sigma_r).max(1e-6),
+            domain: f32x8::splat(simd, -0.721_347_52) / (sigma_d * sigma_d).max(f32x8::splat(simd, 1e-6)),
+        };
         let alpha = origin[3];
         let mut sum = [origin[0] * alpha, origin[1] * alpha, origin[2] * alpha, alpha];
-        let columns = i32x8::from_fn(simd, |lane| (x + lane as i32).min(last));
-        let (held, stride) = (self.source.window(), self.source.stride() as i32);
-        let (across, down) = (i32x8::splat(simd, 4), i32x8::splat(simd, stride));
-        let lines = Lines {
-            x: columns,
-            y: i32x8::splat(simd, y),
-            along_x,
-            slope,
-            start: (columns - held.x0) * 4 + (y - held.y0) * stride,
-            major: along_x.select(across, down),
-            minor: along_x.select(down, across),
-        };
-        // Away from the picture's edges no position needs to be clamped; where all lines take the same axis,
-        // the second pixel of a tap is as far from the first in all lanes.
-        let reach = reach(params);
-        let [w, h] = self.source.full();
-        let inner = x >= reach && y >= reach && x + 7 + reach < w && y + reach < h;
-        let gap = if !inner || params.manual != 0 {
-            None
-        } else if along_x.all_true() {
-            Some(stride as u32 as usize)
-        } else if along_x.any_true() {
-            None
-        } else {
-            Some(4)
-        };
-        if params.manual != 0 {
-            let mut k = 1.0;
-            while steps.simd_ge(k).any_true() {
-                let domain = domain_at(domain, steps, k);
-                for side in sides(steps, k) {
-                    let (at, f) = if inner { self.inner(lines, side) } else { self.clamped(lines, side) };
-                    let (a, b) = (self.pixels(simd, at[0]), self.pixels(simd, at[1]));
-                    for (tap, share) in [(a, f32x8::splat(simd, 1.0) - f), (b, f)] {
-                        let weight = (distance2(&tap, &origin) * range + domain).exp2() * share * tap[3];
-                        sum[0] = weight.mul_add(tap[0], sum[0]);
-                        sum[1] = weight.mul_add(tap[1], sum[1]);
-                        sum[2] = weight.mul_add(tap[2], sum[2]);
-                        sum[3] += weight;
-                    }
-                }
-                k += 1.0;
-            }
-        } else {
-            let mut k = 1.0;
-            let mut more = steps.simd_ge(k).any_true();
-            // Lines of no length read nothing: the pixel beside the centre may lie outside the support.
-            let mut taps = [[f32x8::splat(simd, 0.0); 4]; 2];
-            if more {
-                taps = self.taps(simd, lines, sides(steps, k), inner, gap);
-            }
-            while more {
-                // The next taps are fetched before these are weighted: exponentials are long chains of
-                // operations, and the fetches fill the time.
-                more = steps.simd_ge(k + 1.0).any_true();
-                let next = if more {
-                    self.taps(simd, lines, sides(steps, k + 1.0), inner, gap)
-                } else {
-                    taps
-                };
-                let domain = domain_at(domain, steps, k);
-                let mut exponents = [domain; 2];
-                for i in 0..2 {
-                    let mut colour = taps[i];
-                    if !OPAQUE {
-                        let seen = f32x8::splat(simd, 1.0) / colour[3].max(f32x8::splat(simd, 1e-6));
-                        colour = [colour[0] * seen, colour[1] * seen, colour[2] * seen, colour[3]];
-                    }
-                    exponents[i] += distance2(&colour, &origin) * range;
-                }
-                let weights = [exponents[0].exp2(), exponents[1].exp2()];
-                for i in 0..2 {
-                    let (weight, [r, g, b, a]) = (weights[i], taps[i]);
-                    sum[0] = weight.mul_add(r, sum[0]);
-                    sum[1] = weight.mul_add(g, sum[1]);
-                    sum[2] = weight.mul_add(b, sum[2]);
-                    sum[3] = if OPAQUE { sum[3] + weight } else { weight.mul_add(a, sum[3]) };
-                }
-                taps = next;
-                k += 1.0;
+        // Lines along the other axis have no taps in a turn.
+        for is_x in [true, false] {
+            let along = if is_x { along_x } else { !along_x };
+            if along.any_true() {
+                let lines = self.colours.lines(at, is_x, along, slope, steps);
+                self.gather::<S, MODE>(&lines, &weights, &mut sum);
             }
         }
         let seen = sum[3].simd_gt(f32x8::splat(simd, 1e-6));
+        let n = f32x8::splat(simd, 1.0) / sum[3];
         [
-            seen.select(sum[0] / sum[3], origin[0]),
-            seen.select(sum[1] / sum[3], origin[1]),
-            seen.select(sum[2] / sum[3], origin[2]),
+            seen.select(sum[0] * n, origin[0]),
+            seen.select(sum[1] * n, origin[1]),
+            seen.select(sum[2] * n, origin[2]),
             alpha,
         ]
     }
 
-    /// Interpolated taps on both sides.
+    /// Adds the taps of `lines` to the sums of colours and weights.
     #[inline(always)]
-    fn taps<S: Simd>(
+    fn gather<S: Simd, const MODE: u32>(
         &self,
-        simd: S,
-        lines: Lines<S>,
-        sides: [f32x8<S>; 2],
-        inner: bool,
-        gap: Option<usize>,
-    ) -> [[f32x8<S>; 4]; 2] {
-        if let Some(gap) = gap {
-            let places = [lines.first(sides[0]), lines.first(sides[1])];
-            return [
-                self.apart(simd, places[0].0.to_array(), gap, places[0].1),
-                self.apart(simd, places[1].0.to_array(), gap, places[1].1),
-            ];
-        }
-        let places = if inner {
-            [self.inner(lines, sides[0]), self.inner(lines, sides[1])]
-        } else {
-            [self.clamped(lines, sides[0]), self.clamped(lines, sides[1])]
-        };
-        [self.between(simd, places[0].0, places[0].1), self.between(simd, places[1].0, places[1].1)]
-    }
-
-    /// Offsets of the two pixels around the taps `k` pixels along the axis, and the second one's share.
-    #[inline(always)]
-    fn inner<S: Simd>(&self, lines: Lines<S>, k: f32x8<S>) -> ([[i32; 8]; 2], f32x8<S>) {
-        let (at, f) = lines.first(k);
-        ([at.to_array(), (at + lines.minor).to_array()], f)
-    }
-
-    /// As [`Blocks::inner`], with positions clamped to the picture.
-    #[inline(always)]
-    fn clamped<S: Simd>(&self, lines: Lines<S>, k: f32x8<S>) -> ([[i32; 8]; 2], f32x8<S>) {
-        let simd = lines.slope.simd;
-        let o = lines.slope * k;
-        let i = o.floor();
-        let (k, i): (i32x8<S>, i32x8<S>) = (k.to_int(), i.to_int());
-        let [w, h] = self.source.full();
-        let (x, y) = (lines.along_x.select(k, i), lines.along_x.select(i, k));
-        let next = lines.along_x.select(i32x8::splat(simd, 0), i32x8::splat(simd, 1));
-        let (x, y) = (lines.x + x, lines.y + y);
-        let a = self.offset(simd, x, y, [w, h]);
-        let b = self.offset(simd, x + next, y + (i32x8::splat(simd, 1) - next), [w, h]);
-        ([a, b], o - o.floor())
-    }
-
-    #[inline(always)]
-    fn offset<S: Simd>(&self, simd: S, x: i32x8<S>, y: i32x8<S>, [w, h]: [i32; 2]) -> [i32; 8] {
-        let held = self.source.window();
-        let zero = i32x8::splat(simd, 0);
-        let x = x.max(zero).min(i32x8::splat(simd, w - 1)) - held.x0;
-        let y = y.max(zero).min(i32x8::splat(simd, h - 1)) - held.y0;
-        (y * self.source.stride() as i32 + x * 4).to_array()
-    }
-
-    /// Interpolated taps.
-    #[inline(always)]
-    fn between<S: Simd>(&self, simd: S, at: [[i32; 8]; 2], f: f32x8<S>) -> [f32x8<S>; 4] {
-        let (data, f) = (self.source.data(), spread(f));
-        let mut pixels = [f32x8::splat(simd, 0.0); 4];
-        for (i, pixel) in pixels.iter_mut().enumerate() {
-            let a = load_pixel(simd, data, at[0][i]).combine(load_pixel(simd, data, at[0][i + 4]));
-            let b = load_pixel(simd, data, at[1][i]).combine(load_pixel(simd, data, at[1][i + 4]));
-            *pixel = (b - a).mul_add(f[i], a);
-        }
-        transposed(pixels)
-    }
-
-    /// Interpolated taps whose second pixels lie `gap` values behind the first: one place to look up.
-    #[inline(always)]
-    fn apart<S: Simd>(&self, simd: S, at: [i32; 8], gap: usize, f: f32x8<S>) -> [f32x8<S>; 4] {
-        let (data, f) = (self.source.data(), spread(f));
-        // Two slices of one length share the check of the range.
-        let (first, second) = (&data[..data.len() - gap], &data[gap..]);
-        let mut pixels = [f32x8::splat(simd, 0.0); 4];
-        for i in 0..4 {
-            let (low, high) = (at[i] as u32 as usize, at[i + 4] as u32 as usize);
-            let a = load_pixels(simd, &first[low..low + 4], &first[high..high + 4]);
-            let b = load_pixels(simd, &second[low..low + 4], &second[high..high + 4]);
-            pixels[i] = (b - a).mul_add(f[i], a);
-        }
-        transposed(pixels)
-    }
-
-    /// The pixels at eight offsets.
-    #[inline(always)]
-    fn pixels<S: Simd>(&self, simd: S, at: [i32; 8]) -> [f32x8<S>; 4] {
-        let data = self.source.data();
-        let mut pixels = [f32x4::splat(simd, 0.0); 8];
-        for lane in 0..8 {
-            pixels[lane] = load_pixel(simd, data, at[lane]);
-        }
-        channels(pixels)
+        lines: &Lines<S>,
+        weights: &Weights<S>,
+        sum: &mut [f32x8<S>; 4],
+    ) {
+        let simd = weights.domain.simd;
+        let (one, none) = (f32x8::splat(simd, 1.0), f32x8::splat(simd, -1e3));
+        lines.for_steps(
+            #[inline(always)]
+            |step| {
+                // Lines that have ended have black taps, which must weigh less than a float can add to the sum.
+                let domain = step.active.select(weights.domain * step.distance * step.distance, none);
+                if MODE == MANUAL {
+                    self.colours.for_rows::<S, 4>(
+                        &step,
+                        #[inline(always)]
+                        |share, [[r0, g0, b0, a0], [r1, g1, b1, a1]]| {
+                            let [w0, w1] = weights.of([[r0, g0, b0], [r1, g1, b1]], domain);
+                            let (w0, w1) = (w0 * share * a0, w1 * share * a1);
+                            add(sum, w0, [r0, g0, b0], w0);
+                            add(sum, w1, [r1, g1, b1], w1);
+                        },
+                    );
+                } else if MODE == COVERED {
+                    let [[r0, g0, b0, a0], [r1, g1, b1, a1]] = self.colours.taps::<S, 4>(&step);
+                    let (n0, n1) = (one / a0.max(1e-6), one / a1.max(1e-6));
+                    let [w0, w1] =
+                        weights.of([[r0 * n0, g0 * n0, b0 * n0], [r1 * n1, g1 * n1, b1 * n1]], domain);
+                    add(sum, w0, [r0, g0, b0], w0 * a0);
+                    add(sum, w1, [r1, g1, b1], w1 * a1);
+                } else {
+                    let taps = self.colours.taps::<S, 3>(&step);
+                    let [w0, w1] = weights.of(taps, domain);
+                    add(sum, w0, taps[0], w0);
+                    add(sum, w1, taps[1], w1);
+                }
+            },
+        );
     }
 }
 
-/// Positions of tap `k` on both sides; lines that have ended stay within the support.
-#[inline(always)]
-fn sides<S: Simd>(steps: f32x8<S>, k: f32) -> [f32x8<S>; 2] {
-    let reached = steps.min(k);
-    [-reached, reached]
+impl<S: Simd> Weights<S> {
+    /// The weights of two colours whose domain weights have the exponent `domain`.
+    #[inline(always)]
+    fn of(&self, colours: [[f32x8<S>; 3]; 2], domain: f32x8<S>) -> [f32x8<S>; 2] {
+        let mut exponents = [domain; 2];
+        for i in 0..2 {
+            let [r, g, b] = colours[i];
+            let (r, g, b) = (r - self.origin[0], g - self.origin[1], b - self.origin[2]);
+            let square = b.mul_add(b, g.mul_add(g, r * r));
+            exponents[i] = square.mul_add(f32x8::splat(r.simd, self.range), domain);
+        }
+        exponents[0].combine(exponents[1]).exp2_falling().split().into()
+    }
 }
 
-/// Exponent of the domain weight of tap `k`. Lines that have ended count for nothing: far below what a
-/// float can add to the sum.
+/// Adds a weighted colour, and its share of the weights.
 #[inline(always)]
-fn domain_at<S: Simd>(domain: f32x8<S>, steps: f32x8<S>, k: f32) -> f32x8<S> {
-    steps.simd_ge(k).select(domain * (k * k), f32x8::splat(steps.simd, -1e3))
-}
-
-/// Squared Euclidean distance of the three colour channels.
-#[inline(always)]
-fn distance2<S: Simd>(a: &[f32x8<S>; 4], b: &[f32x8<S>; 4]) -> f32x8<S> {
-    let d = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-    d[2].mul_add(d[2], d[1].mul_add(d[1], d[0] * d[0]))
+fn add<S: Simd>(sum: &mut [f32x8<S>; 4], weight: f32x8<S>, colour: [f32x8<S>; 3], share: f32x8<S>) {
+    for channel in 0..3 {
+        sum[channel] = weight.mul_add(colour[channel], sum[channel]);
+    }
+    sum[3] += share;
 }
