@@ -117,10 +117,15 @@ pub fn write1<S: Simd>(v: f32x8<S>, target: &mut [f32]) {
 #[inline(always)]
 pub fn write2<S: Simd>([a, b]: [f32x8<S>; 2], target: &mut [f32]) {
     let (low, high) = a.interleave(b);
-    let mut block = [0.0; 2 * BLOCK];
-    low.store_slice(&mut block[..8]);
-    high.store_slice(&mut block[8..]);
-    target.copy_from_slice(&block[..target.len()]);
+    if target.len() == 2 * BLOCK {
+        low.store_slice(&mut target[..8]);
+        high.store_slice(&mut target[8..]);
+    } else {
+        let mut block = [0.0; 2 * BLOCK];
+        low.store_slice(&mut block[..8]);
+        high.store_slice(&mut block[8..]);
+        target.copy_from_slice(&block[..target.len()]);
+    }
 }
 
 /// Writes four values a pixel.

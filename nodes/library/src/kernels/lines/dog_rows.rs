@@ -1,9 +1,10 @@
 //! Rows of two Gaussians at once, on lightness and coverage: the first half of the isotropic
 //! difference of Gaussians (4.5, 4.7).
 //!
-//! Cost: two multiply-adds per tap and value, radius + 1 taps. Eight interleaved pixels to a vector.
+//! Cost: two multiply-adds per tap and value, radius + 1 taps. Sixteen interleaved pixels at a time.
 
 use crate::kernels::support::{GaussianTable, gaussian_radius, gaussian_table};
+use crate::kernels::symmetric::flat;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x16, f64x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -59,61 +60,62 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     dispatch!(pass.level, simd => smooth(simd, pass, &params, band));
 }
 
+/// Values that are summed at once: sixteen pixels.
+const RUN: usize = 32;
+
 #[inline(always)]
 fn smooth<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
-    let mut scratch = Vec::new();
+    let (mut scratch, mut end) = (Vec::new(), Vec::new());
+    let (narrow, wide) = (flat(&params.narrow), flat(&params.wide));
     let window = band.window;
-    let r = params.radius as usize;
+    // Tap i of a value lies 2 i values to either side of it.
+    let reach = 4 * params.radius as usize;
+    let weights = [&narrow[..=params.radius as usize], &wide[..=params.radius as usize]];
     for y in window.y0..window.y1 {
         let (x0, x1) = (window.x0 - params.radius, window.x1 + params.radius);
         let source = pass.inputs[0].padded_row(y, x0, x1, &mut scratch);
-        for (i, target) in band.row_mut(0, y).chunks_mut(32).enumerate() {
-            // Tap i of value v lies 2 i values to either side of 2 r + v.
-            let first = 16 * i;
-            if target.len() == 32 {
-                let [a, b] = pair(
-                    simd,
-                    params,
-                    #[inline(always)]
-                    |tap| f32x16::from_slice(simd, &source[first + 2 * tap..][..16]),
-                );
-                a.store_slice(&mut target[..16]);
-                b.store_slice(&mut target[16..]);
-                continue;
+        for (n, target) in band.row_mut(0, y).chunks_mut(2 * RUN).enumerate() {
+            let source = &source[RUN * n..];
+            if target.len() == 2 * RUN {
+                sum(simd, &source[..RUN + reach], weights, target);
+            } else {
+                // The end of a row goes through the same arithmetic.
+                end.clear();
+                end.extend_from_slice(source);
+                end.resize(RUN + reach, 0.0);
+                let mut block = [0.0; 2 * RUN];
+                sum(simd, &end, weights, &mut block);
+                target.copy_from_slice(&block[..target.len()]);
             }
-            let rest = target.len() / 2;
-            let [a, b] = pair(
-                simd,
-                params,
-                #[inline(always)]
-                |tap| {
-                    let mut block = [0.0; 16];
-                    block[..rest].copy_from_slice(&source[first + 2 * tap..][..rest]);
-                    f32x16::simd_from(simd, block)
-                },
-            );
-            let mut block = [0.0; 32];
-            a.store_slice(&mut block[..16]);
-            b.store_slice(&mut block[16..]);
-            target.copy_from_slice(&block[..target.len()]);
         }
-        debug_assert!(source.len() == 2 * (window.width() as usize + 2 * r));
     }
 }
 
-/// Eight pixels (narrow L, narrow alpha, wide L, wide alpha); `tap(0)` is the leftmost.
+/// Pixels (narrow L, narrow alpha, wide L, wide alpha) from (L, alpha) of them and of the taps to both sides.
 #[inline(always)]
-fn pair<S: Simd>(simd: S, params: &Params, tap: impl Fn(usize) -> f32x16<S>) -> [f32x16<S>; 2] {
-    let r = params.radius as usize;
-    let middle = tap(r);
-    let mut narrow = middle * params.narrow[0][0];
-    let mut wide = middle * params.wide[0][0];
-    for i in 1..=r {
-        let both = tap(r - i) + tap(r + i);
-        narrow = both.mul_add(f32x16::splat(simd, params.narrow[i / 4][i % 4]), narrow);
-        wide = both.mul_add(f32x16::splat(simd, params.wide[i / 4][i % 4]), wide);
+fn sum<S: Simd>(simd: S, source: &[f32], [narrow, wide]: [&[f32]; 2], target: &mut [f32]) {
+    let first = source.len() - RUN;
+    let mut sums = [[f32x16::splat(simd, 0.0); 2]; 2];
+    let middle = &source[first / 2..first / 2 + RUN];
+    for k in 0..2 {
+        let value = f32x16::from_slice(simd, &middle[16 * k..16 * k + 16]);
+        sums[k] = [value * narrow[0], value * wide[0]];
     }
-    // (L, alpha) pairs move as one 64-bit value.
-    let (a, b) = narrow.bitcast::<f64x8<S>>().interleave(wide.bitcast::<f64x8<S>>());
-    [a.bitcast(), b.bitcast()]
+    for (i, (n, w)) in narrow.iter().zip(wide).enumerate().skip(1) {
+        let (n, w) = (f32x16::splat(simd, *n), f32x16::splat(simd, *w));
+        let (before, after) =
+            (&source[first / 2 - 2 * i..][..RUN], &source[first / 2 + 2 * i..][..RUN]);
+        for k in 0..2 {
+            let both = f32x16::from_slice(simd, &before[16 * k..16 * k + 16])
+                + f32x16::from_slice(simd, &after[16 * k..16 * k + 16]);
+            sums[k] = [both.mul_add(n, sums[k][0]), both.mul_add(w, sums[k][1])];
+        }
+    }
+    for k in 0..2 {
+        // (L, alpha) pairs move as one 64-bit value.
+        let [narrow, wide] = sums[k];
+        let (a, b) = narrow.bitcast::<f64x8<S>>().interleave(wide.bitcast::<f64x8<S>>());
+        a.bitcast::<f32x16<S>>().store_slice(&mut target[32 * k..32 * k + 16]);
+        b.bitcast::<f32x16<S>>().store_slice(&mut target[32 * k + 16..32 * k + 32]);
+    }
 }
