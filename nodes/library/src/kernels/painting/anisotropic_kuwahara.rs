@@ -4,12 +4,12 @@
 //! Eight neighbouring pixels go through the union of their ellipses, row by row, pixels outside their
 //! own ellipse with weight 0. Two pixels opposite each other share one evaluation of the weights, and
 //! sums over opposite sectors are kept as their sum and their difference: those need the sum and the
-//! difference of the two colours only, which halves the multiply-adds. A row's weights are found
+//! difference of the two colours only, which halves the multiply-adds. The weights of some rows are found
 //! first, then the sums of two opposite sectors at a time, which fit the registers.
 //!
 //! Cost: pi radius^2 pixels, each half of about 110 operations.
 
-use crate::kernels::planes::Planes;
+use crate::kernels::planes::{CHANNELS, Planes};
 use crate::kernels::rows::strips;
 use crate::kernels::sectors::{INSIDE, MIN_RADIUS, Polynomial, Response, Sector};
 use crate::kernels::support::{get_pixels4, put_pixels4};
@@ -104,6 +104,10 @@ pub(crate) fn reach(radius: f32, elongation: f32) -> i32 {
 /// then sums and differences of the pixels' channels.
 type Tap = [[f32; 8]; 18];
 
+/// Pairs of pixels that are collected before they are added up: with fewer, sums would often be begun
+/// anew, and more would not stay in the first-level cache.
+const BATCH: usize = 24;
+
 const BOTH: usize = 0;
 const APART: usize = 4;
 const SUM: usize = 8;
@@ -119,7 +123,7 @@ fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
     let reach = reach(params.radius, params.elongation);
     let response = Response { threshold: params.threshold, q: params.q, floor: params.deviation_floor };
     let mut planes = Planes::default();
-    let mut taps: Vec<Tap> = vec![[[0.0; 8]; 18]; 2 * reach as usize + 1];
+    let mut taps: Vec<Tap> = vec![[[0.0; 8]; 18]; BATCH + 2 * reach as usize];
     let (color, window) = (&pass.inputs[0], band.window);
     for (x0, x1) in strips(window.x0, window.x1) {
         planes.start(x0, x1, reach, 2 * reach + 1);
@@ -272,20 +276,25 @@ fn gather<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
         *centre = f32x8::from_slice(simd, &plane[at..at + 8]) * (share + share);
     }
     let mut out = Gathered { both: [centre; 4], apart: [[zero; 5]; 4], weights: [share; 4] };
+    let mut collected = 0;
     for j in 0..=ellipses.rows {
         let (first, last) = ellipses.columns(j as f32);
         let first = if j == 0 { 1 } else { first };
-        if last < first {
-            continue;
+        if first <= last {
+            let count = (last - first + 1) as usize;
+            let row = &mut taps[collected..collected + count];
+            weights::<S, OPAQUE, EIGHT>(simd, place, ellipses, params, [first, j], row);
+            collected += count;
         }
-        let count = (last - first + 1) as usize;
-        let row = &mut taps[..count];
-        weights::<S, OPAQUE, EIGHT>(simd, place, ellipses, params, [first, j], row);
-        add::<S, OPAQUE, 0>(simd, row, &mut out);
-        add::<S, OPAQUE, 2>(simd, row, &mut out);
-        if EIGHT {
-            add::<S, OPAQUE, 1>(simd, row, &mut out);
-            add::<S, OPAQUE, 3>(simd, row, &mut out);
+        if collected >= BATCH || j == ellipses.rows {
+            let taps = &taps[..collected];
+            add::<S, OPAQUE, 0>(simd, taps, &mut out);
+            add::<S, OPAQUE, 2>(simd, taps, &mut out);
+            if EIGHT {
+                add::<S, OPAQUE, 1>(simd, taps, &mut out);
+                add::<S, OPAQUE, 3>(simd, taps, &mut out);
+            }
+            collected = 0;
         }
     }
     if OPAQUE {
@@ -307,7 +316,14 @@ fn weights<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
     row: &mut [Tap],
 ) {
     let Place { planes, x, y } = place;
-    let (below, above) = (planes.row(y + j), planes.row(y - j));
+    // What the row meets below, and above from its last pixel on.
+    let last = row.len() - 1;
+    let (mut below, mut above) = (planes.row(y + j), planes.row(y - j));
+    let (near, far) = (planes.column(x + i), planes.column(x - i) - last);
+    for channel in 0..CHANNELS {
+        below[channel] = &below[channel][near..near + last + 8];
+        above[channel] = &above[channel][far..far + last + 8];
+    }
     let zero = f32x8::splat(simd, 0.0);
     let zeta = f32x8::splat(simd, params.zeta);
     let eta = f32x8::splat(simd, -params.eta);
@@ -315,8 +331,8 @@ fn weights<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
     let step = [ellipses.along[0], ellipses.across[0]];
     let turned = [(start[0] + start[1]) * FRAC_1_SQRT_2, (start[1] - start[0]) * FRAC_1_SQRT_2];
     let turned_step = [(step[0] + step[1]) * FRAC_1_SQRT_2, (step[1] - step[0]) * FRAC_1_SQRT_2];
-    for (tap, i) in row.iter_mut().zip(i..) {
-        let column = f32x8::splat(simd, i as f32);
+    for (n, tap) in row.iter_mut().enumerate() {
+        let column = f32x8::splat(simd, (i + n as i32) as f32);
         let v = [column.mul_add(step[0], start[0]), column.mul_add(step[1], start[1])];
         let squares = [v[0] * v[0], v[1] * v[1]];
         let distance = squares[0] + squares[1];
@@ -340,10 +356,9 @@ fn weights<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
                 (pairs[k].1 * g).store_slice(&mut tap[APART + k]);
             }
         }
-        let (near, far) = (planes.column(x + i), planes.column(x - i));
         for channel in 0..if OPAQUE { 4 } else { 5 } {
-            let p = f32x8::from_slice(simd, &below[channel][near..near + 8]);
-            let q = f32x8::from_slice(simd, &above[channel][far..far + 8]);
+            let p = f32x8::from_slice(simd, &below[channel][n..n + 8]);
+            let q = f32x8::from_slice(simd, &above[channel][last - n..last - n + 8]);
             (p + q).store_slice(&mut tap[SUM + channel]);
             (p - q).store_slice(&mut tap[DIFFERENCE + channel]);
         }
@@ -363,20 +378,21 @@ fn opposite<S: Simd>(forward: f32x8<S>, k: f32x8<S>, zero: f32x8<S>) -> (f32x8<S
 #[inline(always)]
 fn gaussian<S: Simd>(x: f32x8<S>) -> f32x8<S> {
     let c = |v: f32| f32x8::splat(x.simd, v);
-    let p = x.mul_add(c(-0.001_649_391), c(0.014_706_744));
-    let p = p.mul_add(x, c(-0.079_063_355));
-    let p = p.mul_add(x, c(0.305_081_35));
-    let p = p.mul_add(x, c(-0.781_241_96));
-    let p = p.mul_add(x, c(0.999_999_9));
+    // In pairs, so that no more than three operations wait for each other.
+    let xx = x * x;
+    let high = x.mul_add(c(-0.001_649_391), c(0.014_706_744));
+    let middle = x.mul_add(c(-0.079_063_355), c(0.305_081_35));
+    let low = x.mul_add(c(-0.781_241_96), c(0.999_999_9));
+    let p = xx.mul_add(high, middle).mul_add(xx, low);
     let p = p * p;
     p * p
 }
 
-/// Adds a row's pixels to sector `K` and its opposite.
+/// Adds pixels to sector `K` and its opposite.
 #[inline(always)]
-fn add<S: Simd, const OPAQUE: bool, const K: usize>(simd: S, row: &[Tap], out: &mut Gathered<S>) {
+fn add<S: Simd, const OPAQUE: bool, const K: usize>(simd: S, taps: &[Tap], out: &mut Gathered<S>) {
     let (mut both, mut apart, mut weights) = (out.both[K], out.apart[K], out.weights[K]);
-    for tap in row {
+    for tap in taps {
         let s = f32x8::from_slice(simd, &tap[BOTH + K]);
         let d = f32x8::from_slice(simd, &tap[APART + K]);
         for channel in 0..if OPAQUE { 4 } else { 5 } {
