@@ -40,11 +40,19 @@ impl Planes {
         (x - self.first) as usize
     }
 
+    /// The place of row `y` in the ring.
+    // Neither this nor the slice below may become a call, around which all vectors would be saved.
+    #[inline(always)]
+    fn slot(&self, y: i32) -> usize {
+        let rest = y % self.count;
+        (if rest < 0 { rest + self.count } else { rest }) as usize
+    }
+
     /// The channels of row `y`.
     #[inline(always)]
     pub fn row(&self, y: i32) -> [&[f32]; CHANNELS] {
-        let start = y.rem_euclid(self.count) as usize * CHANNELS * self.len;
-        let row = &self.data[start..start + CHANNELS * self.len];
+        let start = self.slot(y) * CHANNELS * self.len;
+        let row = &self.data.as_slice()[start..start + CHANNELS * self.len];
         let (r, rest) = row.split_at(self.len);
         let (g, rest) = rest.split_at(self.len);
         let (b, rest) = rest.split_at(self.len);
@@ -60,7 +68,7 @@ impl Planes {
     /// Takes in row `y` of a colour image, which replaces the oldest.
     #[inline(always)]
     pub fn load<S: Simd>(&mut self, simd: S, view: &View<'_>, y: i32) {
-        let slot = y.rem_euclid(self.count) as usize;
+        let slot = self.slot(y);
         let last = self.first + self.columns as i32;
         let source = view.padded_row(y, self.first, last, &mut self.scratch);
         let target = &mut self.data[slot * CHANNELS * self.len..][..CHANNELS * self.len];
