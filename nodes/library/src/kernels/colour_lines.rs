@@ -154,13 +154,7 @@ impl ColourLines {
     /// `weighted`: colours are multiplied by coverage, to be mixed.
     #[inline(always)]
     pub fn load<S: Simd>(&mut self, simd: S, view: &View<'_>, strip: Rect, radius: i32, weighted: bool) {
-        let margin = radius + FEW;
-        (self.x0, self.y0) = (strip.x0 - margin, strip.y0 - margin);
-        // Lines of the last block read as if it were full.
-        self.width = (strip.width() as usize).next_multiple_of(8) + (2 * margin as usize).next_multiple_of(8);
-        let rows = strip.height() as usize + 2 * margin as usize;
-        self.len = self.width * rows;
-        self.data.resize(4 * self.len, 0.0);
+        let rows = self.start(strip, radius);
         let (held, one) = (view.window(), f32x8::splat(simd, 1.0));
         let (r, rest) = self.data.split_at_mut(self.len);
         let (g, rest) = rest.split_at_mut(self.len);
@@ -185,6 +179,42 @@ impl ColourLines {
             }
         }
         self.opaque = opaque;
+    }
+
+    /// As [`ColourLines::load`] from an image of two channels, which are a value times coverage, and coverage.
+    #[inline(always)]
+    pub fn load2<S: Simd>(&mut self, simd: S, view: &View<'_>, strip: Rect, radius: i32) {
+        let rows = self.start(strip, radius);
+        let (held, one) = (view.window(), f32x8::splat(simd, 1.0));
+        let (values, coverage) = self.data.split_at_mut(self.len);
+        let mut opaque = true;
+        for row in 0..rows {
+            let y = (self.y0 + row as i32).clamp(held.y0, held.y1 - 1);
+            let source = view.padded_row(y, self.x0, self.x0 + self.width as i32, &mut self.scratch);
+            let target = row * self.width..(row + 1) * self.width;
+            let (values, coverage) = (&mut values[target.clone()], &mut coverage[target]);
+            for (i, pixels) in source.chunks_exact(16).enumerate() {
+                let (low, high) =
+                    (f32x8::from_slice(simd, &pixels[..8]), f32x8::from_slice(simd, &pixels[8..]));
+                let (value, alpha) = low.deinterleave(high);
+                opaque &= alpha.simd_eq(one).all_true();
+                value.store_slice(&mut values[8 * i..8 * i + 8]);
+                alpha.store_slice(&mut coverage[8 * i..8 * i + 8]);
+            }
+        }
+        self.opaque = opaque;
+    }
+
+    /// Makes room for the pixels around a strip and returns the number of their rows.
+    fn start(&mut self, strip: Rect, radius: i32) -> usize {
+        let margin = radius + FEW;
+        (self.x0, self.y0) = (strip.x0 - margin, strip.y0 - margin);
+        // Lines of the last block read as if it were full.
+        self.width = (strip.width() as usize).next_multiple_of(8) + (2 * margin as usize).next_multiple_of(8);
+        let rows = strip.height() as usize + 2 * margin as usize;
+        self.len = self.width * rows;
+        self.data.resize(4 * self.len, 0.0);
+        rows
     }
 
     /// True when every pixel around the strip is opaque: taps of weighted colours are then colours, to the
@@ -335,4 +365,47 @@ fn few<S: Simd>(values: &[f32], at: [usize; FEW as usize], shares: [f32x8<S>; FE
 fn eight<S: Simd>(simd: S, values: &[f32], at: i32) -> f32x8<S> {
     let at = at as u32 as usize;
     f32x8::from_slice(simd, &values[at..at + 8])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isophote_engine::Image;
+    use isophote_engine::fearless_simd::{Level, dispatch};
+
+    #[test]
+    fn taps_are_interpolated_whatever_the_lines_beside_them() {
+        let values = (0..48 * 40 * 4).map(|i| ((i * 7919) % 1013) as f32 / 97.0);
+        let image = Image::from_vec(48, 40, 4, values.collect()).unwrap();
+        let strip = Rect { x0: 16, y0: 16, x1: 24, y1: 24 };
+        let slopes = [0.9, -0.7, 0.1, 0.33, -0.02, 0.5, -1.0, 0.8];
+        dispatch!(Level::new(), simd => {
+            let view = View::new(&image, [48, 40]);
+            let mut colours = ColourLines::default();
+            colours.load(simd, &view, strip, 6, false);
+            let taps = |slopes: [f32; 8]| {
+                let (slope, steps) = (f32x8::simd_from(simd, slopes), f32x8::splat(simd, 6.0));
+                let lines = colours.lines([16, 20], true, mask32x8::splat(simd, true), slope, steps);
+                let mut all = Vec::new();
+                lines.for_steps(|step| {
+                    let [ahead, behind] = colours.taps::<_, 1>(&step);
+                    all.push([ahead[0].to_array(), behind[0].to_array()]);
+                });
+                all
+            };
+            let together = taps(slopes);
+            for (lane, slope) in slopes.into_iter().enumerate() {
+                let alone = taps([slope; 8]);
+                for k in 1..=6 {
+                    for (side, k) in [k, -k].into_iter().enumerate() {
+                        let got = together[k.unsigned_abs() as usize - 1][side][lane];
+                        assert_eq!(got, alone[k.unsigned_abs() as usize - 1][side][lane]);
+                        let (x, y) = (16 + lane as i32 + k, 20.0 + slope * k as f32);
+                        let [a, b] = [0, 1].map(|row| view.pixel4(x, y.floor() as i32 + row)[0]);
+                        assert!((a + (b - a) * y.fract() - got).abs() < 1e-4);
+                    }
+                }
+            }
+        });
+    }
 }

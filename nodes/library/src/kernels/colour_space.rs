@@ -149,3 +149,27 @@ pub fn lab_to_linear<S: Simd>([l, a, b]: Rgb<S>) -> Rgb<S> {
 fn lab_curve_inverse<S: Simd>(f: f32x8<S>) -> f32x8<S> {
     f.simd_le(6.0 / 29.0).select((f - 16.0 / 116.0) * (1.0 / SLOPE_LAB), f * f * f)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isophote_engine::fearless_simd::{Level, dispatch};
+
+    #[test]
+    fn roots_meet_their_bounds() {
+        dispatch!(Level::new(), simd => {
+            // From the dark ends of the curves to far beyond the brightest pixels.
+            for i in 0..11_000 {
+                let x = 0.005 * 1.003f32.powi(i);
+                let wide = f32x8::splat(simd, x);
+                for (got, want, bound) in [
+                    (power_2_4(wide)[0], f64::from(x).powf(2.4), 6e-7),
+                    (cube_root(wide)[0], f64::from(x).cbrt(), 3e-7),
+                ] {
+                    let error = (f64::from(got) / want - 1.0).abs();
+                    assert!(error < bound, "{got} for {want} at {x}");
+                }
+            }
+        });
+    }
+}

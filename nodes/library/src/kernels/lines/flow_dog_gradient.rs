@@ -5,12 +5,13 @@
 //! one row or column, and two reads interpolate it exactly as a bilinear sample would.
 //! Cost: per step (about 3 k sigma_e of them) four reads of two values; four exponentials per pixel.
 
-use crate::kernels::blocks::{Block, for_blocks_in_tiles, offsets, write2};
+use crate::kernels::blocks::{BLOCK, Block, write2};
+use crate::kernels::colour_lines::{ColourLines, strips};
 use crate::kernels::edge_threshold::{LEAST_COVERAGE, Xdog, dog_response};
 use crate::kernels::tensor_algebra::tangent;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
-use isophote_engine::math::{Elementary, load_pairs, load_pixel, spread, transposed};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
+use isophote_engine::math::Elementary;
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::params! {
     /// Uniform block.
@@ -82,8 +83,8 @@ pub fn halfwidth(sigma: f32, k: f32) -> f32 {
 pub struct Across<S: Simd> {
     /// Absolute columns and rows of the pixels.
     pub at: [i32x8<S>; 2],
-    /// All ones in lanes that step along y.
-    upright: i32x8<S>,
+    /// Lanes that step along y.
+    upright: mask32x8<S>,
     /// Pixels across per step.
     slope: f32x8<S>,
     /// Length of a step, 1..=sqrt 2.
@@ -97,24 +98,12 @@ impl<S: Simd> Across<S> {
         let [tx, ty] = tangent(difference, f, f32x8::splat(simd, 0.0));
         let upright = tx.abs().simd_gt(ty.abs());
         let slope = upright.select(-ty / tx, -tx / ty);
-        let none = i32x8::splat(simd, 0);
         Self {
             at: [block.columns(simd), i32x8::splat(simd, block.y)],
-            upright: upright.select(!none, none),
+            upright,
             slope,
             step: (slope * slope + 1.0).sqrt(),
         }
-    }
-
-    /// Offsets (x, y) of the pixel at or before step `k`, and the share of the one after it.
-    #[inline(always)]
-    fn place(&self, k: i32) -> ([i32x8<S>; 2], f32x8<S>) {
-        let across = self.slope * k as f32;
-        let whole = across.floor();
-        let i: i32x8<S> = whole.to_int();
-        let k = i32x8::splat(self.slope.simd, k);
-        let upright = self.upright;
-        ([(k & !upright) | (i & upright), (i & !upright) | (k & upright)], across - whole)
     }
 
     /// The pixels nearest to step `k`. Ties are decided off the middle, so that rounding does not.
@@ -122,38 +111,18 @@ impl<S: Simd> Across<S> {
     pub fn nearest(&self, k: i32) -> [i32x8<S>; 2] {
         let i: i32x8<S> = (self.slope * k as f32 + 0.502).floor().to_int();
         let k = i32x8::splat(self.slope.simd, k);
-        let upright = self.upright;
-        [
-            self.at[0] + ((k & !upright) | (i & upright)),
-            self.at[1] + ((i & !upright) | (k & upright)),
-        ]
+        [self.at[0] + self.upright.select(i, k), self.at[1] + self.upright.select(k, i)]
     }
 
-    /// Sample of an interleaved two-channel image at step `k`; `inner` lines stay off the picture's edges.
+    /// Steps to the cut-off: the last `k` for which `k` times the length of a step does not exceed it.
     #[inline(always)]
-    fn sample2(&self, simd: S, view: &View<'_>, k: i32, inner: bool) -> [f32x8<S>; 2] {
-        let ([ox, oy], f) = self.place(k);
-        let (x, y) = (self.at[0] + ox, self.at[1] + oy);
-        if inner {
-            let (held, stride, data) = (view.window(), view.stride() as i32, view.data());
-            let a = (y - held.y0) * stride + (x - held.x0) * 2;
-            let next = (self.upright & i32x8::splat(simd, 2)) | (!self.upright & i32x8::splat(simd, stride));
-            let (a, b, f) = (a.to_array(), (a + next).to_array(), spread(f));
-            let mut pixels = [f32x8::splat(simd, 0.0); 4];
-            for (i, pixel) in pixels.iter_mut().enumerate() {
-                let a = load_pixel(simd, data, a[i]).combine(load_pixel(simd, data, a[i + 4]));
-                let b = load_pixel(simd, data, b[i]).combine(load_pixel(simd, data, b[i + 4]));
-                *pixel = a + (b - a) * f[i];
-            }
-            let [v, alpha, _, _] = transposed(pixels);
-            return [v, alpha];
-        }
-        let one = i32x8::splat(simd, 1);
-        let (next_x, next_y) = (x + (self.upright & one), y + (!self.upright & one));
-        let a = load_pairs(simd, view.data(), offsets(view, x, y).to_array());
-        let b = load_pairs(simd, view.data(), offsets(view, next_x, next_y).to_array());
-        let (f0, f1) = f.interleave(f);
-        (a[0] + (b[0] - a[0]) * f0).deinterleave(a[1] + (b[1] - a[1]) * f1).into()
+    fn steps(&self, halfwidth: f32) -> f32x8<S> {
+        let (one, halfwidth) =
+            (f32x8::splat(self.step.simd, 1.0), f32x8::splat(self.step.simd, halfwidth));
+        // The quotient is rounded.
+        let steps = (halfwidth / self.step).floor() + one;
+        let steps = (steps * self.step).simd_le(halfwidth).select(steps, steps - one);
+        (steps * self.step).simd_le(halfwidth).select(steps, steps - one)
     }
 }
 
@@ -198,34 +167,75 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 
 #[inline(always)]
 fn gradient<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
-    let (lightness, field) = (&pass.inputs[0], &pass.inputs[1]);
-    let reach = params.halfwidth as i32 + 2;
-    for_blocks_in_tiles::<2>(band, #[inline(always)] |block, target| {
-        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        let orientation = block.read2(simd, field);
-        let line = Across::new(simd, &block, orientation);
-        // Away from the picture's edges no position needs to be clamped, and there is a next row to read into.
-        let [w, h] = lightness.full();
-        let inner = block.x >= reach && block.x + 7 + reach < w && block.y >= reach && block.y + reach < h;
-        let [middle, alpha] = block.read2(simd, lightness);
-        let (mut narrow, mut narrow_alpha, mut wide, mut wide_alpha) = (middle, alpha, middle, alpha);
-        let mut falloff = [Falloff::new(line.step, params.narrow), Falloff::new(line.step, params.wide)];
-        for k in 1..=params.halfwidth as i32 {
-            let near = (line.step * k as f32).simd_le(params.halfwidth);
-            let ahead = line.sample2(simd, lightness, k, inner);
-            let behind = line.sample2(simd, lightness, -k, inner);
-            let (v, a) = (ahead[0] + behind[0], ahead[1] + behind[1]);
-            let n = near.select(falloff[0].at(k), zero);
-            let w = near.select(falloff[1].at(k), zero);
-            narrow = v.mul_add(n, narrow);
-            narrow_alpha = a.mul_add(n, narrow_alpha);
-            wide = v.mul_add(w, wide);
-            wide_alpha = a.mul_add(w, wide_alpha);
+    let (radius, left) = (params.halfwidth as i32, band.window.x0);
+    let mut lightness = ColourLines::default();
+    for strip in strips(band, radius) {
+        lightness.load2(simd, &pass.inputs[0], strip, radius);
+        for y in strip.y0..strip.y1 {
+            let target = &mut band.row_mut(0, y)[2 * (strip.x0 - left) as usize..];
+            let mut x = strip.x0;
+            while x < strip.x1 {
+                let block = Block { x, y, len: BLOCK.min((strip.x1 - x) as usize) };
+                let orientation = block.read2(simd, &pass.inputs[1]);
+                let line = Across::new(simd, &block, orientation);
+                let response = if lightness.is_opaque() {
+                    differences::<S, true>(simd, &lightness, params, &block, &line)
+                } else {
+                    differences::<S, false>(simd, &lightness, params, &block, &line)
+                };
+                let at = 2 * (x - strip.x0) as usize;
+                write2(response, &mut target[at..at + 2 * block.len]);
+                x += BLOCK as i32;
+            }
         }
-        let covered = narrow_alpha.min(wide_alpha).simd_gt(LEAST_COVERAGE);
-        let narrow = narrow / covered.select(narrow_alpha, one);
-        let wide = wide / covered.select(wide_alpha, one);
-        let u = dog_response(narrow, wide, params.base, params.edge);
-        write2([covered.select(u, zero) * alpha, alpha], target);
-    });
+    }
+}
+
+/// The responses of a block, and its coverage; the compiler is told when all coverage is 1.
+#[inline(always)]
+fn differences<S: Simd, const OPAQUE: bool>(
+    simd: S,
+    lightness: &ColourLines,
+    params: &Params,
+    block: &Block,
+    line: &Across<S>,
+) -> [f32x8<S>; 2] {
+    let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+    let at = [block.x, block.y];
+    let [middle, alpha] = lightness.centres(simd, at);
+    let (mut narrow, mut narrow_alpha, mut wide, mut wide_alpha) = (middle, alpha, middle, alpha);
+    let steps = line.steps(params.halfwidth);
+    // Lines along the other axis have no samples in a turn.
+    for is_x in [true, false] {
+        let along = if is_x { !line.upright } else { line.upright };
+        if !along.any_true() {
+            continue;
+        }
+        let mut falloff = [Falloff::new(line.step, params.narrow), Falloff::new(line.step, params.wide)];
+        let mut k = 0;
+        lightness.lines(at, is_x, along, line.slope, steps).for_steps(
+            #[inline(always)]
+            |step| {
+                k += 1;
+                let (v, a) = if OPAQUE {
+                    let [[ahead], [behind]] = lightness.taps::<S, 1>(&step);
+                    (ahead + behind, one + one)
+                } else {
+                    let [ahead, behind] = lightness.taps::<S, 2>(&step);
+                    (ahead[0] + behind[0], ahead[1] + behind[1])
+                };
+                let n = step.active.select(falloff[0].at(k), zero);
+                let w = step.active.select(falloff[1].at(k), zero);
+                narrow = v.mul_add(n, narrow);
+                narrow_alpha = a.mul_add(n, narrow_alpha);
+                wide = v.mul_add(w, wide);
+                wide_alpha = a.mul_add(w, wide_alpha);
+            },
+        );
+    }
+    let covered = narrow_alpha.min(wide_alpha).simd_gt(LEAST_COVERAGE);
+    let narrow = narrow / covered.select(narrow_alpha, one);
+    let wide = wide / covered.select(wide_alpha, one);
+    let u = dog_response(narrow, wide, params.base, params.edge);
+    [covered.select(u, zero) * alpha, alpha]
 }
