@@ -5,8 +5,10 @@
 #import tensor
 
 struct Params {
-    // Distance of the last pixel looked at, pixels.
+    // Distance of the last pixel looked at, pixels of the full-size picture.
     radius: f32,
+    // Pixels per pixel of the full-size picture.
+    scale: f32,
     // Responses up to this leave a pixel alone.
     threshold: f32,
 }
@@ -38,9 +40,15 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let along_x = abs(n.x) > abs(n.y);
         let major = select(n.y, n.x, along_x);
         let slope = select(n.x, n.y, along_x) / major;
-        let steps = i32((params.radius + 1e-3) * abs(major));
+        let wanted = floor((params.radius + 1e-3) * abs(major)) * params.scale;
+        let steps = i32(ceil(wanted));
         var extreme = sign * luma(origin);
+        var whole = best;
         for (var k = 1; k <= steps; k++) {
+            if f32(k) > wanted {
+                // The last step counts by its share.
+                whole = best;
+            }
             for (var side = 1; side >= -1; side -= 2) {
                 let across = f32(side * k) * slope;
                 for (var next = 0.999; next > 0.0; next -= 0.998) {
@@ -55,6 +63,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                     }
                 }
             }
+        }
+        if f32(steps) > wanted {
+            best = whole + (best - whole) * (wanted - floor(wanted));
         }
     }
     textureStore(target_image, vec2i(id.xy), vec4f(best.rgb, origin.a));

@@ -4,6 +4,8 @@
 
 #[path = "openfx/describe.rs"]
 mod describe;
+#[path = "openfx/memory.rs"]
+mod memory;
 #[path = "openfx/quirks.rs"]
 mod quirks;
 #[path = "openfx/reference.rs"]

@@ -65,6 +65,40 @@ fn a_panic_becomes_a_status_and_the_host_goes_on() {
 }
 
 #[test]
+fn failures_are_told_once_through_whatever_messages_there_are() {
+    if !cfg!(debug_assertions) {
+        return;
+    }
+    const VARIABLE: &str = "ISOPHOTE_OFX_FAILURE";
+    let binary = Binary::open(library::path());
+    let (plugin, layout) = (binary.plugin("org.isophote.gaussian"), Layout::default());
+    let usual = Behaviour::default();
+    for (behaviour, shown, kept) in [
+        (usual.clone(), 1, 0),
+        // A host of old: it cannot take messages back.
+        (Behaviour { message_version: 1, ..usual.clone() }, 1, 1),
+        (Behaviour { null_functions: true, ..usual.clone() }, 0, 0),
+        (Behaviour { without: vec![kOfxMessageSuite], ..usual.clone() }, 0, 0),
+        (Behaviour { name: c"DaVinciResolve", ..usual.clone() }, 0, 0),
+    ] {
+        let host = Host::new(behaviour);
+        let told = || host.inner.messages.lock().unwrap().len();
+        let instance = Described::new(&host, plugin).instance(kOfxImageEffectContextFilter);
+        instance.connect("Source", picture(layout));
+        let render = || instance.try_render(layout, [SIZE; 2], &Wanted::new([0, 0, SIZE, SIZE])).0;
+        // SAFETY: the host keeps all other tests of this process waiting, and nothing else runs in it.
+        unsafe { std::env::set_var(VARIABLE, plugin.identifier()) };
+        assert_eq!([render(), render()], [kOfxStatErrMemory; 2]);
+        assert_eq!(told(), shown, "{:?}", host.inner.behaviour);
+        // SAFETY: as above.
+        unsafe { std::env::remove_var(VARIABLE) };
+        assert_eq!([render(), render()], [kOfxStatOK; 2]);
+        assert_eq!(told(), kept, "{:?}", host.inner.behaviour);
+    }
+    assert!(faults().is_empty(), "{:?}", faults());
+}
+
+#[test]
 fn bad_calls_are_answered() {
     let binary = Binary::open(library::path());
     let host = Host::new(Behaviour::default());

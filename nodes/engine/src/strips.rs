@@ -82,6 +82,31 @@ impl Schedule {
     }
 }
 
+impl Plan {
+    /// Rows of a band of `region`, for whoever computes it band by band to save memory.
+    ///
+    /// Images ([`Plan::peak_bytes`]) take at most `good` bytes, as long as bands are high against what is
+    /// read around them, which is computed anew for each; beyond that they take at most `most`. Bands have
+    /// at least `least` rows, and all where a pass reads the whole picture, since a part would need as much.
+    pub fn band_rows(&self, region: Rect, [good, most]: [u64; 2], least: i32) -> i32 {
+        let all = region.height() as i32;
+        let Support::Pixels(halo) = self.support() else { return all };
+        let efficient = i32::try_from(halo).unwrap_or(i32::MAX).saturating_mul(4).max(least);
+        let takes = |rows: i32| {
+            let middle = (region.y0 + region.y1 - rows) / 2;
+            self.peak_bytes(&self.windows(Rect { y0: middle, y1: middle + rows, ..region }))
+        };
+        let fitting = |mut rows: i32, bytes: u64, least: i32| {
+            while rows > least && takes(rows) > bytes {
+                rows = (rows / 2).max(least);
+            }
+            rows
+        };
+        let rows = fitting(all, good, efficient.min(all));
+        fitting(rows, most, least.min(rows))
+    }
+}
+
 /// The images that passes write.
 fn written(plan: &Plan) -> impl Iterator<Item = usize> {
     plan.passes().iter().flat_map(|pass| pass.outputs.iter().map(|o| o.index()))

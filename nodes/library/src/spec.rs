@@ -153,11 +153,22 @@ pub struct Param {
     pub group: &'static str,
     /// True when changing it may change the list of passes and not only uniform bytes.
     pub structural: bool,
+    /// True when the node gives its picture back unchanged while this number is 0.
+    pub neutral_at_zero: bool,
 }
 
 impl Param {
     const fn new(id: &'static str, label: &'static str, kind: ParamKind) -> Self {
-        Self { id, label, doc: "", kind, unit: Unit::None, group: "", structural: false }
+        Self {
+            id,
+            label,
+            doc: "",
+            kind,
+            unit: Unit::None,
+            group: "",
+            structural: false,
+            neutral_at_zero: false,
+        }
     }
 
     /// A number with its hard range, which is also its slider's until [`Param::slider`].
@@ -230,6 +241,12 @@ impl Param {
         self
     }
 
+    /// At 0 the node gives its picture back unchanged.
+    pub const fn neutral_at_zero(mut self) -> Self {
+        self.neutral_at_zero = true;
+        self
+    }
+
     /// Changing it only changes uniform bytes.
     pub const fn uniform(mut self) -> Self {
         self.structural = false;
@@ -275,7 +292,8 @@ pub struct NodeSpec {
 pub const MIX: Param = Param::float("mix", "Mix", 1.0, [0.0, 1.0])
     .doc("Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone.")
     .group("output")
-    .structural();
+    .structural()
+    .neutral_at_zero();
 
 impl NodeSpec {
     /// All parameters in the order of panels: the node's own, then `mix` where it applies.

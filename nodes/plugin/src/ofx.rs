@@ -105,7 +105,7 @@ fn act(number: usize, action: &CStr, handle: Handle, in_args: Handle, out_args: 
         crate::abi::threads::forget_pools();
         return Ok(kOfxStatOK);
     }
-    const KNOWN: [&CStr; 10] = [
+    const KNOWN: [&CStr; 11] = [
         kOfxActionDescribe,
         kOfxActionCreateInstance,
         kOfxActionDestroyInstance,
@@ -114,6 +114,7 @@ fn act(number: usize, action: &CStr, handle: Handle, in_args: Handle, out_args: 
         kOfxImageEffectActionGetRegionOfDefinition,
         kOfxImageEffectActionGetRegionsOfInterest,
         kOfxImageEffectActionGetClipPreferences,
+        kOfxImageEffectActionGetOutputColourspace,
         kOfxImageEffectActionIsIdentity,
         kOfxImageEffectActionRender,
     ];
@@ -131,8 +132,12 @@ fn act(number: usize, action: &CStr, handle: Handle, in_args: Handle, out_args: 
         a if a == kOfxImageEffectActionDescribeInContext => {
             describe::in_context(effect, &host, handle, in_args)
         }
-        // Nothing is kept for an instance, and so nothing is made or ended.
-        a if a == kOfxActionCreateInstance || a == kOfxActionDestroyInstance => Ok(kOfxStatOK),
+        // Nothing is kept for an instance but whether it shows a message.
+        a if a == kOfxActionCreateInstance => Ok(kOfxStatOK),
+        a if a == kOfxActionDestroyInstance => {
+            host.untell(handle);
+            Ok(kOfxStatOK)
+        }
         a if a == kOfxActionInstanceChanged => instance::changed(effect, &host, handle, in_args),
         a if a == kOfxImageEffectActionGetRegionOfDefinition => {
             instance::region_of_definition(&host, handle, in_args, out_args)
@@ -141,8 +146,9 @@ fn act(number: usize, action: &CStr, handle: Handle, in_args: Handle, out_args: 
             instance::regions_of_interest(effect, &host, handle, in_args, out_args)
         }
         a if a == kOfxImageEffectActionGetClipPreferences => {
-            instance::clip_preferences(&host, handle, out_args)
+            instance::clip_preferences(effect, &host, handle, out_args)
         }
+        a if a == kOfxImageEffectActionGetOutputColourspace => instance::output_colourspace(&host, out_args),
         a if a == kOfxImageEffectActionIsIdentity => {
             instance::is_identity(effect, &host, handle, in_args, out_args)
         }
@@ -150,9 +156,11 @@ fn act(number: usize, action: &CStr, handle: Handle, in_args: Handle, out_args: 
     }
 }
 
-/// Panics on demand, so that tests can see what becomes of one. Not in the library that is shipped.
+/// Panics and failures on demand, so that tests can see what becomes of one. Not in the library that is
+/// shipped.
 mod faults {
     use super::Effect;
+    use isophote::Error;
     use std::ffi::CStr;
 
     /// `<effect's identifier>:<action>` in this variable is where to panic.
@@ -167,6 +175,17 @@ mod faults {
         }
         #[cfg(not(debug_assertions))]
         let _ = (effect, action);
+    }
+
+    /// What a render of the effect whose identifier is in `ISOPHOTE_OFX_FAILURE` fails with.
+    pub fn failure(effect: &Effect) -> Option<Error> {
+        #[cfg(debug_assertions)]
+        if std::env::var("ISOPHOTE_OFX_FAILURE").is_ok_and(|id| id.as_bytes() == effect.identifier.to_bytes())
+        {
+            return Some(isophote::engine::Error::Memory("asked for".to_owned()).into());
+        }
+        let _ = effect;
+        None
     }
 }
 

@@ -10,6 +10,7 @@ use std::mem::{align_of, offset_of, size_of};
 mod all {
     pub use openfx::sys::generic::core::*;
     pub use openfx::sys::generic::property::*;
+    pub use openfx::sys::image_effect_v1::colour::*;
     pub use openfx::sys::image_effect_v1::gpu_render::*;
     pub use openfx::sys::image_effect_v1::image_effect::*;
     pub use openfx::sys::image_effect_v1::message::*;
@@ -66,7 +67,10 @@ compare! {
     kOfxParamPropHint kOfxParamPropDefault kOfxParamPropMin kOfxParamPropMax kOfxParamPropDisplayMin
     kOfxParamPropDisplayMax kOfxParamPropIncrement kOfxParamPropDigits kOfxParamPropDoubleType
     kOfxParamDoubleTypePlain kOfxParamDoubleTypeAngle kOfxParamPropChoiceOption kOfxParamPropParent
-    kOfxParamPropGroupOpen kOfxParamPropPageChild kOfxStatOK kOfxStatFailed kOfxStatErrUnknown
+    kOfxParamPropGroupOpen kOfxParamPropPageChild kOfxImageEffectPropColourManagementStyle
+    kOfxImageEffectColourManagementNone kOfxImageEffectColourManagementBasic
+    kOfxImageEffectPropColourManagementAvailableConfigs kOfxImageClipPropColourspace
+    kOfxImageEffectActionGetOutputColourspace kOfxImageEffectPropClipPreferencesSlaveParam kOfxStatOK kOfxStatFailed kOfxStatErrUnknown
     kOfxStatErrMissingHostFeature kOfxStatErrExists kOfxStatErrMemory kOfxStatErrBadHandle
     kOfxStatErrBadIndex kOfxStatErrValue kOfxStatReplyDefault kOfxStatErrImageFormat
 }
@@ -118,6 +122,7 @@ fn layouts_are_those_of_the_headers() {
         multiThread multiThreadNumCPUs multiThreadIndex multiThreadIsSpawnedThread mutexCreate mutexDestroy
         mutexLock mutexUnLock mutexTryLock
     );
+    same_layout!(ours::OfxMessageSuiteV1, theirs::message::OfxMessageSuiteV1: message);
     same_layout!(
         ours::OfxMessageSuiteV2, theirs::message::OfxMessageSuiteV2:
         message setPersistentMessage clearPersistentMessage

@@ -247,6 +247,16 @@ impl Instance<'_> {
         *lock(&param.value) = vec![value.into()];
     }
 
+    /// Sets a property of the clip of this name.
+    ///
+    /// # Panics
+    /// When there is no such clip.
+    pub fn put(&self, name: &str, property: &CStr, value: impl Into<Value>) {
+        let clips = lock(&self.effect.clips);
+        let clip = clips.iter().find(|c| c.name.to_string_lossy() == name).expect("a clip of this name");
+        clip.set.put(property, vec![value.into()]);
+    }
+
     /// Whether there is a parameter of this name.
     pub fn has(&self, name: &str) -> bool {
         lock(&self.effect.params).iter().any(|p| p.name.to_string_lossy() == name)

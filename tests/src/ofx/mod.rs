@@ -58,6 +58,8 @@ pub struct Behaviour {
     pub bare: bool,
     /// After so many questions it wants to stop.
     pub abort_after: Option<u32>,
+    /// The latest version of its message suite.
+    pub message_version: c_int,
     /// Suites that it lacks.
     pub without: Vec<&'static CStr>,
 }
@@ -76,6 +78,7 @@ impl Default for Behaviour {
             all_connected: false,
             bare: false,
             abort_after: None,
+            message_version: 2,
             without: Vec::new(),
         }
     }
@@ -90,8 +93,7 @@ pub struct Inner {
     pub lent: AtomicI32,
     /// How often it was asked whether to stop.
     pub asked: AtomicU32,
-
-    /// Messages that it was to show.
+    /// Messages that it shows.
     pub messages: Mutex<Vec<String>>,
     suites: suites::Suites,
 }
@@ -120,7 +122,6 @@ impl Host {
             behaviour,
             lent: AtomicI32::new(0),
             asked: AtomicU32::new(0),
-
             messages: Mutex::default(),
         });
         let properties = Set::new(&inner, "host");

@@ -158,7 +158,7 @@ fn shape(name: &CStr) -> Option<(char, i32)> {
     if text.starts_with(ROI_PREFIX) {
         return Some(('d', 4));
     }
-    if name == PIXEL_ORDER {
+    if name == PIXEL_ORDER || name == PREFERRED_COLOURSPACES_OF_SOURCE {
         return Some(('s', 1));
     }
     if !STRINGS.iter().any(|(_, value)| *value == name) {
@@ -182,6 +182,8 @@ fn shape(name: &CStr) -> Option<(char, i32)> {
             kOfxImageEffectPropSupportedComponents,
             kOfxParamPropChoiceOption,
             kOfxParamPropPageChild,
+            kOfxImageEffectPropColourManagementAvailableConfigs,
+            kOfxImageEffectPropClipPreferencesSlaveParam,
         ]
         .contains(&n) =>
         {

@@ -17,6 +17,7 @@ pub struct Suites {
     effects: OfxImageEffectSuiteV1,
     params: OfxParameterSuiteV1,
     threads: OfxMultiThreadSuiteV1,
+    first_messages: OfxMessageSuiteV1,
     messages: OfxMessageSuiteV2,
 }
 
@@ -49,10 +50,11 @@ impl Suites {
             effects: EFFECTS,
             params: OfxParameterSuiteV1 { paramGetValue: get, paramGetValueAtTime: get_at, ..PARAMS },
             threads: if null { NO_THREADS } else { threads },
+            first_messages: OfxMessageSuiteV1 { message },
             messages: OfxMessageSuiteV2 {
                 message,
                 setPersistentMessage: message,
-                clearPersistentMessage: None,
+                clearPersistentMessage: if null { None } else { Some(clear_message) },
             },
         }
     }
@@ -76,7 +78,10 @@ pub(super) unsafe extern "C" fn fetch(host: Handle, name: *const c_char, version
         (n, 1) if n == kOfxMultiThreadSuite && (behaviour.processors > 0 || behaviour.null_functions) => {
             (&raw const suites.threads).cast()
         }
-        (n, 2) if n == kOfxMessageSuite => (&raw const suites.messages).cast(),
+        (n, 2) if n == kOfxMessageSuite && behaviour.message_version >= 2 => {
+            (&raw const suites.messages).cast()
+        }
+        (n, 1) if n == kOfxMessageSuite => (&raw const suites.first_messages).cast(),
         _ => std::ptr::null(),
     }
 }
@@ -172,6 +177,16 @@ unsafe extern "C" fn said(handle: *mut c_void, kind: *const c_char, text: *const
         fault(format!("{kind:?} is no kind of message"));
     }
     lock(&effect.host.messages).push(text.unwrap_or_default().to_string_lossy().into_owned());
+    kOfxStatOK
+}
+
+unsafe extern "C" fn clear_message(effect: Handle) -> OfxStatus {
+    let effect = thing!(effect, Effect, "clearPersistentMessage");
+    let mut messages = lock(&effect.host.messages);
+    if messages.is_empty() {
+        fault("clearPersistentMessage without a message");
+    }
+    messages.clear();
     kOfxStatOK
 }
 

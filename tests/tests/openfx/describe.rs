@@ -191,6 +191,38 @@ fn the_working_space_follows_the_host() {
 }
 
 #[test]
+fn hosts_that_manage_colours_are_asked_for_the_working_space() {
+    let host = Host::new(Behaviour { name: c"fr.inria.Natron", ..Behaviour::default() });
+    let described = Described::new(&host, binary().plugin("org.isophote.gaussian"));
+    let set = &described.descriptor.set;
+    assert_eq!(
+        set.texts(kOfxImageEffectPropColourManagementAvailableConfigs),
+        [COLOURSPACES.to_str().unwrap()]
+    );
+    assert_eq!(set.texts(kOfxImageEffectPropClipPreferencesSlaveParam), ["working_space"]);
+    let instance = described.instance(CONTEXTS[0]);
+    let wanted = || {
+        let answer = instance.args();
+        instance.act(kOfxImageEffectActionGetClipPreferences, None, Some(&answer));
+        answer.texts(PREFERRED_COLOURSPACES_OF_SOURCE)
+    };
+    assert!(wanted().is_empty(), "this host manages no colours yet");
+    let style = Value::from(kOfxImageEffectColourManagementBasic);
+    instance.effect.set.put(kOfxImageEffectPropColourManagementStyle, vec![style]);
+    for (space, name) in [(0, "ofx_scene_linear"), (1, "ofx_display_sdr"), (3, "ofx_scene_linear")] {
+        instance.set("working_space", space);
+        assert_eq!(wanted(), [name]);
+    }
+    instance.set("working_space", 2);
+    assert!(wanted().is_empty());
+    let answer = instance.args();
+    let status = instance.act(kOfxImageEffectActionGetOutputColourspace, None, Some(&answer));
+    assert_eq!(status, kOfxStatOK);
+    assert_eq!(answer.texts(kOfxImageClipPropColourspace), ["OfxColourspace_Source"]);
+    no_faults();
+}
+
+#[test]
 fn half_floats_are_offered_to_hosts_that_have_them() {
     let host = Host::new(Behaviour { half: false, ..Behaviour::default() });
     let described = Described::new(&host, binary().plugins()[0]);

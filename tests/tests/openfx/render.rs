@@ -2,6 +2,7 @@
 
 use crate::reference::*;
 use isophote::ColourSpace;
+use isophote::spec::{ParamKind, Unit};
 use isophote_tests::ofx::effect::{Described, Instance, Wanted};
 use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::picture::{Layout, Picture};
@@ -90,6 +91,29 @@ fn spaces_and_relations_to_alpha_equal_the_c_table() {
             }
         }
     }
+    no_faults();
+}
+
+#[test]
+fn the_colour_space_that_a_host_names_counts() {
+    let host = Host::new(Behaviour::default());
+    let layout = Layout::default();
+    let described = Described::new(&host, binary().plugin("org.isophote.gaussian"));
+    let render = |space: i32, name: Option<&'static CStr>| {
+        let instance = described.instance(kOfxImageEffectContextFilter);
+        instance.set("working_space", space);
+        instance.connect("Source", source(layout, true));
+        if let Some(name) = name {
+            instance.put("Source", kOfxImageClipPropColourspace, name);
+        }
+        instance.render(layout, SIZE).packed()
+    };
+    let [linear, srgb, _, aces] = [0, 1, 2, 3].map(|space| render(space, None));
+    assert!(linear != srgb && linear != aces);
+    assert!(render(0, Some(c"srgb_tx")) == srgb && render(1, Some(c"lin_rec709_srgb")) == linear);
+    assert!(render(1, Some(c"ofx_scene_linear")) == linear && render(0, Some(c"ACEScg")) == aces);
+    assert!(render(3, Some(c"ofx_scene_linear")) == aces && render(0, Some(c"arri_logc4")) == linear);
+    assert!(render(2, Some(c"lin_rec709_srgb")) == srgb, "as is");
     no_faults();
 }
 
@@ -239,6 +263,32 @@ fn identity_is_what_is_rendered() {
         let source = source(layout, false);
         instance.connect("Source", source.clone());
         assert!(instance.render(layout, SIZE).packed() == source.packed());
+        instance.set(mix, 1.0);
+        let nodes = [effect.node, isophote::registry::find("composite_lines").unwrap()];
+        let node = nodes[usize::from(effect.is_lines())];
+        for param in node.params().filter(|p| p.neutral_at_zero && p.id != "mix") {
+            let name = if effect.is_lines() { format!("lines_{}", param.id) } else { param.id.to_owned() };
+            match param.kind {
+                ParamKind::Int { .. } => instance.set(&name, 0),
+                _ => instance.set(&name, if param.unit == Unit::Pixels { 0.009 } else { 0.0 }),
+            }
+            assert!(instance.is_identity(), "{} {name}", effect.plugin.identifier());
+            assert!(instance.render(layout, SIZE).packed() == source.packed());
+            // And what the filter itself makes of it is no other picture.
+            let mut graph = effect.graph(effect.is_lines());
+            let id = graph.find(if effect.is_lines() { "l" } else { "n" }).unwrap();
+            let zero = if matches!(param.kind, ParamKind::Int { .. }) { "0" } else { "0.0" };
+            graph.set_text(id, param.id, zero).unwrap();
+            let filtered = through(&graph, &source, layout, ColourSpace::Srgb);
+            let worst = difference(&filtered, &source.packed(), &layout);
+            assert!(worst < 2e-6, "{} {name}: {worst}", effect.plugin.identifier());
+            let ParamKind::Float { .. } = param.kind else {
+                instance.set(&name, 1);
+                continue;
+            };
+            instance.set(&name, 1.0);
+            assert!(!instance.is_identity());
+        }
     }
     no_faults();
 }

@@ -1,6 +1,6 @@
 //! Describing an effect to a host: properties, clips and parameters, all from the effect's controls.
 
-use super::effects::{Control, Effect, SPACES, Target};
+use super::effects::{Control, Effect, SPACES, Target, WORKING_SPACE};
 use super::host::{Host, Outcome, Properties};
 use super::interface::*;
 use isophote::graph::GraphInput;
@@ -72,6 +72,10 @@ pub fn describe(effect: &'static Effect, host: &Host, descriptor: Handle) -> Out
         (kOfxImageEffectPropMetalRenderSupported, c"false"),
         (kOfxImageEffectPropCPURenderSupported, c"true"),
         (kOfxImageEffectPropNoSpatialAwareness, c"false"),
+        (kOfxImageEffectPropColourManagementStyle, kOfxImageEffectColourManagementBasic),
+        (kOfxImageEffectPropColourManagementAvailableConfigs, COLOURSPACES),
+        // It decides which colour space is asked for.
+        (kOfxImageEffectPropClipPreferencesSlaveParam, WORKING_SPACE),
     ] {
         set.set_string(name, 0, value);
     }

@@ -16,7 +16,7 @@ use std::sync::LazyLock;
 const HOUSE: &str = "org.isophote.";
 
 /// What the controls of an effect's own are called.
-pub const WORKING_SPACE: &str = "working_space";
+pub const WORKING_SPACE: &CStr = c"working_space";
 pub const PROCESS_ALPHA: &str = "process_alpha";
 pub const MASK_APPLY: &str = "mask_apply";
 pub const LINES_OUTPUT: &str = "lines_output";
@@ -32,11 +32,14 @@ pub enum Form {
     Structure,
 }
 
+/// The space that nobody claims.
+pub const AS_IS: &CStr = c"As is";
+
 /// The spaces that pixels may be in. "As is" computes as sRGB does, and says that nobody claims it.
 pub const SPACES: [(&CStr, ColourSpace); 4] = [
     (c"Linear (Rec. 709)", ColourSpace::Linear),
     (c"sRGB", ColourSpace::Srgb),
-    (c"As is", ColourSpace::Srgb),
+    (AS_IS, ColourSpace::Srgb),
     (c"ACEScg", ColourSpace::AcesCg),
 ];
 
@@ -186,7 +189,13 @@ impl Effect {
                 }
             }
         }
-        self.add(WORKING_SPACE, "Working space", SPACE_HINT, "output", Target::WorkingSpace);
+        self.add(
+            &WORKING_SPACE.to_string_lossy(),
+            "Working space",
+            SPACE_HINT,
+            "output",
+            Target::WorkingSpace,
+        );
         self.add(PROCESS_ALPHA, "Process alpha", ALPHA_HINT, "output", Target::ProcessAlpha);
         self.add(MASK_APPLY, "Apply mask", MASK_HINT, "output", Target::MaskApply);
         // Under one heading, controls follow one another.

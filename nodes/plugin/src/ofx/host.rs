@@ -5,8 +5,12 @@
 
 use super::interface::*;
 use super::quirks::Quirks;
-use std::ffi::{CStr, CString, c_int};
+use crate::abi::guard::lock;
+use std::collections::BTreeSet;
+use std::ffi::{CStr, CString, c_int, c_void};
 use std::ptr::{null, null_mut};
+use std::sync::atomic::{AtomicPtr, Ordering};
+use std::sync::{Mutex, OnceLock};
 
 /// Why an action failed, as the host is told.
 pub type Failure = OfxStatus;
@@ -20,7 +24,13 @@ pub struct Host {
     pub properties: OfxPropertySuiteV1,
     pub parameters: OfxParameterSuiteV1,
     pub threads: Option<OfxMultiThreadSuiteV1>,
-    pub messages: Option<OfxMessageSuiteV2>,
+    /// What suites are asked of, and the function for it.
+    origin: AtomicPtr<c_void>,
+    fetch: FetchSuite,
+    /// Fetched when there is something to tell: not every host takes the question well.
+    messages: OnceLock<Option<OfxMessageSuiteV2>>,
+    /// Addresses of the instances that show a message.
+    told: Mutex<BTreeSet<usize>>,
     pub quirks: Quirks,
     /// Whether images may hold only a part of the picture.
     pub tiles: bool,
@@ -58,7 +68,10 @@ impl Host {
                     .as_ref()
                     .ok_or(kOfxStatErrMissingHostFeature)?,
                 threads: suite(kOfxMultiThreadSuite, 1).cast::<OfxMultiThreadSuiteV1>().as_ref().copied(),
-                messages: suite(kOfxMessageSuite, 2).cast::<OfxMessageSuiteV2>().as_ref().copied(),
+                origin: AtomicPtr::new(host.host),
+                fetch,
+                messages: OnceLock::new(),
+                told: Mutex::default(),
                 quirks: Quirks::default(),
                 tiles: true,
                 half: false,
@@ -110,16 +123,46 @@ impl Host {
         self.effects.abort.is_some_and(|abort| unsafe { abort(effect) } != 0)
     }
 
-    /// Shows a message on the effect, where that is known to be safe.
+    /// Shows a message on the effect, where that is known to be safe: once, until it renders again.
     pub fn tell(&self, effect: Handle, message: &str) {
         if !self.quirks.messages {
             return;
         }
-        let Some(show) = self.messages.and_then(|m| m.setPersistentMessage) else { return };
+        let Some(messages) = self.messages() else { return };
+        let Some(show) = messages.setPersistentMessage.or(messages.message) else { return };
+        if !lock(&self.told).insert(effect.addr()) {
+            return;
+        }
         // The text is an argument and not the format, in which a `%` would be one of the host's.
         let text = CString::new(message.replace('\0', " ")).unwrap_or_default();
         // SAFETY: strings with a closing zero that live during the call, as the format says.
         unsafe { show(effect, kOfxMessageError.as_ptr(), null(), c"%s".as_ptr(), text.as_ptr()) };
+    }
+
+    /// The message suite, as far as the host has one.
+    fn messages(&self) -> Option<OfxMessageSuiteV2> {
+        *self.messages.get_or_init(|| {
+            let origin = self.origin.load(Ordering::Relaxed);
+            // SAFETY: as in `fetch`: the host and its function are constant until the library is unloaded.
+            unsafe {
+                let suite = |version| (self.fetch)(origin, kOfxMessageSuite.as_ptr(), version);
+                if let Some(second) = suite(2).cast::<OfxMessageSuiteV2>().as_ref() {
+                    return Some(*second);
+                }
+                let message = suite(1).cast::<OfxMessageSuiteV1>().as_ref()?.message;
+                Some(OfxMessageSuiteV2 { message, setPersistentMessage: None, clearPersistentMessage: None })
+            }
+        })
+    }
+
+    /// Takes the message of an effect back, if there was one.
+    pub fn untell(&self, effect: Handle) {
+        if lock(&self.told).remove(&effect.addr())
+            && let Some(clear) = self.messages().and_then(|m| m.clearPersistentMessage)
+        {
+            // SAFETY: an effect that the host gave, on which a message was set.
+            unsafe { clear(effect) };
+        }
     }
 }
 

@@ -7,6 +7,7 @@ use super::host::{Host, Outcome, Properties};
 use super::image::Clip;
 use super::interface::*;
 use super::settings::Settings;
+use isophote::ColourSpace;
 use isophote::engine::Support;
 use isophote::request::Guides;
 use isophote::{Planned, Request};
@@ -88,7 +89,7 @@ pub fn regions_of_interest(
     let settings = Settings::read(effect, host, instance, moment.time)?;
     let Some(bounds) = frame.pixels(&wanted) else { return Ok(kOfxStatReplyDefault) };
     let region = frame.inside(bounds);
-    if region.is_empty() || settings.identity {
+    if region.is_empty() || settings.is_identity(frame.scale) {
         return Ok(kOfxStatReplyDefault);
     }
     let open = |name: &CStr| Clip::of(host, instance, name).is_none_or(|clip| clip.is_open());
@@ -131,16 +132,36 @@ pub fn regions_of_interest(
     Ok(if answered { kOfxStatOK } else { kOfxStatReplyDefault })
 }
 
-/// The result is premultiplied as the source is.
+/// The result is premultiplied as the source is. Hosts that manage colours are asked for pixels that are
+/// what the working space says.
 ///
 /// # Errors
-/// None; the host's default counts where it does not say.
-pub fn clip_preferences(host: &Host, instance: Handle, out_args: Handle) -> Outcome {
+/// Failed, when the host has no parameters.
+pub fn clip_preferences(effect: &Effect, host: &Host, instance: Handle, out_args: Handle) -> Outcome {
     let state = Clip::of(host, instance, SOURCE)
         .filter(|clip| !clip.is_open())
         .and_then(|clip| clip.properties.string(kOfxImageEffectPropPreMultiplication, 0));
-    let answered =
-        state.is_some_and(|state| host.set(out_args).answer(kOfxImageEffectPropPreMultiplication, &state));
+    let answer = host.set(out_args);
+    let mut answered = state.is_some_and(|state| answer.answer(kOfxImageEffectPropPreMultiplication, &state));
+    let style = host.effect(instance).string(kOfxImageEffectPropColourManagementStyle, 0);
+    if style.is_some_and(|style| style.as_c_str() != kOfxImageEffectColourManagementNone) {
+        let settings = Settings::read(effect, host, instance, 0.0)?;
+        let space = match settings.space {
+            _ if settings.as_is => None,
+            ColourSpace::Srgb => Some(c"ofx_display_sdr"),
+            ColourSpace::Linear | ColourSpace::AcesCg => Some(c"ofx_scene_linear"),
+        };
+        answered |= space.is_some_and(|s| answer.answer(PREFERRED_COLOURSPACES_OF_SOURCE, s));
+    }
+    Ok(if answered { kOfxStatOK } else { kOfxStatReplyDefault })
+}
+
+/// The result is in the source's colour space.
+///
+/// # Errors
+/// None.
+pub fn output_colourspace(host: &Host, out_args: Handle) -> Outcome {
+    let answered = host.set(out_args).answer(kOfxImageClipPropColourspace, COLOURSPACE_OF_SOURCE);
     Ok(if answered { kOfxStatOK } else { kOfxStatReplyDefault })
 }
 
@@ -156,7 +177,12 @@ pub fn is_identity(
     out_args: Handle,
 ) -> Outcome {
     let moment = Moment::of(host.set(in_args));
-    if !Settings::read(effect, host, instance, moment.time)?.identity {
+    let settings = Settings::read(effect, host, instance, moment.time)?;
+    // The scale of the lengths, as when the frame is rendered.
+    let frame = Clip::of(host, instance, SOURCE)
+        .and_then(|c| Frame::new(host, c.defined(moment.time), moment.scale, c.aspect(), None));
+    let scale = frame.map_or(moment.scale[1] as f32, |frame| frame.scale);
+    if !settings.is_identity(scale) {
         return Ok(kOfxStatReplyDefault);
     }
     let answer = host.set(out_args);

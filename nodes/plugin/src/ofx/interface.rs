@@ -52,6 +52,14 @@ strings! {
     kOfxPropIcon = c"OfxPropIcon";
     kOfxMessageError = c"OfxMessageError";
 
+    kOfxImageEffectPropColourManagementStyle = c"OfxImageEffectPropColourManagementStyle";
+    kOfxImageEffectColourManagementNone = c"OfxImageEffectColourManagementNone";
+    kOfxImageEffectColourManagementBasic = c"OfxImageEffectColourManagementBasic";
+    kOfxImageEffectPropColourManagementAvailableConfigs = c"OfxImageEffectPropColourManagementAvailableConfigs";
+    kOfxImageClipPropColourspace = c"OfxImageClipPropColourspace";
+    kOfxImageEffectActionGetOutputColourspace = c"OfxImageEffectActionGetOutputColourspace";
+    kOfxImageEffectPropClipPreferencesSlaveParam = c"OfxImageEffectPropClipPreferencesSlaveParam";
+
     kOfxImageEffectContextFilter = c"OfxImageEffectContextFilter";
     kOfxImageEffectContextGeneral = c"OfxImageEffectContextGeneral";
     kOfxImageEffectPropContext = c"OfxImageEffectPropContext";
@@ -152,6 +160,13 @@ pub const ROI_PREFIX: &str = "OfxImageClipPropRoI_";
 #[allow(dead_code, reason = "the test host reads it")]
 pub const COMPONENTS_PREFIX: &str = "OfxImageClipPropComponents_";
 
+/// What the name of the source follows, in what `GetClipPreferences` returns.
+pub const PREFERRED_COLOURSPACES_OF_SOURCE: &CStr = c"OfxImageClipPropPreferredColourspaces_Source";
+/// The list of colour spaces that names are taken from.
+pub const COLOURSPACES: &CStr = c"ofx-native-v1.5_aces-v1.3_ocio-v2.3";
+/// The colour space of the source, whichever it is.
+pub const COLOURSPACE_OF_SOURCE: &CStr = c"OfxColourspace_Source";
+
 pub const kOfxImageEffectPluginApiVersion: c_int = 1;
 
 pub type OfxStatus = c_int;
@@ -192,11 +207,13 @@ pub struct OfxRectD {
     pub y2: f64,
 }
 
+pub type FetchSuite = unsafe extern "C" fn(Handle, *const c_char, c_int) -> *const c_void;
+
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct OfxHost {
     pub host: Handle,
-    pub fetchSuite: Option<unsafe extern "C" fn(Handle, *const c_char, c_int) -> *const c_void>,
+    pub fetchSuite: Option<FetchSuite>,
 }
 
 pub type SetHost = unsafe extern "C" fn(*mut OfxHost);
@@ -307,6 +324,12 @@ pub struct OfxMultiThreadSuiteV1 {
 
 type Message =
     Option<unsafe extern "C" fn(*mut c_void, *const c_char, *const c_char, *const c_char, ...) -> OfxStatus>;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct OfxMessageSuiteV1 {
+    pub message: Message,
+}
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]

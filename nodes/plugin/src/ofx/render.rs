@@ -2,6 +2,7 @@
 
 use super::describe::{MASK, SOURCE, guide_clip};
 use super::effects::Effect;
+use super::faults;
 use super::frame::{Bounds, Frame};
 use super::host::{Host, Outcome};
 use super::image::{Alpha, Beyond, Clip, Fetched};
@@ -10,14 +11,15 @@ use super::interface::*;
 use super::settings::Settings;
 use super::threads::FrameThreads;
 use isophote::engine::cpu::{Control, CpuExecutor};
-use isophote::engine::{Error as EngineError, Image, Plan, Rect, Support};
+use isophote::engine::{Error as EngineError, Image, Rect};
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
 use isophote::{ColourSpace, Error};
 use std::sync::Mutex;
 
-/// Most bytes that the working images of one band may take, where the passes allow bands.
-const WORKING_MEMORY: u64 = 768 << 20;
+/// Bytes that the working images of one band should take, and those that they may, where the passes allow
+/// bands. With a source and a result of 8K in floats, 4 GiB are not exceeded.
+const WORKING_MEMORY: [u64; 2] = [768 << 20, 3000 << 20];
 /// Bands of fewer rows would spend most of their time on what lies around them.
 const LEAST_ROWS: i32 = 64;
 
@@ -34,6 +36,8 @@ struct Job<'h> {
     instance: Handle,
     frame: Frame,
     settings: Settings,
+    /// Whether the settings leave the picture as it is.
+    identity: bool,
     source: Fetched<'h>,
     output: Fetched<'h>,
     mask: Option<Fetched<'h>>,
@@ -62,7 +66,14 @@ pub fn render(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -
     let aspect = source.aspect.unwrap_or_else(|| clip.aspect());
     let frame = Frame::new(host, clip.defined(moment.time), moment.scale, aspect, Some(source.bounds))
         .ok_or(kOfxStatFailed)?;
-    let settings = Settings::read(effect, host, instance, moment.time)?;
+    let mut settings = Settings::read(effect, host, instance, moment.time)?;
+    if let Some(name) = clip.properties.string(kOfxImageClipPropColourspace, 0) {
+        settings.space = settings.space_of(&name);
+    }
+    if source.channels == 1 {
+        // A single channel is coverage, whatever space the colours are in.
+        settings.space = ColourSpace::Srgb;
+    }
     let fetch = |name| match Clip::of(host, instance, name) {
         Some(clip) => clip.image(moment.time),
         None => Ok(None),
@@ -82,10 +93,20 @@ pub fn render(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -
         f if f == kOfxImageFieldUpper => Some(Field { parity: 1 }),
         _ => None,
     });
-    let job = Job { host, instance, frame, settings, source, output, mask, guides, field };
-    match job.run(window) {
-        Ok(()) | Err(Stop::Aborted) => Ok(kOfxStatOK),
-        Err(Stop::Status(status)) => Err(status),
+    let identity = settings.is_identity(frame.scale);
+    let job = Job { host, instance, frame, settings, identity, source, output, mask, guides, field };
+    match faults::failure(effect).map_or_else(|| job.run(window), |error| Err(Stop::Error(error))) {
+        Ok(()) => {
+            host.untell(instance);
+            Ok(kOfxStatOK)
+        }
+        Err(Stop::Aborted) => Ok(kOfxStatOK),
+        Err(Stop::Status(status)) => {
+            if status == kOfxStatErrMemory {
+                host.tell(instance, "There is not enough memory for a picture of this size.");
+            }
+            Err(status)
+        }
         Err(Stop::Error(error)) => {
             host.tell(instance, &error.to_string());
             Err(match error {
@@ -141,7 +162,7 @@ impl Job<'_> {
         if inside.is_empty() {
             return Ok(());
         }
-        if self.settings.identity {
+        if self.identity {
             for band in bands(inside, LEAST_ROWS) {
                 let copy = self.read(GraphInput::Color, &self.source, band)?;
                 self.write(copy)?;
@@ -152,14 +173,7 @@ impl Job<'_> {
         let guides =
             Guides { normal: has(GraphInput::Normal), depth: has(GraphInput::Depth), object_id: false };
         let premultiplied = self.source.alpha == Alpha::Premultiplied;
-        let planned = if self.source.channels == 1 {
-            // A single channel is coverage, whatever space the colours are in.
-            let settings =
-                Settings { graph: self.settings.graph.clone(), space: ColourSpace::Srgb, ..self.settings };
-            instance::plan(&settings, &self.frame, premultiplied, guides)?
-        } else {
-            instance::plan(&self.settings, &self.frame, premultiplied, guides)?
-        };
+        let planned = instance::plan(&self.settings, &self.frame, premultiplied, guides)?;
         let plan = planned.plan();
         let threads = FrameThreads::of(self.host);
         // Hosts need not expect the question from two threads at once.
@@ -167,7 +181,7 @@ impl Job<'_> {
         let aborted = || instance.lock().is_ok_and(|instance| self.host.aborted(instance.0));
         let control = Control { cancelled: Some(&aborted), progress: None };
         let mut executor = CpuExecutor::new();
-        for band in bands(inside, rows(plan, inside)) {
+        for band in bands(inside, plan.band_rows(inside, WORKING_MEMORY, LEAST_ROWS)) {
             let windows = plan.windows(band);
             let mut images = Vec::new();
             for port in plan.inputs() {
@@ -186,6 +200,10 @@ impl Job<'_> {
                 executor.run(plan, &named, band, threads.threads(), control).map_err(Error::from)?;
             let result = results.into_iter().next().ok_or(kOfxStatFailed)?;
             drop(images);
+            if band.y1 == inside.y1 {
+                // What it kept for the next band.
+                executor = CpuExecutor::new();
+            }
             self.write(self.finished(result, band)?)?;
         }
         Ok(())
@@ -218,7 +236,7 @@ impl Job<'_> {
     }
 
     fn opaque(&self, input: GraphInput, image: &Fetched<'_>, mut pixels: Image) -> Image {
-        if input == GraphInput::Color && image.alpha == Alpha::Opaque && !self.settings.identity {
+        if input == GraphInput::Color && image.alpha == Alpha::Opaque && !self.identity {
             pixels.data_mut().chunks_exact_mut(4).for_each(|p| p[3] = 1.0);
         }
         pixels
@@ -296,22 +314,4 @@ fn bands(window: Rect, rows: i32) -> impl Iterator<Item = Rect> {
         y1: (y0 + rows).min(window.y1),
         ..window
     })
-}
-
-/// Rows of a band whose working images fit into the memory that a frame may take.
-fn rows(plan: &Plan, window: Rect) -> i32 {
-    let mut rows = window.height() as i32;
-    if plan.support() == Support::Global {
-        // A part would need as much as the whole.
-        return rows;
-    }
-    while rows > LEAST_ROWS {
-        let middle = (window.y0 + window.y1 - rows) / 2;
-        let band = Rect { y0: middle, y1: middle + rows, ..window };
-        if plan.peak_bytes(&plan.windows(band)) <= WORKING_MEMORY {
-            break;
-        }
-        rows = (rows / 2).max(LEAST_ROWS);
-    }
-    rows
 }

@@ -1,10 +1,10 @@
 //! The values of an instance's controls at one time, as a graph. Read when they are needed and never
 //! kept, since hosts change them without a word.
 
-use super::effects::{Effect, Form, SPACES, Target};
+use super::effects::{AS_IS, Effect, Form, SPACES, Target};
 use super::host::{Host, Outcome};
 use super::interface::*;
-use isophote::spec::ParamKind;
+use isophote::spec::{ParamKind, Unit};
 use isophote::{ColourSpace, Graph, Value};
 use std::ffi::{CStr, c_int};
 use std::ptr::null_mut;
@@ -16,13 +16,19 @@ pub struct Settings {
     pub graph: Graph,
     /// What the pixels mean.
     pub space: ColourSpace,
+    /// Whether the user says so, whatever the host does.
+    pub as_is: bool,
     /// Whether alpha is filtered too.
     pub process_alpha: bool,
     /// Whether a mask counts.
     pub mask_apply: bool,
-    /// Whether the values leave the picture as it is.
-    pub identity: bool,
+    /// What must be 0 for the values to leave the picture as it is: the least of the numbers that do so at
+    /// 0. The first is a plain number, the second a length in pixels of the full-size picture.
+    least: [f32; 2],
 }
+
+/// Lengths below this share of a rendered pixel count as 0.
+const LEAST_LENGTH: f32 = 0.01;
 
 impl Settings {
     /// The values at `time`. What the host cannot tell keeps its default.
@@ -32,7 +38,7 @@ impl Settings {
     pub fn read(effect: &Effect, host: &Host, instance: Handle, time: f64) -> Outcome<Self> {
         let values = Values { host, set: host.params(instance)?, time };
         let mut over = false;
-        let mut space = host.quirks.space;
+        let (mut space, mut as_is) = (host.quirks.space, false);
         let (mut process_alpha, mut mask_apply) = (false, !host.quirks.all_connected);
         for control in &effect.controls {
             let name = &control.name;
@@ -40,7 +46,9 @@ impl Settings {
                 Target::LinesOutput => over = values.int(name) == Some(1),
                 Target::WorkingSpace => {
                     let index = values.int(name).and_then(|i| usize::try_from(i).ok());
-                    space = index.and_then(|i| SPACES.get(i)).map_or(space, |(_, space)| *space);
+                    if let Some((label, chosen)) = index.and_then(|i| SPACES.get(i)) {
+                        (space, as_is) = (*chosen, *label == AS_IS);
+                    }
                 }
                 Target::ProcessAlpha => process_alpha = values.bool(name).unwrap_or(process_alpha),
                 Target::MaskApply => mask_apply = values.bool(name).unwrap_or(mask_apply),
@@ -48,16 +56,45 @@ impl Settings {
             }
         }
         let (mut graph, ids) = effect.graph(over).map_err(|_| kOfxStatFailed)?;
-        let mut identity = false;
+        let mut least = [f32::INFINITY; 2];
         // A graph may end before the last node, which then decides nothing.
+        let shows_colour = effect.form == Form::Colour || (effect.form == Form::Lines && over);
         let last = if effect.form == Form::Lines && !over { 0 } else { ids.len() - 1 };
         for control in &effect.controls {
             let Target::Param(node, param) = control.target else { continue };
             let Some(value) = values.value(&control.name, &param.kind) else { continue };
             graph.set(ids[node], param.id, value).map_err(|_| kOfxStatFailed)?;
-            identity |= node == last && param.id == "mix" && value == Value::Float(0.0);
+            // Lines alone are never the picture.
+            if node == last && param.neutral_at_zero && shows_colour {
+                let number = match value {
+                    Value::Float(v) => v,
+                    Value::Int(v) => v as f32,
+                    _ => continue,
+                };
+                let kind = usize::from(param.unit == Unit::Pixels);
+                least[kind] = least[kind].min(number.abs());
+            }
         }
-        Ok(Self { graph, space, process_alpha, mask_apply, identity })
+        Ok(Self { graph, space, as_is, process_alpha, mask_apply, least })
+    }
+
+    /// What the pixels are by the host's name of their colour space, which counts more than what they
+    /// were said to be.
+    pub fn space_of(&self, name: &CStr) -> ColourSpace {
+        match name.to_bytes() {
+            _ if self.as_is => self.space,
+            b"ofx_display_sdr" | b"srgb_tx" | b"srgb_display" => ColourSpace::Srgb,
+            b"lin_rec709_srgb" => ColourSpace::Linear,
+            b"ACEScg" => ColourSpace::AcesCg,
+            // Of one or the other primaries.
+            b"ofx_scene_linear" if self.space == ColourSpace::Srgb => ColourSpace::Linear,
+            _ => self.space,
+        }
+    }
+
+    /// Whether the values leave a picture that is rendered at `scale` as it is.
+    pub fn is_identity(&self, scale: f32) -> bool {
+        self.least[0] == 0.0 || self.least[1] * scale < LEAST_LENGTH
     }
 }
 

@@ -5,6 +5,9 @@
 //! The colour moves as a whole; coverage stays, and pixels that are covered less than half as much as
 //! the centre are passed over. Of equal ones the first stays, the nearer before the farther.
 //!
+//! The radius is whole steps of the full-size picture. On a proxy these may end within a step; what
+//! the last one finds then counts by its share, so that small radii fade instead of ending at once.
+//!
 //! Cost: four comparisons per step, and nothing at all where the threshold is not reached.
 
 use crate::kernels::blocks::{Block, fetch4, offsets, write4};
@@ -16,8 +19,10 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support,
 crate::params! {
     /// Uniform block.
     pub struct Params for directed_extremum {
-        /// Distance of the last pixel looked at, pixels.
+        /// Distance of the last pixel looked at, pixels of the full-size picture.
         pub radius: f32,
+        /// Pixels per pixel of the full-size picture.
+        pub scale: f32,
         /// Responses up to this leave a pixel alone.
         pub threshold: f32,
     }
@@ -27,7 +32,7 @@ crate::kernel!(directed_extremum {
     cpu: run,
     cost: |params| {
         let p: Params = bytemuck::pod_read_unaligned(params);
-        30.0 + 60.0 * f64::from(p.radius)
+        30.0 + 60.0 * f64::from(p.radius * p.scale)
     },
     tolerance: Tolerance {
         absolute: 1e-6,
@@ -39,23 +44,26 @@ crate::kernel!(directed_extremum {
 });
 
 /// Erodes where `response` is above `threshold` and dilates where it is below -`threshold`, `radius`
-/// pixels far along the major eigenvectors of `tensors`.
+/// pixels of the full-size picture far along the major eigenvectors of `tensors`. `scale` is the size that
+/// is rendered over the full size.
+#[expect(clippy::too_many_arguments, reason = "three images and three numbers")]
 pub fn shocked(
     plan: &mut PlanBuilder,
     color: ImageId,
     tensors: ImageId,
     response: ImageId,
     radius: f32,
+    scale: f32,
     threshold: f32,
 ) -> ImageId {
-    let params = Params { radius, threshold };
+    let params = Params { radius, scale, threshold };
     let support = Support::Pixels(steps(&params) as u32);
     plan.pass(&KERNEL, &[color, tensors, response], &params, Class::Colour, support)
 }
 
 /// Most steps to a side.
 fn steps(params: &Params) -> i32 {
-    (params.radius + 1e-3) as i32
+    ((params.radius + 1e-3).floor() * params.scale).ceil() as i32
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
@@ -118,7 +126,8 @@ fn extreme<S: Simd, const OPAQUE: bool>(
     let [e, f, g, _] = block.read4(simd, &pass.inputs[1]);
     let (_, n) = axis((e - g) * 0.5, f);
     let line = lumas.line(simd, block.x, block.y, n);
-    let steps = (line.major_share * (params.radius + 1e-3)).floor();
+    let steps = (line.major_share * (params.radius + 1e-3)).floor() * params.scale;
+    let last = steps.ceil();
     // Above the threshold lies the zone of a minimum: erode. Below its opposite: dilate.
     let sign = z.simd_gt(zero).select(-one, one);
     let mut alpha = one;
@@ -128,8 +137,10 @@ fn extreme<S: Simd, const OPAQUE: bool>(
     let luma = lumas.centre(simd, block.x, block.y);
     let none = i32x8::splat(simd, 0);
     let mut best = Best { value: luma * sign, offset: [none; 2], least_alpha: alpha * 0.5 };
+    // The best within whole steps.
+    let mut whole = best.offset;
     for k in 1..=radius {
-        let active = active & steps.simd_ge(f32x8::splat(simd, k as f32));
+        let active = active & last.simd_ge(f32x8::splat(simd, k as f32));
         if !active.any_true() {
             break;
         }
@@ -148,10 +159,23 @@ fn extreme<S: Simd, const OPAQUE: bool>(
             best.compare::<OPAQUE>(&line, active, sign, far, along, second);
             best.compare::<OPAQUE>(&line, active, sign, [a, coverage[0]], along, first);
         }
+        if params.scale != 1.0 {
+            let inside = steps.simd_ge(f32x8::splat(simd, k as f32));
+            whole = [inside.select(best.offset[0], whole[0]), inside.select(best.offset[1], whole[1])];
+        }
     }
     let lanes = block.columns(simd);
     let at = offsets(&pass.inputs[0], lanes + best.offset[0], best.offset[1] + block.y);
-    let [r, g, b, _] = fetch4(simd, &pass.inputs[0], at);
+    let [mut r, mut g, mut b, _] = fetch4(simd, &pass.inputs[0], at);
+    let share = steps - steps.floor();
+    if (share.simd_gt(zero) & active).any_true() {
+        let at = offsets(&pass.inputs[0], lanes + whole[0], whole[1] + block.y);
+        let [near_r, near_g, near_b, _] = fetch4(simd, &pass.inputs[0], at);
+        let part = share.simd_gt(zero);
+        r = part.select(near_r + (r - near_r) * share, r);
+        g = part.select(near_g + (g - near_g) * share, g);
+        b = part.select(near_b + (b - near_b) * share, b);
+    }
     [r, g, b, if OPAQUE { one } else { alpha }]
 }
 

@@ -1,18 +1,25 @@
 //! White noise, uniform in 0..1: what line integral convolution makes a tensor field visible with
 //! (§ 2.9). Grey and opaque.
 //!
-//! The value is a hash of the pixel's place in the full-size picture, so that tiles fit together and
-//! proxies show the same grains. Cost: about 15 integer operations.
+//! A grain is a pixel of the full-size picture, and its value a hash of its place there, so that tiles fit
+//! together. A proxy's pixel is the mean of the grains that it covers: what the full picture made smaller
+//! shows. Below an eighth of the size, grains are as wide as an eighth of a pixel.
+//!
+//! Cost: about 15 integer operations a grain.
 
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*, u32x8};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*, u32x8};
 use isophote_engine::math::store4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::params! {
     /// Uniform block.
     pub struct Params for noise {
-        /// Pixels of the full-size picture per pixel.
+        /// Grains per pixel, each way.
         pub pixel_size: f32,
+        /// Pixels of the full-size picture per grain.
+        pub grain: f32,
+        /// Grains that a pixel can touch, each way.
+        pub count: i32,
         /// Another number, another noise.
         pub seed: u32,
     }
@@ -20,13 +27,28 @@ crate::params! {
 
 crate::kernel!(noise {
     cpu: run,
-    cost: |_| 15.0,
-    tolerance: Tolerance { absolute: 0.0, relative: 0.0, outliers: 0.0, reason: "integers, and exact divisions" },
+    cost: |params| {
+        let p: Params = bytemuck::pod_read_unaligned(params);
+        15.0 * f64::from(p.count * p.count)
+    },
+    tolerance: Tolerance {
+        absolute: 1e-6,
+        relative: 0.0,
+        outliers: 0.0,
+        reason: "integers and exact divisions at full size; means of them on proxies",
+    },
 });
+
+/// Most grains along a side of a pixel.
+const MOST: f32 = 8.0;
 
 /// Adds the pass: noise for a picture rendered at `scale` of its full size.
 pub fn white(plan: &mut PlanBuilder, scale: f32, seed: u32) -> ImageId {
-    let params = Params { pixel_size: 1.0 / scale, seed };
+    let grain = (1.0 / (scale * MOST)).max(1.0);
+    let pixel_size = (1.0 / scale).min(MOST);
+    // A whole number of grains fits; any other number touches one more at each end.
+    let count = if pixel_size.fract() == 0.0 { pixel_size } else { pixel_size.ceil() + 1.0 } as i32;
+    let params = Params { pixel_size, grain, count, seed };
     plan.pass_at(&KERNEL, &[], &params, &[Class::Colour], Support::Pixels(0), 0)
 }
 
@@ -34,6 +56,8 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     dispatch!(pass.level, simd => rows(simd, &params, band));
 }
+
+const LANES: [f32; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 const fn mixed(v: u32) -> u32 {
     let h = (v ^ (v >> 16)).wrapping_mul(0x7feb_352d);
@@ -52,14 +76,27 @@ fn mixed_lanes<S: Simd>(v: u32x8<S>) -> u32x8<S> {
 #[inline(always)]
 fn rows<S: Simd>(simd: S, params: &Params, band: &mut Band<'_>) {
     let window = band.window;
-    let place = |v: i32| ((v as f32 + 0.5) * params.pixel_size).floor() as u32;
-    let one = f32x8::splat(simd, 1.0);
+    let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     for y in window.y0..window.y1 {
-        let row = u32x8::splat(simd, mixed(place(y) ^ params.seed));
+        let (low_y, high_y) = (y as f32 * params.pixel_size, (y + 1) as f32 * params.pixel_size);
         for (i, pixels) in band.row_mut(0, y).chunks_mut(32).enumerate() {
-            let columns = u32x8::from_fn(simd, |lane| place(window.x0 + (8 * i + lane) as i32));
-            let h = mixed_lanes(row + columns);
-            let value = (h >> 8).to_float::<f32x8<S>>() / 16_777_216.0;
+            let x = window.x0 + 8 * i as i32;
+            let x = f32x8::from_slice(simd, &LANES) + x as f32;
+            let (low_x, high_x) = (x * params.pixel_size, (x + 1.0) * params.pixel_size);
+            let mut sum = zero;
+            for j in 0..params.count {
+                let y = low_y.floor() + j as f32;
+                let weight_y = (high_y.min(y + 1.0) - low_y.max(y)).max(0.0);
+                let row = u32x8::splat(simd, mixed((y * params.grain).floor() as i32 as u32 ^ params.seed));
+                for i in 0..params.count {
+                    let x = low_x.floor() + i as f32;
+                    let weight_x = (high_x.min(x + 1.0) - low_x.max(x)).max(zero);
+                    let column: i32x8<S> = (x * params.grain).floor().to_int();
+                    let h = mixed_lanes(row + column.bitcast::<u32x8<S>>());
+                    sum += (h >> 8).to_float::<f32x8<S>>() / 16_777_216.0 * (weight_x * weight_y);
+                }
+            }
+            let value = sum / ((high_x - low_x) * (high_y - low_y));
             if pixels.len() == 32 {
                 store4([value, value, value, one], pixels);
             } else {
@@ -105,10 +142,18 @@ mod tests {
     }
 
     #[test]
-    fn a_proxy_shows_grains_of_the_full_picture() {
-        let (full, half) = (noise(64, 64, 1.0, 0), noise(32, 32, 0.5, 0));
-        for i in 0..32 {
-            assert_eq!(half.pixel(i, 3), full.pixel(2 * i + 1, 7));
+    fn a_proxy_shows_the_full_picture_made_smaller() {
+        let full = noise(96, 96, 1.0, 0);
+        for n in [2_i32, 3, 6] {
+            let proxy = noise(96 / n as u32, 96 / n as u32, 1.0 / n as f32, 0);
+            for (x, y) in (0..96 / n).flat_map(|y| (0..96 / n).map(move |x| (x, y))) {
+                let grains = (0..n * n).map(|i| full.pixel(n * x + i % n, n * y + i / n)[0]);
+                let mean = grains.sum::<f32>() / (n * n) as f32;
+                assert!((proxy.pixel(x, y)[0] - mean).abs() < 1e-4, "{n}: {x}, {y}");
+            }
         }
+        // However small, it is the mean of many.
+        let tiny = noise(16, 16, 1.0 / 1024.0, 0);
+        assert!(tiny.data().chunks_exact(4).all(|p| (p[0] - 0.5).abs() < 0.2));
     }
 }

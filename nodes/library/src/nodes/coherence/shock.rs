@@ -77,6 +77,8 @@ pub(crate) struct Directed {
     pub sigma_g: f32,
     pub sigma_i: f32,
     pub radius: f32,
+    /// Pixels per pixel of the full-size picture.
+    pub scale: f32,
     pub threshold: f32,
 }
 
@@ -87,6 +89,7 @@ impl Directed {
             sigma_g: scope.float("sigma_g"),
             sigma_i: scope.float("sigma_i"),
             radius: scope.float("radius"),
+            scale: scope.scale(),
             threshold: scope.float("threshold"),
         }
     }
@@ -95,7 +98,8 @@ impl Directed {
     pub(crate) fn apply(&self, plan: &mut PlanBuilder, color: ImageId, tensor: ImageId) -> ImageId {
         let smooth = smoothed(plan, color, self.sigma_i);
         let response = flow_log::response(plan, smooth, tensor, self.sigma_g);
-        directed_extremum::shocked(plan, color, tensor, response, self.radius, self.threshold)
+        let radius = self.radius / self.scale;
+        directed_extremum::shocked(plan, color, tensor, response, radius, self.scale, self.threshold)
     }
 }
 

@@ -19,7 +19,7 @@ pub static NODE: NodeSpec = NodeSpec {
     output: ports::color_output("The picture with lines."),
     own_params: &[
         Param::color("color", "Line colour", [0.0, 0.0, 0.0, 1.0]).doc("Colour of the lines."),
-        Param::float("opacity", "Opacity", 1.0, [0.0, 1.0]).doc("Opacity of the lines."),
+        Param::float("opacity", "Opacity", 1.0, [0.0, 1.0]).neutral_at_zero().doc("Opacity of the lines."),
         Param::color("paper", "Paper", [1.0, 1.0, 1.0, 0.0])
             .doc("Paper in place of the picture; its alpha says how much it covers, 0 leaves it unset."),
     ],

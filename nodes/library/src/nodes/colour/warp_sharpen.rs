@@ -22,7 +22,7 @@ pub static NODE: NodeSpec = NodeSpec {
             .slider(0.5, 6.0)
             .pixels()
             .doc("Standard deviation of the Gaussian on the gradient magnitude: the width of the edges that are narrowed."),
-        Param::float("phi_w", "Phi w", 2.7, [0.0, 20.0])
+        Param::float("phi_w", "Phi w", 2.7, [0.0, 20.0]).neutral_at_zero()
             .slider(0.0, 10.0)
             .pixels()
             .doc("How far a sharp edge from black to white moves what is beside it, which is also the farthest move."),

@@ -56,7 +56,7 @@ const TENSOR: crate::spec::Port = crate::spec::Port {
     ..ports::TENSOR
 };
 
-pub(crate) const RADIUS: Param = Param::float("radius", "Radius", 6.0, [0.0, 40.0])
+pub(crate) const RADIUS: Param = Param::float("radius", "Radius", 6.0, [0.0, 40.0]).neutral_at_zero()
     .slider(1.0, 16.0)
     .pixels()
     .doc("Radius of the disc that is stretched to an ellipse (r); at every level the same number of its pixels.");

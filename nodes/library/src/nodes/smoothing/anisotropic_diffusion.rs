@@ -33,7 +33,7 @@ pub static NODE: NodeSpec = NodeSpec {
             ],
         )
         .doc("What stops or guides the diffusion."),
-        Param::int("iterations", "Iterations", 10, [0, 60])
+        Param::int("iterations", "Iterations", 10, [0, 60]).neutral_at_zero()
             .slider(0.0, 40.0)
             .structural()
             .doc("Steps. Without edges, their number times twice the time step is the variance of the smoothing in px^2."),

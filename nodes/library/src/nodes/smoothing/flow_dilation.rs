@@ -22,7 +22,7 @@ pub static NODE: NodeSpec = NodeSpec {
     ],
     output: ports::color_output("The picture in strokes."),
     own_params: &[
-        Param::float("length", "Length", 12.0, [0.0, 60.0])
+        Param::float("length", "Length", 12.0, [0.0, 60.0]).neutral_at_zero()
             .slider(0.0, 30.0)
             .pixels()
             .doc(

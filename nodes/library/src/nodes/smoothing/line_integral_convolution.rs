@@ -23,7 +23,7 @@ pub static NODE: NodeSpec = NodeSpec {
     ],
     output: ports::color_output("The smoothed picture."),
     own_params: &[
-        Param::float("sigma", "Sigma", 6.0, [0.0, 40.0])
+        Param::float("sigma", "Sigma", 6.0, [0.0, 40.0]).neutral_at_zero()
             .slider(0.0, 20.0)
             .pixels()
             .doc("Standard deviation of the Gaussian along the line, sigma_s of 6.3.1; cut at 2 sigma."),

@@ -21,7 +21,7 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR],
     output: ports::color_output("The simplified picture."),
     own_params: &[
-        Param::int("iterations", "Iterations", 15, [0, 60])
+        Param::int("iterations", "Iterations", 15, [0, 60]).neutral_at_zero()
             .slider(0.0, 40.0)
             .structural()
             .doc("Steps of the flow."),

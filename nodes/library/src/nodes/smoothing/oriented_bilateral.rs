@@ -40,7 +40,7 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::float("sigma_rt", "Range along", 4.25, [0.01, 200.0])
             .slider(0.5, 30.0)
             .doc("Standard deviation of the range weight along edges, in CIELAB units."),
-        Param::int("iterations", "Iterations", 4, [0, 20])
+        Param::int("iterations", "Iterations", 4, [0, 20]).neutral_at_zero()
             .slider(0.0, 10.0)
             .structural()
             .doc("How often both passes run; the orientation is found once."),

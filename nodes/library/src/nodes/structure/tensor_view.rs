@@ -80,7 +80,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
             let grains = noise::white(scope.plan, scale, 0);
             let options = Options { sigma, adapt: Adapt::None, ..Options::default() };
             let lines = line_integral_convolution::color(scope.plan, grains, tensor, &options);
-            contrast::stretch(scope.plan, lines, SPREAD / deviation(sigma))
+            // The contrast of the full-size picture, which a proxy shows less of.
+            contrast::stretch(scope.plan, lines, SPREAD / deviation(sigma / scale))
         }
         measure => {
             let show = match measure {

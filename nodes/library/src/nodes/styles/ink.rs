@@ -295,7 +295,7 @@ fn strokes(plan: &mut PlanBuilder, tensor: ImageId, [width, length]: [f32; 2], s
     let options = Lic { sigma: length * scale, adapt: Adapt::None, ..Lic::default() };
     let long = line_integral_convolution::color(plan, soft, tensor, &options);
     // Averages of noise are faint: a Gaussian of this width leaves 1 / (2 sqrt(pi) width) of its deviation.
-    contrast::stretch(plan, long, 7.0 * width * scale)
+    contrast::stretch(plan, long, 7.0 * width)
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {

@@ -127,11 +127,12 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
 
     let sigma_b = scope.float("sigma_b") * length;
     let heights = line_integral_convolution::color(scope.plan, grains, tensors, &along(sigma_b, Adapt::None));
-    let gain = evenness(sigma_n, sigma_b);
+    // The marks of a proxy are those of the full picture, seen from further away.
+    let gain = evenness(sigma_n / scale, sigma_b / scale);
     let relief = Relief {
         bristle: scope.float("bristle") * MOST_BRISTLE * gain,
         // Wide marks are flatter: what counts is their height against their width.
-        shine: scope.float("shine") * MOST_SHINE * gain * sigma_n.max(0.5),
+        shine: scope.float("shine") * MOST_SHINE * gain * sigma_n.max(0.5 * scale),
         angle: scope.float("light_angle"),
     };
     painted = paint_relief::lit(scope.plan, painted, heights, &relief);
