@@ -107,6 +107,12 @@ impl Picture {
         picture
     }
 
+    /// Writes packed pixels, as the layout has them, to the row `y` (up).
+    pub fn fill_row(&mut self, y: i32, packed: &[u8]) {
+        let at = self.row(y);
+        self.memory[at..at + packed.len()].copy_from_slice(packed);
+    }
+
     /// A picture of packed rows, the top one first.
     pub fn packed_in(layout: Layout, width: i32, height: i32, packed: &[u8]) -> Self {
         let mut picture = Self::new(layout, width, height);

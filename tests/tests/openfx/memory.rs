@@ -1,9 +1,15 @@
 //! Memory: what an 8K frame of floats takes, by the plans that are rendered.
 
 use crate::reference::*;
+use crate::render::plain;
 use isophote::request::Guides;
 use isophote::{ColourSpace, Planned, Request};
 use isophote_engine::{Rect, Support};
+use isophote_tests::ofx::effect::{Described, Wanted};
+use isophote_tests::ofx::interface::*;
+use isophote_tests::ofx::picture::{Layout, Picture};
+use isophote_tests::ofx::{Behaviour, Host};
+use std::time::Instant;
 
 const SIZE: [u32; 2] = [7680, 4320];
 /// A frame of RGBA floats.
@@ -45,4 +51,46 @@ fn an_8k_frame_fits_into_4_gib() {
         }
     }
     assert!(large.is_empty(), "{}", large.join(", "));
+}
+
+/// The most bytes of this process that were in memory at once since the last call.
+fn most_resident() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap_or_default();
+    // Begins to count anew.
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
+    line.trim().trim_end_matches(" kB").parse::<u64>().map_or(0, |kib| kib << 10)
+}
+
+#[test]
+#[ignore = "a minute and more for each effect; ISOPHOTE_NODES names some"]
+fn an_8k_frame_is_rendered_in_4_gib() {
+    let host = Host::new(Behaviour::default());
+    let layout = Layout::default();
+    let [width, height] = SIZE.map(|n| n as i32);
+    for effect in expected() {
+        let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextFilter);
+        plain(&instance);
+        {
+            let row: Vec<u8> = (0..width * 4)
+                .flat_map(|i| {
+                    (if i % 4 == 3 { 1.0 } else { 0.5 + 0.4 * (i as f32 * 0.003).sin() }).to_ne_bytes()
+                })
+                .collect();
+            let mut source = Picture::new(layout, width, height);
+            for y in 0..height {
+                source.fill_row(y, &row);
+            }
+            instance.connect("Source", source);
+        }
+        instance.connect("Output", Picture::new(layout, width, height));
+        most_resident();
+        let started = Instant::now();
+        let status = instance.render_connected(&Wanted::new([0, 0, width, height]));
+        assert_eq!(status, kOfxStatOK);
+        let (bytes, id) = (most_resident(), effect.plugin.identifier());
+        let gib = bytes as f64 / (1_u64 << 30) as f64;
+        println!("{id}: {gib:.2} GiB in memory at most, {:.0} s", started.elapsed().as_secs_f64());
+        assert!(bytes <= MOST, "{id} takes {gib:.2} GiB");
+    }
 }

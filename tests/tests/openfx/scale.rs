@@ -15,9 +15,9 @@ const LEAST: f64 = 40.0;
 /// Effects that reach less, and why.
 const LESS: [(&str, f64, &str); 1] = [(
     "org.isophote.structure",
-    22.0,
-    "it shows noise with grains of one pixel, of which a proxy has the means: reading these between pixels along \
-     a line smooths them twice as much across it",
+    34.0,
+    "it shows noise with grains of one pixel, at full size as well; what is left are the lines, which follow the \
+     tensors of the proxy",
 )];
 
 fn least(identifier: &str) -> f64 {

@@ -172,7 +172,7 @@ impl Job<'_> {
         let has = |guide| self.guides.iter().any(|(g, _)| *g == guide);
         let guides =
             Guides { normal: has(GraphInput::Normal), depth: has(GraphInput::Depth), object_id: false };
-        let premultiplied = self.source.alpha == Alpha::Premultiplied;
+        let premultiplied = self.source.alpha != Alpha::Unpremultiplied;
         let planned = instance::plan(&self.settings, &self.frame, premultiplied, guides)?;
         let plan = planned.plan();
         let threads = FrameThreads::of(self.host);

@@ -44,12 +44,17 @@ const MOST: f32 = 8.0;
 
 /// Adds the pass: noise for a picture rendered at `scale` of its full size.
 pub fn white(plan: &mut PlanBuilder, scale: f32, seed: u32) -> ImageId {
+    white_at(plan, scale, seed, 0)
+}
+
+/// The same at a level of the pyramid; `scale` is the size of a picture at that level over the full size.
+pub fn white_at(plan: &mut PlanBuilder, scale: f32, seed: u32, level: i8) -> ImageId {
     let grain = (1.0 / (scale * MOST)).max(1.0);
     let pixel_size = (1.0 / scale).min(MOST);
     // A whole number of grains fits; any other number touches one more at each end.
     let count = if pixel_size.fract() == 0.0 { pixel_size } else { pixel_size.ceil() + 1.0 } as i32;
     let params = Params { pixel_size, grain, count, seed };
-    plan.pass_at(&KERNEL, &[], &params, &[Class::Colour], Support::Pixels(0), 0)
+    plan.pass_at(&KERNEL, &[], &params, &[Class::Colour], Support::Pixels(0), level)
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {

@@ -30,6 +30,12 @@ pub fn interpolate(plan: &mut PlanBuilder, fine: ImageId, coarse: ImageId) -> Im
     plan.pass(&KERNEL, &[fine, coarse], &Params { kept: 1.0 }, Class::Field, Support::Pixels(1))
 }
 
+/// Adds the pass: `coarse` at the level of `fine`, one below, whose values do not matter.
+pub fn refine(plan: &mut PlanBuilder, fine: ImageId, coarse: ImageId) -> ImageId {
+    let params = Params { kept: f32::MAX };
+    plan.pass(&KERNEL, &[fine, coarse], &params, Class::Field, Support::Pixels(1))
+}
+
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     dispatch!(pass.level, simd => fill(simd, pass, &params, band));

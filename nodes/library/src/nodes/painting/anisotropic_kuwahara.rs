@@ -22,7 +22,7 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR, TENSOR],
     output: ports::color_output("The painted picture."),
     own_params: &[
-        RADIUS,
+        RADIUS.neutral_at_zero(),
         SECTORS,
         Q,
         THRESHOLD,
@@ -56,7 +56,7 @@ const TENSOR: crate::spec::Port = crate::spec::Port {
     ..ports::TENSOR
 };
 
-pub(crate) const RADIUS: Param = Param::float("radius", "Radius", 6.0, [0.0, 40.0]).neutral_at_zero()
+pub(crate) const RADIUS: Param = Param::float("radius", "Radius", 6.0, [0.0, 40.0])
     .slider(1.0, 16.0)
     .pixels()
     .doc("Radius of the disc that is stretched to an ellipse (r); at every level the same number of its pixels.");

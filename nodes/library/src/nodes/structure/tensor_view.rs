@@ -2,10 +2,11 @@
 
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
 use crate::kernels::structure::tensor_display::{self, Show};
-use crate::kernels::structure::{contrast, noise};
+use crate::kernels::structure::{colour_restrict, contrast, noise, tensor_interpolate};
 use crate::ports;
 use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
-use isophote_engine::ImageId;
+use isophote_engine::image::MAX_SIDE;
+use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
@@ -77,11 +78,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     match scope.choice("show") {
         "lic" => {
             let (sigma, scale) = (scope.float("sigma"), scope.scale());
-            let grains = noise::white(scope.plan, scale, 0);
-            let options = Options { sigma, adapt: Adapt::None, ..Options::default() };
-            let lines = line_integral_convolution::color(scope.plan, grains, tensor, &options);
-            // The contrast of the full-size picture, which a proxy shows less of.
-            contrast::stretch(scope.plan, lines, SPREAD / deviation(sigma / scale))
+            stream_lines(scope.plan, tensor, sigma, scale)
         }
         measure => {
             let show = match measure {
@@ -103,6 +100,32 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
             tensor_display::color(scope.plan, tensor, show)
         }
     }
+}
+
+/// Levels beyond the picture's own at which a proxy's stream lines are traced.
+const MOST_FINER: u8 = 2;
+
+/// Noise along the stream lines of `tensor`, by a Gaussian of `sigma` pixels. Grains are as fine as pixels, so
+/// that proxies down to a quarter of the size trace them at full size and show the means.
+fn stream_lines(plan: &mut PlanBuilder, mut tensor: ImageId, sigma: f32, scale: f32) -> ImageId {
+    let allowed = if plan.size().iter().all(|n| n << MOST_FINER <= MAX_SIDE) { MOST_FINER } else { 0 };
+    let finer = (1..=allowed).rev().find(|level| scale * f32::from(1_u8 << level) <= 1.0).unwrap_or(0);
+    let mut grains = None;
+    for level in 1..=finer {
+        let noise = noise::white_at(plan, scale * f32::from(1_u8 << level), 0, -(level as i8));
+        tensor = tensor_interpolate::refine(plan, noise, tensor);
+        grains = Some(noise);
+    }
+    let grains = grains.unwrap_or_else(|| noise::white(plan, scale, 0));
+    let options =
+        Options { sigma: sigma * f32::from(1_u8 << finer), adapt: Adapt::None, ..Options::default() };
+    let lines = line_integral_convolution::color(plan, grains, tensor, &options);
+    // The contrast of the full-size picture, which a proxy shows less of.
+    let mut shown = contrast::stretch(plan, lines, SPREAD / deviation(sigma / scale));
+    for _ in 0..finer {
+        shown = colour_restrict::restrict(plan, shown);
+    }
+    shown
 }
 
 /// Standard deviation that uniform noise keeps under a Gaussian of `sigma` pixels along a line: the
