@@ -69,6 +69,29 @@ fn tiles_from_their_regions_of_interest_equal_the_full_frame() {
     no_faults();
 }
 
+#[test]
+fn a_host_without_tiles_may_give_parts_all_the_same() {
+    let host = Host::new(Behaviour { tiles: false, ..Behaviour::default() });
+    let layout = Layout::default();
+    let name = CString::new(format!("{ROI_PREFIX}Source")).unwrap();
+    let instance = Described::new(&host, binary().plugin("org.isophote.gaussian"))
+        .instance(kOfxImageEffectContextFilter);
+    plain(&instance);
+    let source = source(layout);
+    instance.connect("Source", source.clone());
+    let full = instance.render(layout, SIZE);
+    let window = [40, 20, 56, 31];
+    let roi = instance.regions(window.map(f64::from), 1.0).expect("a region").numbers(&name);
+    let pixels = [0, 1, 2, 3].map(|i| roi[i] as i32);
+    assert!(pixels[0] > 0 && pixels[2] < SIZE[0], "{pixels:?} is no part");
+    // The region of definition stays that of the whole.
+    instance.connect("Source", source.crop(pixels));
+    let (status, tile) = instance.try_render(layout, SIZE, &Wanted::new(window));
+    assert_eq!(status, kOfxStatOK);
+    assert!(tile.crop(window).packed() == full.crop(window).packed());
+    no_faults();
+}
+
 fn scale_of(aspect: f64) -> f32 {
     if aspect == 1.0 { 1.0 } else { (1.0 / aspect).sqrt() as f32 }
 }

@@ -48,7 +48,9 @@ impl Frame {
                     };
                     beyond <= 1
                 });
-                if host.tiles && near {
+                // Hosts without tiles have been seen to give parts as well; a part is not shaped like the whole.
+                let part = near && (host.tiles || !is_smaller_whole(&picture, &bounds));
+                if part {
                     // The image is a part of the picture, or the picture itself with other rounding.
                     if (0..4).all(|i| picture[i].abs_diff(bounds[i]) <= 1) { bounds } else { picture }
                 } else {
@@ -110,6 +112,13 @@ impl Frame {
     }
 }
 
+/// Whether `bounds` are `picture` made smaller, to a pixel.
+fn is_smaller_whole(picture: &Bounds, bounds: &Bounds) -> bool {
+    let side = |b: &Bounds, i: usize| f64::from(b[i + 2]) - f64::from(b[i]);
+    let share = side(bounds, 0) / side(picture, 0).max(1.0);
+    (0..4).all(|i| (f64::from(picture[i]) * share - f64::from(bounds[i])).abs() <= 1.0)
+}
+
 /// The pixels that a region touches; `None` when it is empty or has no end.
 fn to_pixels(region: &OfxRectD, ratio: [f64; 2]) -> Option<Bounds> {
     let low = |v: f64, r: f64| (v * r + ROUNDING).floor();
@@ -140,5 +149,18 @@ mod tests {
         assert_eq!(frame.inside([-100, -100, 100, 100]), Rect::of_size(64, 40));
         let endless = OfxRectD { x1: f64::NEG_INFINITY, y1: 0.0, x2: 4.0, y2: 4.0 };
         assert_eq!(frame.pixels(&endless), None);
+    }
+
+    #[test]
+    fn a_proxy_is_told_from_a_part() {
+        let picture = [0, 0, 200, 140];
+        for (bounds, smaller) in [
+            ([0, 0, 100, 70], true),
+            ([0, 0, 67, 47], true),
+            ([60, 30, 126, 96], false),
+            ([0, 0, 200, 70], false),
+        ] {
+            assert_eq!(is_smaller_whole(&picture, &bounds), smaller, "{bounds:?}");
+        }
     }
 }

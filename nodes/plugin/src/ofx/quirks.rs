@@ -38,6 +38,10 @@ impl Quirks {
             // The suite lacks its mutexes.
             return Self { space: ColourSpace::Srgb, threads: false, ..general };
         }
+        if named(&["openfx-driver"]) {
+            // A runner for tests, which ends when its suite is used.
+            return Self { threads: false, ..general };
+        }
         // Editors work on pictures as they are displayed.
         if named(&["vegas", "mlt", "kdenlive", "shotcut", "premiere", "hitfilm"]) {
             return Self { space: ColourSpace::Srgb, ..general };
@@ -59,5 +63,6 @@ mod tests {
             assert_eq!(Quirks::of(name).space, ColourSpace::Linear, "{name:?}");
         }
         assert!(!Quirks::of(c"DaVinciResolve").messages);
+        assert!(!Quirks::of(c"openfx-driver").threads && Quirks::of(c"uk.co.thefoundry.nuke").threads);
     }
 }
