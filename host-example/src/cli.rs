@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::apply::GuideChoice;
+use crate::apply::{Bytes, GuideChoice};
 use crate::stylize::style::Setting;
 
 /// Renders scenes and stylizes what it renders.
@@ -21,7 +21,7 @@ pub struct Cli {
 pub enum Command {
     /// Renders a glTF or OBJ scene to PNG or EXR frames.
     Render(RenderArgs),
-    /// Applies a node or graph to a picture.
+    /// Applies a node, graph or preset to a picture or a sequence of frames.
     Apply(ApplyArgs),
     /// Opens a window that renders a scene and stylizes every frame.
     View(ViewArgs),
@@ -29,6 +29,12 @@ pub enum Command {
     Sheet(SheetArgs),
     /// Saves, shows and checks presets: styles with their parameters as JSON files.
     Preset(PresetArgs),
+    /// Makes jobs for render farms.
+    Farm {
+        /// What to do.
+        #[command(subcommand)]
+        command: FarmCommand,
+    },
     /// Lists the nodes, or the parameters of one.
     Nodes(NodesArgs),
     /// Measures how fast the nodes are.
@@ -109,23 +115,69 @@ pub struct ViewArgs {
     pub report: bool,
 }
 
+/// What `farm` does.
+#[derive(Debug, Subcommand)]
+pub enum FarmCommand {
+    /// Writes an Open Job Description template (jobtemplate-2023-09) of an apply command.
+    Openjd(OpenJdArgs),
+}
+
+/// Options of `farm openjd`.
+#[derive(Args, Debug)]
+pub struct OpenJdArgs {
+    /// The template: .json; on standard output without.
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Name of the job.
+    #[arg(long)]
+    pub name: Option<String>,
+    /// Frames of a task, by the extension TASK_CHUNKING; one without.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub chunk: Option<u32>,
+    /// The command: apply with its arguments, after --.
+    #[arg(last = true, required = true)]
+    pub command: Vec<String>,
+}
+
 /// Options of `apply`.
 #[derive(Args, Debug)]
 pub struct ApplyArgs {
-    /// The id of a node, or a graph file or preset (.json).
-    pub style: String,
-    /// The picture: PNG, JPEG or EXR.
+    /// The id of a node, or a graph file or preset (.json); left out with --preset.
+    pub style: PathBuf,
+    /// The picture: PNG, JPEG, TIFF, WebP, HDR or EXR; shot.####.exr, shot.@@@@.exr or shot.%04d.exr for a sequence.
     pub input: PathBuf,
-    /// The result: .png, .jpg or .exr; may be the same file.
-    pub output: PathBuf,
+    /// The result: .png, .jpg, .tif or .exr; may be the same file. Of a sequence with a place for the number too.
+    #[arg(required_unless_present = "preset")]
+    pub output: Option<PathBuf>,
+    /// A preset file with the style and its parameters.
+    #[arg(long, value_name = "FILE")]
+    pub preset: Option<PathBuf>,
+    /// Frames of the sequence, such as 1001-1100x2,1200; without it all that are on disk.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub frames: Option<String>,
+    /// What to do when frames of the sequence have no file.
+    #[arg(long, value_enum, default_value_t = OnMissing::Fail)]
+    pub on_missing: OnMissing,
+    /// Most memory, such as 4GiB; decides how many frames are in flight. At most 4GiB without.
+    #[arg(long, value_name = "SIZE")]
+    pub memory: Option<Bytes>,
+    /// Leaves results alone that are there already and whole.
+    #[arg(long)]
+    pub skip_existing: bool,
+    /// Says what would be done, and does nothing.
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Prints a line of JSON for every frame.
+    #[arg(long)]
+    pub json: bool,
     /// Sets a parameter; node.id=value for one node of a graph. May be repeated.
     #[arg(long, value_name = "ID=VALUE")]
     pub set: Vec<Setting>,
     /// Where the work is done; auto takes a graphics card if there is one, otherwise the CPU.
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub backend: Backend,
-    /// What the numbers of the picture mean, and the result's; without it sRGB for PNG and JPEG, what its
-    /// chromaticities say or else linear for EXR.
+    /// What the numbers of the picture mean, and the result's; without it sRGB for files of integers, what
+    /// its chromaticities say or else linear for EXR, linear for other floats.
     #[arg(long, value_enum)]
     pub space: Option<Space>,
     /// The layer of an EXR file that is read and replaced; without it the main one.
@@ -211,6 +263,15 @@ pub enum PresetCommand {
         #[arg(required = true)]
         files: Vec<PathBuf>,
     },
+}
+
+/// What becomes of a run when frames are missing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum OnMissing {
+    /// It does not start.
+    Fail,
+    /// The other frames are done.
+    Skip,
 }
 
 /// Where a graph runs.

@@ -4,6 +4,7 @@ pub mod apply;
 pub mod bench;
 pub mod cli;
 pub mod error;
+pub mod farm_verb;
 pub mod loader;
 pub mod nodes_verb;
 pub mod output;

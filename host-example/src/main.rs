@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::ErrorKind;
 use isophote_host::cli::{Cli, Command};
-use isophote_host::{apply, bench, nodes_verb, preset_verb, render_verb, view};
+use isophote_host::{apply, bench, farm_verb, nodes_verb, preset_verb, render_verb, view};
 
 fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
@@ -18,6 +18,7 @@ fn main() -> ExitCode {
         Command::Apply(args) => apply::run(&args),
         Command::Sheet(args) => apply::sheet::run(&args),
         Command::Preset(args) => preset_verb::run(&args),
+        Command::Farm { command } => farm_verb::run(&command),
         Command::Nodes(args) => nodes_verb::run(&args),
         Command::Bench(args) => bench::run(&args),
     };

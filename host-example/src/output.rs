@@ -146,7 +146,8 @@ fn beside(path: &Path) -> Result<tempfile::NamedTempFile> {
         _ => Path::new("."),
     };
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".isophote-");
+    let prefix = format!("{TEMPORARY}{}-{}-", machine(), std::process::id());
+    builder.prefix(&prefix);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -154,6 +155,44 @@ fn beside(path: &Path) -> Result<tempfile::NamedTempFile> {
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     builder.tempfile_in(folder).map_err(|e| unwritable(path, e))
+}
+
+/// How the names of temporary files begin; machine and process follow, so that what a killed process left
+/// can be told from what another is just writing.
+const TEMPORARY: &str = ".isophote-";
+
+/// Age after which a temporary file of another machine was left behind.
+const LEFT_BEHIND: std::time::Duration = std::time::Duration::from_secs(24 * 3600);
+
+fn machine() -> String {
+    let name = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
+    let name: String = name.trim().chars().filter(char::is_ascii_alphanumeric).take(32).collect();
+    if name.is_empty() { "host".into() } else { name }
+}
+
+/// Removes temporary files from the folder of `path` that processes of this machine left when they were killed,
+/// and others after a day.
+pub fn sweep(path: &Path) {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let own = format!("{TEMPORARY}{}-", machine());
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let Some(name) = name.to_str().filter(|n| n.starts_with(TEMPORARY)) else { continue };
+        let process = name.strip_prefix(&own).and_then(|rest| rest.split('-').next()?.parse::<u32>().ok());
+        let is_dead = Path::new("/proc/self").exists()
+            && process.is_some_and(|id| !Path::new("/proc").join(id.to_string()).exists());
+        let is_old = entry
+            .metadata()
+            .and_then(|m| m.modified())
+            .is_ok_and(|at| at.elapsed().is_ok_and(|age| age > LEFT_BEHIND));
+        if is_dead || is_old {
+            // Another process may have been faster.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
 }
 
 fn unwritable(path: &Path, problem: impl std::fmt::Display) -> Error {
@@ -174,6 +213,8 @@ pub fn write_beside(
     write(&mut writer).map_err(fail)?;
     writer.flush().map_err(|e| fail(e.to_string()))?;
     drop(writer);
+    // A name must not appear before what it names is on the disk.
+    file.as_file().sync_all().map_err(|e| fail(e.to_string()))?;
     file.persist(path).map_err(|e| fail(e.error.to_string()))?;
     Ok(())
 }

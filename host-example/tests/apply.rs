@@ -78,13 +78,37 @@ fn all_kinds_of_files_are_read_and_written() {
     {
         apply(folder.path(), "gaussian", from, to, &["--set", "mix=0", "--backend", "cpu"]);
     }
-    let open = |name: &str| image::open(folder.path().join(name)).expect("a picture was written");
+    let at = |name: &str| folder.path().join(name);
+    picture(40, 24).save(at("w.webp")).expect("the picture can be written");
+    let light = image::Rgb32FImage::from_fn(40, 24, |x, y| image::Rgb([x as f32 * 0.5, y as f32, 0.25]));
+    light.save(at("h.hdr")).expect("the picture can be written");
+    for (from, to) in [
+        ("in.png", "p.tif"),
+        ("w.webp", "w.png"),
+        ("h.hdr", "h.exr"),
+        ("h.hdr", "h.tiff"),
+        ("h.tiff", "i.exr"),
+    ] {
+        apply(folder.path(), "gaussian", from, to, &["--set", "mix=0", "--backend", "cpu"]);
+    }
+    let open = |name: &str| image::open(at(name)).expect("a picture was written");
+    assert_eq!(open("p.tif").into_rgb8(), open("in.png").into_rgb8());
+    assert_eq!(open("w.png").into_rgb8(), open("in.png").into_rgb8());
+    assert!(open("h.tiff").into_rgb32f().get_pixel(39, 20).0[1] > 19.0, "light is lost");
+    let exr = |name: &str| exr::prelude::read_first_flat_layer_from_file(at(name)).expect("an EXR file");
+    for (a, b) in
+        exr("h.exr").layer_data.channel_data.list.iter().zip(&exr("i.exr").layer_data.channel_data.list)
+    {
+        let far = a.sample_data.values_as_f32().zip(b.sample_data.values_as_f32());
+        assert!(far.into_iter().all(|(a, b)| (a - b).abs() <= 1e-3 * (1.0 + a)), "{}", a.name);
+    }
     assert_eq!(open("c.png").color(), image::ColorType::Rgb16, "floats need more than 8 bits");
     let (first, last) = (open("a.jpg").into_rgb8(), open("e.jpeg").into_rgb8());
     let worst = first.as_raw().iter().zip(last.as_raw()).map(|(a, b)| a.abs_diff(*b)).max();
     // JPEG itself loses a little.
     assert!(worst.is_some_and(|w| w <= 6), "{worst:?}");
-    assert_eq!(listing(folder.path()), ["a.jpg", "b.exr", "c.png", "d.exr", "e.jpeg", "in.png"]);
+    let known = "a.jpg b.exr c.png d.exr e.jpeg h.exr h.hdr h.tiff i.exr in.png p.tif w.png w.webp";
+    assert_eq!(listing(folder.path()).join(" "), known);
 }
 
 #[test]

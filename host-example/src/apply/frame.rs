@@ -9,8 +9,9 @@ use crate::cli::{Backend, Space};
 use crate::error::Result;
 use crate::loader::catalogue::Kind;
 use crate::loader::contract::{
-    ISOPHOTE_ALPHA_PREMULTIPLIED, ISOPHOTE_ALPHA_STRAIGHT, ISOPHOTE_NO_DEVICE, ISOPHOTE_SPACE_ACESCG,
-    ISOPHOTE_SPACE_LINEAR, ISOPHOTE_SPACE_SRGB, IsophoteRequest,
+    ISOPHOTE_ALPHA_PREMULTIPLIED, ISOPHOTE_ALPHA_STRAIGHT, ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_NORMAL,
+    ISOPHOTE_GUIDE_OBJECT_ID, ISOPHOTE_NO_DEVICE, ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR,
+    ISOPHOTE_SPACE_SRGB, IsophoteRequest,
 };
 use crate::loader::{Control, Device, Input, Library};
 use crate::pixels::{Pixels, Precision};
@@ -51,6 +52,28 @@ impl Filter {
         Ok(Self { library, style, device, space, threads })
     }
 
+    /// Bytes that filtering a picture of this size takes, besides the picture and its result.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Input`] for sizes and graphs that the library refuses.
+    pub fn working_memory(&self, name: &str, size: (u32, u32), guides: &[Guide]) -> Result<u64> {
+        let refused = |e: crate::loader::Refusal| e.at(name, "choose another picture or style");
+        let mut request = self.library.request(size).map_err(refused)?;
+        for guide in guides {
+            request.guides |= match guide {
+                Guide::Normal => ISOPHOTE_GUIDE_NORMAL,
+                Guide::Depth => ISOPHOTE_GUIDE_DEPTH,
+                Guide::ObjectId => ISOPHOTE_GUIDE_OBJECT_ID,
+            };
+        }
+        let program = self.style.graph.plan(&request).and_then(|plan| plan.program()).map_err(refused)?;
+        let bytes = |t: &isophote_engine::program::Texture| {
+            let (width, height) = (t.window.x1 - t.window.x0, t.window.y1 - t.window.y0);
+            u64::from(width.unsigned_abs()) * u64::from(height.unsigned_abs()) * u64::from(t.channels) * 4
+        };
+        Ok(program.textures.iter().map(bytes).sum())
+    }
+
     /// Filters all pictures of `source`, or the first where `format` holds one.
     ///
     /// # Errors
@@ -59,16 +82,21 @@ impl Filter {
     pub fn run(
         &mut self,
         name: &str,
+        frame: Option<i64>,
         source: &Source,
         format: Format,
         progress: &mut dyn FnMut(f32),
     ) -> Result<Filtered> {
+        if let Some(frame) = frame {
+            self.style.at_frame(frame)?;
+        }
         let in_place = source.exr.as_ref().filter(|_| format == Format::Exr);
         let pictures = if in_place.is_some() {
             source.pictures.as_slice()
         } else {
             source.pictures.get(..1).unwrap_or_default()
         };
+        let to = format.family(source.family);
         let scalar = self.style.kind != Kind::Color;
         let mut filtered = Filtered { results: Vec::with_capacity(pictures.len()), mended: 0 };
         for (at, picture) in pictures.iter().enumerate() {
@@ -81,7 +109,7 @@ impl Filter {
             let there = light.change.map(|(there, _)| convert::changed(&picture.pixels, &there));
             let (color, bad) = there.as_ref().map_or((&picture.pixels, 0), |(pixels, bad)| (pixels, *bad));
             filtered.mended += bad;
-            let precision = if format.family() == source.family { color.precision() } else { Precision::F32 };
+            let precision = if to == source.family { color.precision() } else { Precision::F32 };
             let mut result = Pixels::zeroed(color.width(), color.height(), channels, precision);
             let request = self.request(name, color, source.family, light.space)?;
             let mut inputs = vec![Input { name: "color", pixels: color }];
@@ -96,8 +124,8 @@ impl Filter {
                 .map_err(|e| e.at(name, "choose another picture or style"))?;
             filtered.mended += report.mended;
             if !scalar {
-                result = convert::between(result, source.family, light.space, format.family());
-                let is_shown = source.family == Family::Light && format.family() == Family::Display;
+                result = convert::between(result, source.family, light.space, to);
+                let is_shown = source.family == Family::Light && to == Family::Display;
                 if let Some((_, back)) = light.change.filter(|_| !is_shown) {
                     result = convert::changed(&result, &back).0;
                 }

@@ -1,4 +1,4 @@
-//! Pictures from files: PNG, JPEG and EXR, told apart by their first bytes.
+//! Pictures from files: PNG, JPEG, TIFF, WebP, HDR and EXR, told apart by their first bytes.
 
 use std::fs;
 use std::io::Cursor;
@@ -6,10 +6,10 @@ use std::path::Path;
 
 use image::{DynamicImage, ImageDecoder};
 
-use super::exr::{ExrFile, Picture, Selection};
+use super::exr::{self, ExrFile, Picture, Selection};
 use super::jpeg;
 use crate::error::{Error, Result};
-use crate::pixels::{Pixels, Samples};
+use crate::pixels::{Pixels, Precision, Samples};
 
 /// First bytes of an EXR file.
 const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -19,9 +19,9 @@ const MOST_PIXELS: u64 = 1 << 28;
 /// What a kind of file means by its numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
-    /// Encoded for displays, alpha apart from colour: PNG and JPEG.
+    /// Encoded for displays, alpha apart from colour: PNG, JPEG, WebP and TIFF of integers.
     Display,
-    /// Linear light, colour multiplied by alpha: EXR.
+    /// Linear light, colour multiplied by alpha: EXR, HDR and TIFF of floats.
     Light,
 }
 
@@ -41,11 +41,55 @@ pub struct Source {
 /// Reads a picture, of an EXR file what `selection` chooses.
 ///
 /// # Errors
-/// [`Error::Input`] when the file is missing, of another kind, truncated, malformed or too large, or lacks what was
-/// chosen.
+/// As [`load`] and [`decode`].
 pub fn read(path: &Path, selection: &Selection) -> Result<Source> {
-    let bytes = fs::read(path)
-        .map_err(|e| Error::file(path, format!("cannot be read: {e}"), "name a PNG, JPEG or EXR file"))?;
+    decode(path, load(path)?, selection)
+}
+
+/// All bytes of a file.
+///
+/// # Errors
+/// [`Error::Input`] when it is missing or cannot be read.
+pub fn load(path: &Path) -> Result<Vec<u8>> {
+    fs::read(path).map_err(|e| Error::file(path, format!("cannot be read: {e}"), "name a picture"))
+}
+
+/// Bytes of memory that a picture takes from being decoded to being written, about. Files that will be refused
+/// weigh what they are.
+pub fn weight(bytes: &[u8], selection: &Selection) -> u64 {
+    let decoded = if bytes.starts_with(&EXR) {
+        exr::weight(bytes, selection).unwrap_or(0)
+    } else {
+        // Four channels as decoded, as result, and as floats between.
+        size(bytes, selection)
+            .map_or(0, |(width, height)| u64::from(width) * u64::from(height) * 4 * (2 + 2 + 8))
+    };
+    bytes.len() as u64 + decoded
+}
+
+/// Size of the largest picture in a file; nothing for files that will be refused.
+pub fn size(bytes: &[u8], selection: &Selection) -> Option<(u32, u32)> {
+    if bytes.starts_with(&EXR) {
+        return exr::size(bytes, selection);
+    }
+    image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().ok()?.into_dimensions().ok()
+}
+
+/// Whether a file is a whole picture, and no beginning of one.
+pub fn is_whole(path: &Path) -> bool {
+    let Ok(bytes) = fs::read(path) else { return false };
+    if bytes.starts_with(&EXR) {
+        return exr::is_whole(bytes);
+    }
+    decode(path, bytes, &Selection::default()).is_ok()
+}
+
+/// Makes a picture of a file's bytes, of an EXR file what `selection` chooses.
+///
+/// # Errors
+/// [`Error::Input`] when the file is of another kind, truncated, malformed or too large, or lacks what was
+/// chosen.
+pub fn decode(path: &Path, bytes: Vec<u8>, selection: &Selection) -> Result<Source> {
     if !bytes.starts_with(&EXR)
         && let Some(option) = selection.option()
     {
@@ -54,22 +98,38 @@ pub fn read(path: &Path, selection: &Selection) -> Result<Source> {
     match bytes.as_slice() {
         [0x89, b'P', b'N', b'G', ..] => {
             let decoder = image::codecs::png::PngDecoder::new(Cursor::new(&bytes));
-            decode(path, decoder.map_err(|e| malformed(path, "PNG", e))?, "PNG")
+            picture(path, decoder.map_err(|e| malformed(path, "PNG", e))?, "PNG")
         }
         [0xff, 0xd8, 0xff, ..] => {
             if !jpeg::is_whole(&bytes) {
                 return Err(malformed(path, "JPEG", "it ends before the picture does"));
             }
             let decoder = image::codecs::jpeg::JpegDecoder::new(Cursor::new(&bytes));
-            decode(path, decoder.map_err(|e| malformed(path, "JPEG", e))?, "JPEG")
+            picture(path, decoder.map_err(|e| malformed(path, "JPEG", e))?, "JPEG")
         }
         start if start.starts_with(&EXR) => {
             let exr = ExrFile::new(path, bytes, selection)?;
             let pictures = exr.pictures(path)?;
             Ok(Source { pictures, family: Family::Light, profile: None, exr: Some(exr) })
         }
-        [] => Err(Error::file(path, "is empty", "name a PNG, JPEG or EXR file")),
-        _ => Err(Error::file(path, "is neither PNG, JPEG nor EXR", "convert it to one of them")),
+        [b'I', b'I', 42, 0, ..] | [b'M', b'M', 0, 42, ..] => {
+            let decoder = image::codecs::tiff::TiffDecoder::new(Cursor::new(&bytes));
+            picture(path, decoder.map_err(|e| malformed(path, "TIFF", e))?, "TIFF")
+        }
+        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => {
+            let decoder = image::codecs::webp::WebPDecoder::new(Cursor::new(&bytes));
+            picture(path, decoder.map_err(|e| malformed(path, "WebP", e))?, "WebP")
+        }
+        [b'#', b'?', ..] => {
+            let decoder = image::codecs::hdr::HdrDecoder::new(Cursor::new(&bytes));
+            picture(path, decoder.map_err(|e| malformed(path, "HDR", e))?, "HDR")
+        }
+        [] => Err(Error::file(path, "is empty", "name a picture")),
+        _ => Err(Error::file(
+            path,
+            "is neither PNG, JPEG nor EXR, nor TIFF, WebP or HDR",
+            "convert it to one of them",
+        )),
     }
 }
 
@@ -93,7 +153,7 @@ pub fn malformed(path: &Path, kind: &str, problem: impl std::fmt::Display) -> Er
     Error::file(path, format!("is damaged and cannot be read as {kind}: {problem}"), "use an intact file")
 }
 
-fn decode(path: &Path, mut decoder: impl ImageDecoder, kind: &str) -> Result<Source> {
+fn picture(path: &Path, mut decoder: impl ImageDecoder, kind: &str) -> Result<Source> {
     let (width, height) = decoder.dimensions();
     check_size(path, width.into(), height.into())?;
     let profile = decoder.icc_profile().unwrap_or_default();
@@ -108,11 +168,17 @@ fn decode(path: &Path, mut decoder: impl ImageDecoder, kind: &str) -> Result<Sou
         DynamicImage::ImageLuma16(i) => (1, Samples::U16(i.into_raw())),
         DynamicImage::ImageRgb16(i) => (3, Samples::U16(i.into_raw())),
         DynamicImage::ImageRgba16(i) => (4, Samples::U16(i.into_raw())),
+        DynamicImage::ImageRgb32F(i) => (3, Samples::F32(i.into_raw())),
+        DynamicImage::ImageRgba32F(i) => (4, Samples::F32(i.into_raw())),
         DynamicImage::ImageLumaA16(_) => (4, Samples::U16(decoded.into_rgba16().into_raw())),
         other => (4, Samples::U8(other.into_rgba8().into_raw())),
     };
     let pixels = Pixels::new(width, height, channels, samples)
         .ok_or_else(|| malformed(path, kind, "it does not hold as many pixels as it says"))?;
     let picture = Picture { pixels, guides: Vec::new(), chromaticities: None };
-    Ok(Source { pictures: vec![picture], family: Family::Display, profile, exr: None })
+    let family = match picture.pixels.precision() {
+        Precision::F16 | Precision::F32 => Family::Light,
+        Precision::U8 | Precision::U16 => Family::Display,
+    };
+    Ok(Source { pictures: vec![picture], family, profile, exr: None })
 }

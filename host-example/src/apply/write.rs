@@ -20,6 +20,8 @@ pub enum Format {
     Png,
     /// 8 bit, without alpha.
     Jpeg,
+    /// 8 or 16 bit, or floats of linear light where the picture was such, with alpha.
+    Tiff,
     /// Half or float.
     Exr,
 }
@@ -34,19 +36,21 @@ impl Format {
         match extension.to_ascii_lowercase().as_str() {
             "png" => Ok(Self::Png),
             "jpg" | "jpeg" => Ok(Self::Jpeg),
+            "tif" | "tiff" => Ok(Self::Tiff),
             "exr" => Ok(Self::Exr),
             _ => Err(Error::file(
                 path,
                 "is not a kind of picture that is written",
-                "name a .png, .jpg or .exr file",
+                "name a .png, .jpg, .tif or .exr file",
             )),
         }
     }
 
-    /// What its numbers mean.
-    pub fn family(self) -> Family {
+    /// What its numbers mean when they come from a picture of a family.
+    pub fn family(self, source: Family) -> Family {
         match self {
             Self::Png | Self::Jpeg => Family::Display,
+            Self::Tiff => source,
             Self::Exr => Family::Light,
         }
     }
@@ -83,6 +87,26 @@ pub fn write(path: &Path, format: Format, mut results: Vec<Pixels>, source: Sour
             // PNG wants the larger byte first; the encoder takes the machine's order.
             output::write_beside(path, |file| {
                 let mut encoder = image::codecs::png::PngEncoder::new(file);
+                keep_profile(&mut encoder, source.profile);
+                told(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
+            })
+        }
+        Format::Tiff => {
+            let precision = match (source.family, picture.pixels.precision()) {
+                (Family::Light, _) => Precision::F32,
+                (Family::Display, Precision::U8) => Precision::U8,
+                (Family::Display, _) => Precision::U16,
+            };
+            let mut pixels = pixels.converted(precision);
+            if precision == Precision::F32 && pixels.channels() == 1 {
+                let grey = pixels.to_f32().into_iter().flat_map(|v| [v; 3]).collect();
+                // Three samples for each that there was.
+                let (width, height) = (pixels.width(), pixels.height());
+                pixels = Pixels::new(width, height, 3, Samples::F32(grey)).unwrap_or(pixels);
+            }
+            let color = color_type(&pixels);
+            output::write_beside(path, |file| {
+                let mut encoder = image::codecs::tiff::TiffEncoder::new(file);
                 keep_profile(&mut encoder, source.profile);
                 told(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
             })
@@ -124,6 +148,8 @@ fn color_type(pixels: &Pixels) -> ExtendedColorType {
         (Precision::U8, 1) => ExtendedColorType::L8,
         (Precision::U8, 3) => ExtendedColorType::Rgb8,
         (Precision::U8, _) => ExtendedColorType::Rgba8,
+        (Precision::F32, 3) => ExtendedColorType::Rgb32F,
+        (Precision::F32, _) => ExtendedColorType::Rgba32F,
         (_, 1) => ExtendedColorType::L16,
         (_, 3) => ExtendedColorType::Rgb16,
         (..) => ExtendedColorType::Rgba16,

@@ -57,6 +57,42 @@ impl Fault {
     }
 }
 
+/// Whether all chunks of a file are there.
+pub fn is_whole(bytes: Vec<u8>) -> bool {
+    Container::new(bytes).is_ok()
+}
+
+/// Size of the largest picture of a file; nothing for files that will be refused.
+pub fn size(bytes: &[u8], selection: &Selection) -> Option<(u32, u32)> {
+    let container = Container::new(bytes.to_vec()).ok()?;
+    let chosen = choose::choose(&container, selection).ok()?;
+    let windows = chosen.iter().map(|c| container.parts[c.group.part].window);
+    windows.map(|w| (w.width as u32, w.height as u32)).max_by_key(|(w, h)| u64::from(*w) * u64::from(*h))
+}
+
+/// Bytes of memory that the pictures of a file take from being decoded to being written, about; nothing for
+/// files that will be refused.
+pub fn weight(bytes: &[u8], selection: &Selection) -> Option<u64> {
+    let container = Container::new(bytes.to_vec()).ok()?;
+    let chosen = choose::choose(&container, selection).ok()?;
+    let mut parts: Vec<usize> = Vec::new();
+    let mut total = 0;
+    for picture in &chosen {
+        let part = &container.parts[picture.group.part];
+        let pixels = (part.window.width * part.window.height) as u64;
+        // As read, as result and as planes of floats; guides are floats.
+        total += pixels * 4 * (2 + 2 + 4 + 4) + pixels * 12 * picture.guides.len() as u64;
+        parts.extend(picture.guides.iter().map(|g| g.part).chain([picture.group.part]));
+    }
+    parts.sort_unstable();
+    parts.dedup();
+    for part in parts.iter().map(|p| &container.parts[*p]) {
+        // Decoded, and encoded again.
+        total += 2 * part.chunks.iter().map(|c| c.block.bytes(&part.channels) as u64).sum::<u64>();
+    }
+    Some(total)
+}
+
 /// A file with the pictures that were asked for.
 #[derive(Debug)]
 pub struct ExrFile {

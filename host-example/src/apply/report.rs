@@ -1,0 +1,159 @@
+//! Telling how far a run is: a bar for people, lines of JSON for machines, a summary for both.
+
+use std::io::Write;
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::{Value, json};
+
+use super::sequence::Task;
+use crate::error::Error;
+
+/// What became of a frame.
+#[derive(Debug)]
+pub enum Outcome {
+    /// It was written; so many samples were mended.
+    Written(u64),
+    /// Its result was there already.
+    Skipped,
+    /// It has no file.
+    Missing,
+    /// It could not be done.
+    Failed(Error),
+}
+
+/// Numbers of a run.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Counts {
+    /// Frames that were written.
+    pub written: u64,
+    /// Frames whose result was there already.
+    pub skipped: u64,
+    /// Frames without a file.
+    pub missing: u64,
+    /// Frames that could not be done.
+    pub failed: u64,
+    /// Samples that were NaN or infinite and were replaced.
+    pub mended: u64,
+}
+
+/// The one who tells.
+#[derive(Debug)]
+pub struct Report {
+    bar: ProgressBar,
+    json: bool,
+    sequence: bool,
+    started: Instant,
+    counts: Mutex<Counts>,
+}
+
+impl Report {
+    /// Of so many frames; a picture by itself is told of by its share of work done.
+    pub fn new(frames: usize, sequence: bool, json: bool) -> Self {
+        let bar = if json {
+            ProgressBar::hidden()
+        } else {
+            ProgressBar::new(if sequence { frames as u64 } else { 1000 })
+        };
+        let template =
+            if sequence { "{wide_bar} {pos}/{len} {per_sec} {eta}" } else { "{wide_bar} {percent} %" };
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+        let report =
+            Self { bar, json, sequence, started: Instant::now(), counts: Mutex::new(Counts::default()) };
+        report.line(&json!({"event": "start", "frames": frames}));
+        report
+    }
+
+    /// The share of the frame at hand that is done.
+    pub fn progress(&self, done: f32) {
+        if !self.sequence {
+            self.bar.set_position((done * 1000.0) as u64);
+        }
+    }
+
+    /// A frame is over.
+    pub fn frame(&self, task: &Task, outcome: &Outcome) {
+        let mut counts = self.counts.lock().unwrap_or_else(PoisonError::into_inner);
+        let (status, mended, problem) = match outcome {
+            Outcome::Written(mended) => {
+                counts.written += 1;
+                counts.mended += mended;
+                ("written", *mended, None)
+            }
+            Outcome::Skipped => {
+                counts.skipped += 1;
+                ("skipped", 0, None)
+            }
+            Outcome::Missing => {
+                counts.missing += 1;
+                ("missing", 0, None)
+            }
+            Outcome::Failed(error) => {
+                counts.failed += 1;
+                ("failed", 0, Some(error.to_string()))
+            }
+        };
+        if mended > 0 {
+            let name = task.input.display();
+            let warning = format!("warning: {name}: {mended} samples were NaN or infinite and were replaced");
+            self.bar.suspend(|| eprintln!("{warning}"));
+        }
+        if let (Some(problem), true) = (&problem, self.sequence && !self.json) {
+            self.bar.suspend(|| eprintln!("warning: {problem}"));
+        }
+        if self.sequence {
+            self.bar.inc(1);
+        }
+        self.line(&json!({
+            "event": "frame",
+            "frame": task.frame,
+            "status": status,
+            "input": task.input.to_string_lossy(),
+            "output": task.output.to_string_lossy(),
+            "mended": mended,
+            "error": problem,
+            "seconds": self.started.elapsed().as_secs_f64(),
+        }));
+    }
+
+    /// The run is over; one that failed is summed up by its error.
+    pub fn end(&self, whole: bool) -> Counts {
+        let counts = *self.counts.lock().unwrap_or_else(PoisonError::into_inner);
+        self.bar.finish_and_clear();
+        let seconds = self.started.elapsed().as_secs_f64();
+        self.line(&json!({
+            "event": "end",
+            "written": counts.written,
+            "skipped": counts.skipped,
+            "missing": counts.missing,
+            "failed": counts.failed,
+            "mended": counts.mended,
+            "seconds": seconds,
+        }));
+        if self.sequence && !self.json && whole && counts.failed == 0 {
+            let mut text = format!("{} frames written in {seconds:.1} s", counts.written);
+            for (count, what) in [
+                (counts.skipped, "there already"),
+                (counts.missing, "missing"),
+                (counts.failed, "failed"),
+                (counts.mended, "samples mended"),
+            ] {
+                if count > 0 {
+                    text += &format!(", {count} {what}");
+                }
+            }
+            println!("{text}");
+        }
+        counts
+    }
+
+    fn line(&self, value: &Value) {
+        if self.json {
+            // Nobody is left to read when this fails.
+            let _ = writeln!(std::io::stdout().lock(), "{value}");
+        }
+    }
+}

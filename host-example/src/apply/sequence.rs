@@ -1,0 +1,160 @@
+//! The frames of a run: read, filtered and written at the same time, within a bound of memory.
+//!
+//! One thread reads and decodes, the calling one filters, one encodes and writes; decoding and encoding use all
+//! cores within a frame. A frame takes its share of the memory before it is decoded and gives it back when it is
+//! written.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+
+use super::exr::Selection;
+use super::frame::{Filter, Filtered};
+use super::memory::{Budget, Share};
+use super::read::{self, Source};
+use super::report::{Outcome, Report};
+use super::write::{self, Format};
+use crate::error::{Error, Result};
+
+/// Most frames between being read and being written: one in each hand and one waiting between them.
+pub const MOST_IN_FLIGHT: u64 = 5;
+
+/// One frame, or a picture by itself.
+#[derive(Clone, Debug)]
+pub struct Task {
+    /// Its number in a sequence.
+    pub frame: Option<i64>,
+    /// What is read.
+    pub input: PathBuf,
+    /// What is written.
+    pub output: PathBuf,
+}
+
+/// How a run is done.
+#[derive(Debug)]
+pub struct Run<'a> {
+    /// All frames.
+    pub tasks: &'a [Task],
+    /// What is read of EXR files.
+    pub selection: &'a Selection,
+    /// Kind of the outputs.
+    pub format: Format,
+    /// Whether whole outputs stay as they are.
+    pub skip_existing: bool,
+    /// Memory of frames in flight.
+    pub budget: &'a Budget,
+    /// Who is told.
+    pub report: &'a Report,
+    /// Set when the run shall end early.
+    pub stop: &'a AtomicBool,
+}
+
+/// A frame that was read.
+struct Ready<'a> {
+    task: &'a Task,
+    source: Source,
+    share: Share<'a>,
+}
+
+/// A frame that was filtered.
+struct Done<'a> {
+    ready: Ready<'a>,
+    filtered: Filtered,
+}
+
+impl Run<'_> {
+    /// Does all frames. Frames that cannot be read or filtered are told of and left out; a run of one picture ends
+    /// with its error.
+    ///
+    /// # Errors
+    /// What kept a frame from being written, [`Error::Failure`] of the library or the device.
+    pub fn all(&self, filter: &mut Filter) -> Result<()> {
+        std::thread::scope(|scope| {
+            let (send, decoded) = sync_channel(1);
+            let (finished, receive) = sync_channel(1);
+            let reader = scope.spawn(move || self.read(&send));
+            let writer = scope.spawn(move || self.write(&receive));
+            let filtered = self.filter(filter, decoded, finished);
+            let read = reader.join().unwrap_or_else(|_| Err(broken("reading")));
+            let written = writer.join().unwrap_or_else(|_| Err(broken("writing")));
+            // What could not be written is why the others ended.
+            written.and(filtered).and(read)
+        })
+    }
+
+    fn read<'a>(&'a self, send: &SyncSender<Ready<'a>>) -> Result<()> {
+        for task in self.tasks {
+            if self.stop.load(Ordering::Relaxed) {
+                break;
+            }
+            if self.skip_existing && read::is_whole(&task.output) {
+                self.report.frame(task, &Outcome::Skipped);
+                continue;
+            }
+            let read = || {
+                let bytes = read::load(&task.input)?;
+                let share = self.budget.share(read::weight(&bytes, self.selection));
+                Ok(Ready { task, source: read::decode(&task.input, bytes, self.selection)?, share })
+            };
+            match read() {
+                Ok(ready) => {
+                    // Nobody takes it when the run ends early.
+                    if send.send(ready).is_err() {
+                        break;
+                    }
+                }
+                Err(error) => self.failed(task, error)?,
+            }
+        }
+        Ok(())
+    }
+
+    fn filter<'a>(
+        &'a self,
+        filter: &mut Filter,
+        decoded: Receiver<Ready<'a>>,
+        finished: SyncSender<Done<'a>>,
+    ) -> Result<()> {
+        for ready in decoded {
+            if self.stop.load(Ordering::Relaxed) {
+                break;
+            }
+            let name = ready.task.input.display().to_string();
+            let mut progress = |done: f32| self.report.progress(done);
+            match filter.run(&name, ready.task.frame, &ready.source, self.format, &mut progress) {
+                Ok(filtered) => {
+                    if finished.send(Done { ready, filtered }).is_err() {
+                        break;
+                    }
+                }
+                // Neither device nor memory is better for the next frame.
+                Err(error @ Error::Failure { .. }) => return Err(error),
+                Err(error) => self.failed(ready.task, error)?,
+            }
+        }
+        Ok(())
+    }
+
+    fn write(&self, receive: &Receiver<Done<'_>>) -> Result<()> {
+        for Done { ready: Ready { task, source, share }, filtered } in receive {
+            let mended = filtered.mended;
+            write::write(&task.output, self.format, filtered.results, source)?;
+            drop(share);
+            self.report.frame(task, &Outcome::Written(mended));
+        }
+        Ok(())
+    }
+
+    /// A frame of a sequence is told of; a picture by itself is the run.
+    fn failed(&self, task: &Task, error: Error) -> Result<()> {
+        if task.frame.is_none() {
+            return Err(error);
+        }
+        self.report.frame(task, &Outcome::Failed(error));
+        Ok(())
+    }
+}
+
+fn broken(what: &str) -> Error {
+    Error::failure(format!("{what} stopped"), "this is a mistake in the program; please report it")
+}

@@ -1,0 +1,272 @@
+//! `apply` on sequences: which frames, what is skipped, what is left when it is stopped, and presets with
+//! keyframes.
+
+mod support;
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use support::{fails, folder, isophote, listing, succeeds};
+
+/// Writes frames that differ; returns their names.
+fn frames(folder: &Path, numbers: impl Iterator<Item = u32>, size: usize) -> Vec<String> {
+    let write = |frame: u32| {
+        let name = format!("in.{frame:04}.exr");
+        exr::prelude::write_rgba_file(folder.join(&name), size, size / 2, |x, y| {
+            let wave = ((x as f32 * 0.3 + frame as f32).sin() * (y as f32 * 0.2).cos()).abs();
+            (wave * 2.0, (x % 17) as f32 / 17.0, if (x / 8 + y / 8) % 2 == 0 { 0.9f32 } else { 0.1 }, 1.0f32)
+        })
+        .expect("the frame can be written");
+        name
+    };
+    numbers.map(write).collect()
+}
+
+fn apply(folder: &Path, more: &[&str]) -> Command {
+    let mut command = isophote();
+    command.current_dir(folder).arg("apply").args(more).args(["--backend", "cpu"]);
+    command
+}
+
+#[test]
+fn frames_are_found_chosen_and_skipped() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    frames(folder.path(), 1001..=1006, 32);
+    fs::create_dir(at("out")).expect("a folder");
+    let run = |more: &[&str]| succeeds(&mut apply(folder.path(), more));
+    let events = |more: &[&str]| -> Vec<Value> {
+        let (text, _) = run(&[more, &["--json"]].concat());
+        text.lines().map(|line| serde_json::from_str(line).expect("lines of JSON")).collect()
+    };
+    let statuses = |events: &[Value]| -> Vec<String> {
+        let frame = |e: &&Value| e["event"] == "frame";
+        events
+            .iter()
+            .filter(frame)
+            .map(|e| format!("{}:{}", e["frame"], e["status"].as_str().unwrap_or("")))
+            .collect()
+    };
+    let (input, output) = ("in.####.exr", "out/o.####.exr");
+
+    let (text, _) = run(&["gaussian", input, output, "--dry-run", "--frames", "1001-1005x2"]);
+    assert!(
+        text.contains("in.1005.exr -> out/o.1005.exr") && text.contains("3 frames to be written"),
+        "{text}"
+    );
+    assert!(listing(&at("out")).is_empty());
+
+    let (text, _) = run(&["gaussian", input, output, "--frames", "1001-1005x2,1006"]);
+    assert!(text.contains("4 frames written"), "{text}");
+    assert_eq!(listing(&at("out")), ["o.1001.exr", "o.1003.exr", "o.1005.exr", "o.1006.exr"]);
+
+    // A frame by itself gives the same file.
+    run(&["gaussian", "in.1003.exr", "single.exr"]);
+    let bytes = |name: &str| fs::read(at(name)).expect("a result");
+    assert_eq!(bytes("single.exr"), bytes("out/o.1003.exr"));
+
+    // What is whole stays; what is cut is written again. Other ways to write a pattern.
+    fs::write(at("out/o.1005.exr"), &bytes("out/o.1005.exr")[..900]).expect("the folder is writable");
+    let events = events(&["gaussian", "in.%04d.exr", "out/o.@@@@.exr", "--skip-existing"]);
+    let mut found = statuses(&events);
+    found.sort();
+    assert_eq!(
+        found,
+        ["1001:skipped", "1002:written", "1003:skipped", "1004:written", "1005:written", "1006:skipped"]
+    );
+    assert_eq!(events.last().map(|e| (&e["event"], &e["written"])), Some((&"end".into(), &3.into())));
+    assert_eq!(listing(&at("out")).len(), 6);
+
+    // Little memory: one frame after the other, and the same files.
+    run(&["gaussian", input, "one.####.exr", "--frames", "1001-1002", "--memory", "64MiB", "--threads", "1"]);
+    assert_eq!(bytes("one.1002.exr"), bytes("out/o.1002.exr"));
+    let refused = |more: &[&str], words: &[&str]| fails(&mut apply(folder.path(), more), 2, words);
+    refused(&["gaussian", input, "no.####.exr", "--memory", "5k"], &["--memory", "a frame needs about"]);
+
+    // Missing frames are named before any work.
+    refused(
+        &["gaussian", input, "no.####.exr", "--frames", "1005-1009,2000"],
+        &["frames 1007-1009,2000", "--on-missing"],
+    );
+    refused(&["gaussian", "in.####.exr", "no.exr"], &["no.exr", "frame number"]);
+    refused(&["gaussian", "in.1001.exr", "no.exr", "--frames", "1-2"], &["in.1001.exr", "frame number"]);
+    refused(&["gaussian", "nothing.####.exr", "no.####.exr"], &["matches no file"]);
+    refused(&["gaussian", input, "no.####.exr", "--frames", "5-"], &["'5-'", "1001-1100x2"]);
+    refused(&["gaussian", input, "missing/no.####.exr"], &["missing/no.1001.exr", "cannot be written"]);
+    assert!(!listing(folder.path()).iter().any(|n| n.starts_with("no.") || n.starts_with('.')));
+    fs::remove_file(at("in.1002.exr")).expect("a frame");
+    refused(&["gaussian", input, "no.####.exr"], &["frames 1002"]);
+    let (text, warnings) = run(&["gaussian", input, "some.####.exr", "--on-missing", "skip"]);
+    assert!(text.contains("5 frames written") && text.contains("1 missing"), "{text}");
+    assert!(warnings.contains("1002"), "{warnings}");
+
+    // One damaged frame keeps the others from nothing, but is told of.
+    fs::write(at("in.1004.exr"), &bytes("in.1004.exr")[..700]).expect("the folder is writable");
+    let more = ["gaussian", input, "rest.####.exr", "--frames", "1003-1005"];
+    fails(&mut apply(folder.path(), &more), 2, &["warning: in.1004.exr: is damaged", "1 of 3 frames"]);
+    assert!(at("rest.1003.exr").is_file() && at("rest.1005.exr").is_file() && !at("rest.1004.exr").exists());
+}
+
+/// All files of a folder with their contents.
+fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    listing(folder).into_iter().map(|n| (n.clone(), fs::read(folder.join(n)).expect("a file"))).collect()
+}
+
+#[test]
+fn killed_runs_go_on() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    frames(folder.path(), 1..=6, 160);
+    for name in ["whole", "killed"] {
+        fs::create_dir(at(name)).expect("a folder");
+    }
+    let arguments = |to: &str| ["cartoon", "in.####.exr", &format!("{to}/o.####.exr")].map(str::to_owned);
+    let run = |to: &str| {
+        let mut command = isophote();
+        command.current_dir(folder.path()).arg("apply").args(arguments(to)).args(["--backend", "cpu"]);
+        command
+    };
+    let started = Instant::now();
+    succeeds(&mut run("whole"));
+    let time = started.elapsed();
+    let whole = contents(&at("whole"));
+    assert_eq!(whole.len(), 6);
+    let mut random = 12345u64;
+    for round in 0..10 {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let mut child = run("killed")
+            .arg("--skip-existing")
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("a process");
+        std::thread::sleep(time.mul_f64((random >> 33) as f64 / f64::from(1u32 << 31)));
+        child.kill().expect("the process can be killed");
+        child.wait().expect("the process ended");
+        for (name, bytes) in contents(&at("killed")).iter().filter(|(n, _)| !n.starts_with('.')) {
+            assert!(whole.iter().any(|(n, b)| n == name && b == bytes), "round {round}: {name} is another");
+        }
+        // Half of the rounds begin anew, so that some are killed early.
+        if round % 2 == 1 {
+            for name in listing(&at("killed")) {
+                fs::remove_file(at("killed").join(name)).expect("a file");
+            }
+        }
+    }
+    succeeds(run("killed").arg("--skip-existing"));
+    assert!(contents(&at("killed")) == whole, "{:?}", listing(&at("killed")));
+}
+
+#[cfg(unix)]
+#[test]
+fn interrupted_runs_leave_whole_files() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    frames(folder.path(), 1..=40, 160);
+    fs::create_dir(at("out")).expect("a folder");
+    let child = apply(folder.path(), &["cartoon", "in.####.exr", "out/o.####.exr"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("a process");
+    let patience = Instant::now();
+    while listing(&at("out")).iter().all(|n| n.starts_with('.'))
+        && patience.elapsed() < Duration::from_secs(60)
+    {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let status = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
+    assert!(status.success());
+    let output = child.wait_with_output().expect("the process ended");
+    assert_eq!(output.status.code(), Some(1), "{}", support::errors(&output));
+    assert!(support::errors(&output).contains("start again with --skip-existing"));
+    let left = listing(&at("out"));
+    assert!(!left.is_empty() && left.len() < 40 && left.iter().all(|n| n.starts_with("o.")), "{left:?}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn full_disks_and_read_only_folders_are_told_of() {
+    let folder = folder();
+    frames(folder.path(), 1..=2, 256);
+    // A limit on the size of files fails as a full disk does, once its signal is ignored.
+    let mut command = Command::new("sh");
+    command.current_dir(folder.path()).env("ISOPHOTE_LIBRARY", support::library());
+    command.args(["-c", "trap '' XFSZ; ulimit -f 8; exec \"$0\" \"$@\""]).arg(env!("CARGO_BIN_EXE_isophote"));
+    command.args(["apply", "gaussian", "in.####.exr", "o.####.exr", "--backend", "cpu"]);
+    fails(&mut command, 2, &["o.0001.exr", "cannot be written", "too large"]);
+    assert_eq!(listing(folder.path()), ["in.0001.exr", "in.0002.exr"]);
+    // Not even the superuser writes there.
+    let more = ["gaussian", "in.####.exr", "/proc/o.####.exr"];
+    fails(&mut apply(folder.path(), &more), 2, &["/proc/o.0001.exr", "cannot be written"]);
+}
+
+#[test]
+fn keyframes_follow_the_frames() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    frames(folder.path(), 1..=3, 48);
+    let preset = r#"{"style": "gaussian", "parameters": {"sigma": {"1": 1, "3": 4}}}"#;
+    fs::write(at("keys.json"), preset).expect("the folder is writable");
+    succeeds(&mut apply(folder.path(), &["--preset", "keys.json", "in.####.exr", "key.####.exr"]));
+    succeeds(&mut apply(folder.path(), &["keys.json", "in.####.exr", "too.####.exr"]));
+    let bytes = |name: &str| fs::read(at(name)).expect("a result");
+    for (frame, sigma) in [(1, "1"), (2, "2.5"), (3, "4")] {
+        let (input, set) = (format!("in.{frame:04}.exr"), format!("sigma={sigma}"));
+        succeeds(&mut apply(folder.path(), &["gaussian", &input, "one.exr", "--set", &set]));
+        assert_eq!(bytes("one.exr"), bytes(&format!("key.{frame:04}.exr")), "frame {frame}");
+        assert_eq!(bytes("one.exr"), bytes(&format!("too.{frame:04}.exr")), "frame {frame}");
+    }
+    let more = ["--preset", "keys.json", "gaussian", "in.0001.exr", "no.exr"];
+    fails(&mut apply(folder.path(), &more), 2, &["--preset", "the preset names the style"]);
+}
+
+#[test]
+fn farm_templates_run_the_command() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    frames(folder.path(), 1..=4, 32);
+    fs::create_dir(at("out")).expect("a folder");
+    let farm = |more: &[&str]| {
+        let mut command = isophote();
+        command.current_dir(folder.path()).args(["farm", "openjd"]).args(more);
+        command
+    };
+    let job = ["apply", "gaussian", "in.####.exr", "out/o.####.exr", "--backend", "cpu"];
+    succeeds(&mut farm(&[&["-o", "job.json", "--chunk", "2", "--"], job.as_slice()].concat()));
+    let text = fs::read_to_string(at("job.json")).expect("a template");
+    let template: Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(template["specificationVersion"], "jobtemplate-2023-09");
+    assert_eq!(template["extensions"], serde_json::json!(["TASK_CHUNKING"]));
+    let step = &template["steps"][0];
+    let parameter = &step["parameterSpace"]["taskParameterDefinitions"][0];
+    assert_eq!((&parameter["type"], &parameter["range"]), (&"CHUNK[INT]".into(), &"1-4".into()));
+    // Every task, from another folder, twice.
+    let words: Vec<String> = step["script"]["actions"]["onRun"]["args"]
+        .as_array()
+        .expect("arguments")
+        .iter()
+        .map(|w| w.as_str().expect("text").to_owned())
+        .collect();
+    for chunk in ["1-2", "3-4", "1-2"] {
+        let words = words.iter().map(|w| w.replace("{{Task.Param.Frame}}", chunk));
+        succeeds(isophote().current_dir("/").args(words));
+    }
+    succeeds(&mut apply(folder.path(), &["gaussian", "in.####.exr", "alone.####.exr"]));
+    for frame in 1..=4 {
+        let bytes = |name: String| fs::read(at(&name)).expect("a result");
+        assert_eq!(bytes(format!("out/o.{frame:04}.exr")), bytes(format!("alone.{frame:04}.exr")));
+    }
+    let (text, _) = succeeds(&mut farm(&[&["--"], job.as_slice(), &["--frames", "1-3x2,4"]].concat()));
+    let template: Value = serde_json::from_str(&text).expect("JSON");
+    let parameter = &template["steps"][0]["parameterSpace"]["taskParameterDefinitions"][0];
+    assert_eq!((&parameter["type"], &parameter["range"]), (&"INT".into(), &"1,3,4".into()));
+    assert_eq!(text.matches("--frames").count(), 1);
+    fails(&mut farm(&["--", "apply", "gaussian", "in.0001.exr", "o.exr"]), 2, &["is no sequence"]);
+    fails(&mut farm(&["--", "nodes"]), 2, &["is not apply"]);
+    fails(&mut farm(&["--", "apply"]), 2, &["the command", "is wrong"]);
+}
