@@ -354,6 +354,11 @@ pub struct BenchArgs {
     /// changes times as much as code does, so that both runs should find it idle.
     #[arg(long, value_name = "FILE")]
     pub compare: Option<PathBuf>,
+    /// Instead finishes a sequence of so many EXR frames (half floats, ZIP) on the CPU, from file to file, and
+    /// sets the time against that of filtering alone; cartoon at 1920x1080 without --node and --size.
+    #[arg(long, value_name = "FRAMES", conflicts_with_all = ["save", "compare", "markdown", "backend"],
+        value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub sequence: Option<u32>,
     /// Prints a table in Markdown, beside what other programs take for the like where that was measured.
     #[arg(long, conflicts_with = "json")]
     pub markdown: bool,

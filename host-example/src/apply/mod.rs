@@ -11,6 +11,7 @@ mod read;
 mod report;
 mod sequence;
 pub mod sheet;
+pub mod throughput;
 mod write;
 
 pub use self::exr::GuideChoice;

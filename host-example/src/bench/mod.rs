@@ -9,6 +9,7 @@ mod cpu;
 mod gpu;
 mod peers;
 mod report;
+mod sequence;
 
 use std::path::Path;
 
@@ -34,6 +35,11 @@ const SIZES: [(u32, u32); 2] = [(1280, 720), (1920, 1080)];
 /// [`Error::Input`] for nodes that do not exist.
 pub fn run(args: &BenchArgs) -> Result<()> {
     let library = Library::open()?;
+    if let Some(frames) = args.sequence {
+        let usual = ["cartoon".to_owned()];
+        let subjects = subjects(&library, if args.node.is_empty() { &usual } else { &args.node })?;
+        return sequence::run(&subjects, &picture(args.size.unwrap_or(SIZES[1])), frames, args.json);
+    }
     let subjects = subjects(&library, &args.node)?;
     let before = args.compare.as_deref().map(Saved::read).transpose()?;
     let gpu = match args.backend {

@@ -1,0 +1,139 @@
+//! How well reading and writing of a sequence hide behind filtering, for `isophote bench`.
+
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use exr::prelude::{
+    AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes,
+    LineOrder, WritableImage,
+};
+use half::f16;
+use serde::Serialize;
+
+use super::exr::Selection;
+use super::frame::{self, Filter};
+use super::memory::Budget;
+use super::read;
+use super::report::Report;
+use super::sequence::{Run, Task};
+use super::write::Format;
+use crate::cli::Backend;
+use crate::error::{Error, Result};
+use crate::loader::Library;
+use crate::pixels::Pixels;
+use crate::stylize::style::Style;
+
+/// What was measured.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Throughput {
+    /// Frames of the sequence.
+    pub frames: u32,
+    /// Seconds that filtering them takes by itself, from memory to memory.
+    pub filter_seconds: f64,
+    /// Seconds of the whole run, from file to file.
+    pub seconds: f64,
+    /// Most memory of the process during the run, bytes; not on all systems.
+    pub peak_bytes: Option<u64>,
+    /// The bound that the run was given, bytes.
+    pub bound_bytes: u64,
+}
+
+/// Finishes `frames` EXR frames of half floats, scan lines and ZIP compression, all of them `picture` (RGBA), with
+/// a style on the CPU within `bound` bytes.
+///
+/// # Errors
+/// [`Error::Input`] for styles that do not fit, [`Error::Failure`] when there is no room for the files.
+pub fn measure(
+    library: Library,
+    style: Style,
+    picture: &Pixels,
+    frames: u32,
+    bound: u64,
+) -> Result<Throughput> {
+    let folder = tempfile::tempdir().map_err(|e| Error::failure(e, "make room for temporary files"))?;
+    let tasks: Vec<Task> = (1..=i64::from(frames))
+        .map(|frame| Task {
+            frame: Some(frame),
+            input: folder.path().join(format!("in.{frame:04}.exr")),
+            output: folder.path().join(format!("out.{frame:04}.exr")),
+        })
+        .collect();
+    for task in &tasks {
+        save(&task.input, picture)?;
+    }
+    let selection = Selection { wanted: frame::usable_guides(&style)?, ..Selection::default() };
+    let mut filter = Filter::new(library, style, Backend::Cpu, None, 0)?;
+    let mut filter_seconds = 0.0;
+    // The first of these runs makes the plan and is not counted.
+    for (at, task) in tasks.iter().take(1).chain(&tasks).enumerate() {
+        let source = read::read(&task.input, &selection)?;
+        let started = Instant::now();
+        filter.run("a frame", task.frame, &source, Format::Exr, &mut |_| {})?;
+        if at > 0 {
+            filter_seconds += started.elapsed().as_secs_f64();
+        }
+    }
+    let working = filter.working_memory("a frame", (picture.width(), picture.height()), &selection.wanted)?;
+    let (budget, report) =
+        (Budget::new(bound.saturating_sub(working)), Report::new(tasks.len(), false, false));
+    let stop = AtomicBool::new(false);
+    let run = Run {
+        tasks: &tasks,
+        selection: &selection,
+        format: Format::Exr,
+        skip_existing: false,
+        budget: &budget,
+        report: &report,
+        stop: &stop,
+    };
+    forget_peak();
+    let started = Instant::now();
+    let result = run.all(&mut filter);
+    let seconds = started.elapsed().as_secs_f64();
+    let counts = report.end(false);
+    result?;
+    if counts.written != u64::from(frames) {
+        return Err(Error::failure(
+            format!("{} frames failed", counts.failed),
+            "make room for temporary files",
+        ));
+    }
+    Ok(Throughput { frames, filter_seconds, seconds, peak_bytes: peak(), bound_bytes: bound })
+}
+
+fn save(path: &Path, picture: &Pixels) -> Result<()> {
+    let (size, channels) =
+        ((picture.width() as usize, picture.height() as usize), picture.channels() as usize);
+    let numbers = picture.to_f32();
+    let channel = |(index, name): (usize, &&str)| {
+        let values = numbers.iter().skip(index).step_by(channels);
+        AnyChannel::new(*name, FlatSamples::F16(values.map(|v| f16::from_f32(*v)).collect()))
+    };
+    let names = ["R", "G", "B", "A"];
+    let encoding = Encoding {
+        compression: Compression::ZIP16,
+        blocks: Blocks::ScanLines,
+        line_order: LineOrder::Increasing,
+    };
+    let channels = AnyChannels::sort(names.iter().take(channels).enumerate().map(channel).collect());
+    let layer = Layer::new(size, LayerAttributes::default(), encoding, channels);
+    Image::from_layer(layer)
+        .write()
+        .to_file(path)
+        .map_err(|e| Error::failure(e, "make room for temporary files"))
+}
+
+/// Lets the system count the peak of this process anew, where it can.
+fn forget_peak() {
+    // Elsewhere the peak since the start counts, which is no less.
+    let _ = fs::write("/proc/self/clear_refs", "5");
+}
+
+/// The most memory that the process held.
+fn peak() -> Option<u64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
+}

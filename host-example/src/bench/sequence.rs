@@ -1,0 +1,53 @@
+//! A sequence of frames from file to file, against filtering alone.
+
+use super::Subject;
+use crate::apply::Bytes;
+use crate::apply::throughput::{Throughput, measure};
+use crate::error::{Error, Result};
+use crate::loader::Library;
+use crate::output;
+use crate::pixels::Pixels;
+use crate::stylize::style::Style;
+
+/// The bound that `apply` keeps to unless it is told otherwise.
+const BOUND: u64 = 4 << 30;
+
+/// Measures every subject on so many frames that show `picture`, and prints what came out.
+///
+/// # Errors
+/// As [`measure`].
+pub fn run(subjects: &[Subject], picture: &Pixels, frames: u32, json: bool) -> Result<()> {
+    let mut results = Vec::with_capacity(subjects.len());
+    for subject in subjects {
+        let library = Library::open()?;
+        let style = Style::load(&library, &subject.node, &subject.settings)?;
+        let result = measure(library, style, picture, frames, BOUND)?;
+        if !json {
+            output::print(&text(subject, picture, &result))?;
+        }
+        results.push(serde_json::json!({ "node": subject.label, "sequence": result }));
+    }
+    if json {
+        let text = serde_json::to_string_pretty(&results)
+            .map_err(|e| Error::failure(e, "this is a mistake in the program; please report it"))?;
+        output::print(&format!("{text}\n"))?;
+    }
+    Ok(())
+}
+
+fn text(subject: &Subject, picture: &Pixels, result: &Throughput) -> String {
+    let frames = f64::from(result.frames);
+    let memory = result.peak_bytes.map_or(String::new(), |peak| {
+        format!("most memory            {} of {}\n", Bytes(peak), Bytes(result.bound_bytes))
+    });
+    format!(
+        "{}: {} frames of {}x{}, half floats, ZIP\nfiltering alone        {:.3} s a frame\nfrom file to file      {:.3} s a frame, x{:.2}\n{memory}",
+        subject.label,
+        result.frames,
+        picture.width(),
+        picture.height(),
+        result.filter_seconds / frames,
+        result.seconds / frames,
+        result.seconds / result.filter_seconds,
+    )
+}
