@@ -46,7 +46,6 @@ crate::kernel!(directed_extremum {
 /// Erodes where `response` is above `threshold` and dilates where it is below -`threshold`, `radius`
 /// pixels of the full-size picture far along the major eigenvectors of `tensors`. `scale` is the size that
 /// is rendered over the full size.
-#[expect(clippy::too_many_arguments, reason = "three images and three numbers")]
 pub fn shocked(
     plan: &mut PlanBuilder,
     color: ImageId,
