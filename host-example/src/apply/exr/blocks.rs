@@ -54,7 +54,8 @@ impl Block {
     pub fn coordinates(&self, tiled: bool) -> impl Iterator<Item = i64> + use<> {
         let (x, y) = (i64::from(self.number.0), i64::from(self.number.1));
         let all = [x, y, self.level.0 as i64, self.level.1 as i64];
-        if tiled { all.into_iter().skip(0).take(4) } else { all.into_iter().skip(1).take(1) }
+        let (first, count) = if tiled { (0, 4) } else { (1, 1) };
+        all.into_iter().skip(first).take(count)
     }
 
     /// Walks over all samples in their order: rows, in each the channels that have samples in it.

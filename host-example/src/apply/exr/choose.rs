@@ -267,7 +267,7 @@ fn source(container: &Container, group: &Group, guide: Guide, name: Option<&str>
     let found = |channels: Vec<usize>| Source { guide, part: group.part, channels, position: false };
     let single = |components: &[&str]| {
         let known = components.iter().find_map(|c| group.member(c));
-        known.or_else(|| match group.members.as_slice() {
+        known.or(match group.members.as_slice() {
             [(_, one)] => Some(*one),
             _ => None,
         })
