@@ -4,11 +4,12 @@
 use crate::cases::{self, Setting};
 use crate::pictures::{self, Kind};
 use crate::run;
+use isophote::Request;
 use isophote::graph::GraphInput;
 use isophote::spec::{ImageKind, NodeSpec};
 use isophote_engine::cpu::{Control, CpuExecutor};
 use isophote_engine::{Image, Kernel, Plan, Rect};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::rc::Rc;
 
@@ -70,7 +71,12 @@ pub fn sweep(mut visit: impl FnMut(&Step)) {
         let mut known = HashMap::new();
         for spec in cases::nodes() {
             for (case, wired, kind, guides) in combinations(spec) {
-                one(spec, &case, wired, kind, guides, size, &mut known, &mut visit);
+                one(spec, &case, wired, kind, guides, size, 1.0, &mut known, &mut visit);
+            }
+            // Some passes are those of proxies alone.
+            let [case, ..] = &cases::settings(spec, 0)[..] else { continue };
+            for kind in Kind::ALL {
+                one(spec, case, false, kind, false, size, 0.5, &mut known, &mut visit);
             }
         }
     }
@@ -104,14 +110,20 @@ fn one(
     kind: Kind,
     guides: bool,
     size: [u32; 2],
+    scale: f32,
     known: &mut HashMap<u64, Vec<Rc<Image>>>,
     visit: &mut impl FnMut(&Step),
 ) {
     let [width, height] = size;
     let mut setup = cases::setup(spec, wired);
     setting.apply(&mut setup.graph, setup.node);
-    let request = cases::request(kind, width, height, guides);
+    let full = cases::request(kind, width, height, guides);
+    let request = Request { scale, ..full };
     let plan = Rc::new(run::planned(&setup.graph, request).plan().clone());
+    let kernels = |plan: &Plan| plan.passes().iter().map(|p| p.kernel.name).collect::<BTreeSet<_>>();
+    if scale < 1.0 && kernels(run::planned(&setup.graph, full).plan()).is_superset(&kernels(&plan)) {
+        return;
+    }
     let pixels = |plan: &Plan, pass: &isophote_engine::plan::Pass| {
         let [w, h] = plan.level_size(plan.desc(pass.outputs[0]).level);
         f64::from(w) * f64::from(h)
@@ -120,8 +132,10 @@ fn one(
     if cost > COST_LIMIT {
         return;
     }
-    let label =
-        format!("{} ({}) {kind:?} {width}x{height} wired={wired} guides={guides}", spec.id, setting.label);
+    let label = format!(
+        "{} ({}) {kind:?} {width}x{height} wired={wired} guides={guides} at {scale}",
+        spec.id, setting.label
+    );
     let mut slots: Vec<Option<Rc<Image>>> = vec![None; plan.images().len()];
     for port in plan.inputs() {
         slots[port.image.index()] = Some(Rc::new(input(&port.name, kind, size)));

@@ -12,18 +12,6 @@ const SIDE: i32 = 192;
 /// What a proxy must reach, in decibels.
 const LEAST: f64 = 40.0;
 
-/// Effects that reach less, and why.
-const LESS: [(&str, f64, &str); 1] = [(
-    "org.isophote.structure",
-    34.0,
-    "it shows noise with grains of one pixel, at full size as well; what is left are the lines, which follow the \
-     tensors of the proxy",
-)];
-
-fn least(identifier: &str) -> f64 {
-    LESS.iter().find(|(id, ..)| *id == identifier).map_or(LEAST, |(_, least, _)| *least)
-}
-
 /// A photo-like picture: soft shading and forms with edges as wide as a lens makes them.
 fn photo() -> Vec<f32> {
     let soft = |d: f32| 1.0 / (1.0 + (-d / 3.0).exp());
@@ -83,10 +71,8 @@ fn half_size_looks_like_full_size_made_smaller() {
         let square: f64 = got.iter().zip(&wanted).map(|(a, b)| f64::from(a - b).powi(2)).sum();
         let psnr = -10.0 * (square / got.len() as f64).log10();
         println!("{}: {psnr:.1} dB", effect.plugin.identifier());
-        let identifier = effect.plugin.identifier();
-        // An exception that is no longer needed is a fault as well.
-        if psnr < least(&identifier) || (least(&identifier) < LEAST && psnr >= LEAST) {
-            low.push(format!("{identifier} {psnr:.1}"));
+        if psnr < LEAST {
+            low.push(format!("{} {psnr:.1}", effect.plugin.identifier()));
         }
     }
     assert!(low.is_empty(), "{}", low.join(", "));

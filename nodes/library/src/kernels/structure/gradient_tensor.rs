@@ -74,6 +74,20 @@ pub enum Derivative {
 }
 
 impl Derivative {
+    /// Variance, in square pixels, of the window that the derivative is a mean over, the mean of both
+    /// directions; 0 for Gaussians, whose width is a length of the picture.
+    pub fn variance(self) -> f32 {
+        if let Self::Gaussian(_) = self {
+            return 0.0;
+        }
+        let (radius, smoothing, derivative) = self.tables();
+        let moment = |table: &Table, power: i32| {
+            (1..=radius as usize).map(|i| 2.0 * (i as f32).powi(power) * table[i / 4][i % 4]).sum::<f32>()
+        };
+        // A derivative is the slope of a mean; its third moment is three times that mean's second.
+        0.5 * (moment(&smoothing, 2) + moment(&derivative, 3) / 3.0)
+    }
+
     /// Radius, smoothing weights and derivative weights. A ramp of slope 1 has derivative 1.
     fn tables(self) -> (u32, Table, Table) {
         let optimized = |v: f32| v / 256.0;
@@ -379,6 +393,14 @@ mod tests {
                 near(got.pixel(x, y), [0.0010, -0.0003, 0.0005, 1.0], 2e-7);
             }
         }
+    }
+
+    #[test]
+    fn the_window_of_an_operator_is_known() {
+        // Central differences are means over two pixels in a row; Sobel's are, of the two rows beside, half.
+        assert!((Derivative::Central.variance() - 1.0 / 6.0).abs() < 1e-6);
+        assert!((Derivative::Sobel.variance() - (0.5 + 1.0 / 3.0) / 2.0).abs() < 1e-6);
+        assert_eq!(Derivative::Gaussian(2.0).variance(), 0.0);
     }
 
     #[test]

@@ -156,6 +156,8 @@ pub struct TensorOptions {
     pub oversample: Option<f32>,
     /// Factor on the tensors of the guides.
     pub guide_weight: f32,
+    /// Size of the picture over its full size, as far as the smoothing is to make good for it.
+    pub scale: f32,
 }
 
 impl Default for TensorOptions {
@@ -170,11 +172,25 @@ impl Default for TensorOptions {
             levels: 1,
             oversample: None,
             guide_weight: 1.0,
+            scale: 1.0,
         }
     }
 }
 
 impl TensorOptions {
+    /// Standard deviation of the smoothing that gives a proxy the tensors of the full picture. A pixel of
+    /// a proxy is a mean over several, and its operator reaches over several, so that gradients come
+    /// smoothed by that much more. Smoothed squares are as wide as squares of something smoother: of a
+    /// Gaussian edge, and of one that falls off exponentially, half of its variance is theirs.
+    fn smoothing(&self) -> f32 {
+        if self.scale >= 1.0 {
+            return self.rho;
+        }
+        let wider = 1.0 - self.scale * self.scale;
+        let operator = if self.oversample.is_some() { 0.0 } else { self.derivative.variance() };
+        (self.rho * self.rho - 0.5 * wider * (operator + 1.0 / 12.0)).max(0.0).sqrt()
+    }
+
     /// The defaults for a picture rendered at `scale` of its full size.
     pub fn at_scale(scale: f32) -> Self {
         let default = Self::default();
@@ -258,7 +274,7 @@ fn smoothed(
     options: &TensorOptions,
     measure: Measure,
 ) -> ImageId {
-    let mut rho = options.rho;
+    let mut rho = options.smoothing();
     let mut tensor = match options.oversample {
         Some(sigma) => oversampled_tensor::tensor(plan, source, sigma, measure),
         None => gradient_tensor::tensor(plan, source, options.derivative, measure),
@@ -313,6 +329,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         levels: scope.int("levels"),
         oversample: scope.bool("oversample").then(|| scope.float("sigma_g")),
         guide_weight: scope.float("guide_weight"),
+        scale: scope.scale(),
     };
     of_color_and_guides(scope.plan, color, &guides, &options)
 }

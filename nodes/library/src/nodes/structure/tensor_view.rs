@@ -2,7 +2,7 @@
 
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
 use crate::kernels::structure::tensor_display::{self, Show};
-use crate::kernels::structure::{colour_restrict, contrast, noise, tensor_interpolate};
+use crate::kernels::structure::{colour_restrict, contrast, noise, tensor_interpolate, tensor_logarithm};
 use crate::ports;
 use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
 use isophote_engine::image::MAX_SIDE;
@@ -106,15 +106,22 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
 const MOST_FINER: u8 = 2;
 
 /// Noise along the stream lines of `tensor`, by a Gaussian of `sigma` pixels. Grains are as fine as pixels, so
-/// that proxies down to a quarter of the size trace them at full size and show the means.
+/// that proxies down to a quarter of the size trace them at full size and show the means. Where a strong edge
+/// ends and a weak one begins, lines turn: logarithms keep such places where they are between the tensors.
 fn stream_lines(plan: &mut PlanBuilder, mut tensor: ImageId, sigma: f32, scale: f32) -> ImageId {
     let allowed = if plan.size().iter().all(|n| n << MOST_FINER <= MAX_SIDE) { MOST_FINER } else { 0 };
     let finer = (1..=allowed).rev().find(|level| scale * f32::from(1_u8 << level) <= 1.0).unwrap_or(0);
     let mut grains = None;
+    if finer > 0 {
+        tensor = tensor_logarithm::logarithm(plan, tensor);
+    }
     for level in 1..=finer {
         let noise = noise::white_at(plan, scale * f32::from(1_u8 << level), 0, -(level as i8));
         tensor = tensor_interpolate::refine(plan, noise, tensor);
         grains = Some(noise);
+    }
+    if finer > 0 {
+        tensor = tensor_logarithm::exponential(plan, tensor);
     }
     let grains = grains.unwrap_or_else(|| noise::white(plan, scale, 0));
     let options =
