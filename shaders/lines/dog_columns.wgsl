@@ -1,7 +1,7 @@
 // Columns of two Gaussians at once, their difference and its threshold: the second half of the
 // isotropic extended difference of Gaussians (4.7-4.10).
-// Cost: one multiply-add on vec4 per tap, 2 radius + 1 loads.
-#import grid
+// Cost: one multiply-add on vec4 per tap, 2 radius reads of workgroup memory, radius / 4 + 3 loads.
+#import window
 #import edge_threshold
 
 struct Params {
@@ -26,21 +26,28 @@ fn weights(i: i32) -> vec4f {
     return vec4f(vec2f(params.narrow[i >> 2u][i & 3]), vec2f(params.wide[i >> 2u][i & 3]));
 }
 
+fn window_tap(p: vec2i) -> vec4f {
+    return fetch(source, 0u, p);
+}
+
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let p = pixel(id);
-    var sum = weights(0) * fetch(source, 0u, p);
-    for (var i = 1; i <= params.radius; i++) {
-        let o = vec2i(0, i);
-        sum += weights(i) * (fetch(source, 0u, p - o) + fetch(source, 0u, p + o));
+    var sum = weights(0) * window_tap(group_pixel(id));
+    let step = window_step(vec2i(1, params.radius)).y;
+    for (var first = 1; first <= params.radius; first += step) {
+        let last = min(first + step - 1, params.radius);
+        let part = window_load_both(id, vec2i(0, first), vec2i(0, last));
+        for (var i = first; i <= last; i++) {
+            let o = vec2i(0, i);
+            sum += weights(i) * (window_read_opposite(part, o) + window_read(part, o));
+        }
     }
     var result = edge_uncovered(params.threshold);
     if min(sum.y, sum.w) > 1e-6 {
         let u = dog_response(sum.x / sum.y, sum.z / sum.w, params.base, params.edge);
         result = edge_threshold(u, params.threshold, params.epsilon, params.phi);
     }
-    textureStore(target_image, vec2i(id.xy), vec4f(result));
+    if !outside(id) {
+        textureStore(target_image, vec2i(id.xy), vec4f(result));
+    }
 }

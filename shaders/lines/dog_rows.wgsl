@@ -1,7 +1,8 @@
 // Rows of two Gaussians at once, on lightness and coverage: the first half of the isotropic
 // difference of Gaussians (4.5, 4.7).
-// Cost: two multiply-adds on vec2 per tap, 2 radius + 1 loads.
-#import grid
+// Cost: two multiply-adds on vec2 per tap, 2 radius reads of workgroup memory,
+// radius / 4 + 3 loads.
+#import window
 
 struct Params {
     // Taps on each side of the centre.
@@ -17,20 +18,27 @@ struct Params {
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
 
+fn window_tap(p: vec2i) -> vec4f {
+    return fetch(source, 0u, p);
+}
+
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let p = pixel(id);
-    let middle = fetch(source, 0u, p).xy;
+    let middle = window_tap(group_pixel(id)).xy;
     var narrow = params.narrow[0].x * middle;
     var wide = params.wide[0].x * middle;
-    for (var i = 1; i <= params.radius; i++) {
-        let o = vec2i(i, 0);
-        let pair = fetch(source, 0u, p - o).xy + fetch(source, 0u, p + o).xy;
-        narrow += params.narrow[i >> 2u][i & 3] * pair;
-        wide += params.wide[i >> 2u][i & 3] * pair;
+    let step = window_step(vec2i(params.radius, 1)).x;
+    for (var first = 1; first <= params.radius; first += step) {
+        let last = min(first + step - 1, params.radius);
+        let part = window_load_both(id, vec2i(first, 0), vec2i(last, 0));
+        for (var i = first; i <= last; i++) {
+            let o = vec2i(i, 0);
+            let pair = window_read_opposite(part, o).xy + window_read(part, o).xy;
+            narrow += params.narrow[i >> 2u][i & 3] * pair;
+            wide += params.wide[i >> 2u][i & 3] * pair;
+        }
     }
-    textureStore(target_image, vec2i(id.xy), vec4f(narrow, wide));
+    if !outside(id) {
+        textureStore(target_image, vec2i(id.xy), vec4f(narrow, wide));
+    }
 }

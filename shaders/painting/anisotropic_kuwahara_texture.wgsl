@@ -1,7 +1,9 @@
 // The anisotropic Kuwahara filter with sampled weighting functions (thesis § 5.4.2, Listings 5.2, 5.3).
 //
-// Cost: pi radius^2 pixels, each one load and half of eight table lookups and 80 multiply-adds.
-#import grid
+// Cost: pi radius^2 pixels, each one read of workgroup memory and half of eight table lookups and 80
+// multiply-adds; about a quarter of (1 + elongation)^2 radius^2 loads up to an elongation of 2, beyond it one
+// per pixel.
+#import window
 #import sampled_sectors
 #import tensor
 
@@ -29,12 +31,13 @@ struct Params {
 @group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
 @group(0) @binding(5) var deviations: texture_storage_2d<r32float, write>;
 
+fn window_tap(p: vec2i) -> vec4f {
+    return fetch(source, 0u, p);
+}
+
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let p = pixel(id);
+    let p = group_pixel(id);
     let tensor = fetch(tensors, 1u, p);
     let t = tensor_tangent(tensor);
     let stretch = 1.0 + params.elongation * tensor_anisotropy(tensor);
@@ -48,20 +51,35 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var odd = even;
     var odd_full = even_full;
 
-    for (var j = 0; j <= ellipse.rows; j++) {
-        let columns = sector_columns(ellipse, j);
-        for (var i = columns.x; i <= columns.y; i++) {
-            let v = sector_point(ellipse, vec2i(i, j));
-            if dot(v, v) > SECTOR_INSIDE {
-                continue;
+    // The longest ellipse bounds what the workgroup reads. Of very long ones that is so much more than they
+    // cover that each pixel fetches its own.
+    let reach = sector_reach(params.radius, params.elongation);
+    let shares = params.elongation <= SECTOR_SHARED;
+    let size = vec2i(2 * reach, reach) + 1;
+    let step = select(size, window_step(size), shares);
+    for (var y = 0; y <= reach; y += step.y) {
+        for (var x = -reach; x <= reach; x += step.x) {
+            let end = min(vec2i(x, y) + step - 1, vec2i(reach));
+            var part = window_unshared(id);
+            if shares {
+                part = window_load_both(id, vec2i(x, y), end);
             }
-            let p0 = fetch(source, 0u, p + vec2i(i, j));
-            let p1 = fetch(source, 0u, p - vec2i(i, j));
-            let c0 = p0.rgb - origin.rgb;
-            let c1 = p1.rgb - origin.rgb;
-            sampled_add(&even, &even_full, v, c0, p0.a, c1, p1.a);
-            if eight {
-                sampled_add(&odd, &odd_full, sector_between(v), c0, p0.a, c1, p1.a);
+            for (var j = y; j <= min(ellipse.rows, end.y); j++) {
+                let columns = sector_columns(ellipse, j);
+                for (var i = max(columns.x, x); i <= min(columns.y, end.x); i++) {
+                    let v = sector_point(ellipse, vec2i(i, j));
+                    if dot(v, v) > SECTOR_INSIDE {
+                        continue;
+                    }
+                    let p0 = window_read(part, vec2i(i, j));
+                    let p1 = window_read_opposite(part, vec2i(i, j));
+                    let c0 = p0.rgb - origin.rgb;
+                    let c1 = p1.rgb - origin.rgb;
+                    sampled_add(&even, &even_full, v, c0, p0.a, c1, p1.a);
+                    if eight {
+                        sampled_add(&odd, &odd_full, sector_between(v), c0, p0.a, c1, p1.a);
+                    }
+                }
             }
         }
     }
@@ -80,6 +98,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let found = sector_response(near, least, params.threshold, params.q)
         + sector_response(far, least, params.threshold, params.q);
     let color = origin.rgb + select(vec3f(0.0), found.rgb / found.a, found.a > 0.0);
-    textureStore(target_image, vec2i(id.xy), vec4f(color, origin.a));
-    textureStore(deviations, vec2i(id.xy), vec4f(deviation));
+    if !outside(id) {
+        textureStore(target_image, vec2i(id.xy), vec4f(color, origin.a));
+        textureStore(deviations, vec2i(id.xy), vec4f(deviation));
+    }
 }

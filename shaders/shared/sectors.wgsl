@@ -109,6 +109,14 @@ fn sector_ellipse(t: vec2f, radius: f32, stretch: f32) -> SectorEllipse {
     return SectorEllipse(along, across, a, b, area, i32(sqrt(SECTOR_INSIDE * a / area)));
 }
 
+// Elongations up to which a workgroup's pixels share what they read: longer ellipses leave most of it out.
+const SECTOR_SHARED: f32 = 2.0;
+
+// The most pixels that an ellipse reaches along either axis.
+fn sector_reach(radius: f32, elongation: f32) -> i32 {
+    return i32(radius * (1.0 + elongation) * sqrt(SECTOR_INSIDE) + 0.01);
+}
+
 // The first and the last column of row j >= 0; in row 0 those to the right of the centre, since every pixel
 // stands for the one opposite it too.
 fn sector_columns(ellipse: SectorEllipse, j: i32) -> vec2i {

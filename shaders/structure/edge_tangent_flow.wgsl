@@ -1,7 +1,9 @@
 // One pass of the edge tangent flow (2.134-2.136) over a disc, a row or a column, on tensors of unit
 // vectors: the weighted sum of the vectors around is the weighted sum of their tensors times the
-// centre's vector. Cost: up to (2 reach + 1)^2 loads and 12 operations each.
-#import grid
+// centre's vector.
+// Cost: up to (2 reach + 1)^2 reads of workgroup memory and 12 operations each; reach^2 / 16 + reach / 2 + 1
+// loads and, where windows go in parts, about as many again.
+#import window
 #import tensor
 
 struct Params {
@@ -24,22 +26,30 @@ fn weight(i: i32) -> f32 {
     return params.weights[abs(i) >> 2u][abs(i) & 3];
 }
 
+fn window_tap(p: vec2i) -> vec4f {
+    return fetch(source, 0u, p);
+}
+
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let p = pixel(id);
+    let p = group_pixel(id);
     // Sums of the tensors around, plain and by their magnitude.
     var plain = vec3f(0.0);
     var strong = vec3f(0.0);
-    for (var j = -params.reach.y; j <= params.reach.y; j++) {
-        for (var i = -params.reach.x; i <= params.reach.x; i++) {
-            if f32(i * i + j * j) < params.limit {
-                let t = fetch(source, 0u, p + vec2i(i, j));
-                let w = weight(i) * weight(j);
-                plain += w * t.xyz;
-                strong += w * t.w * t.xyz;
+    let step = window_step(2 * params.reach + 1);
+    for (var y = -params.reach.y; y <= params.reach.y; y += step.y) {
+        for (var x = -params.reach.x; x <= params.reach.x; x += step.x) {
+            let end = min(vec2i(x, y) + step - 1, params.reach);
+            let part = window_load(id, vec2i(x, y), end);
+            for (var j = y; j <= end.y; j++) {
+                for (var i = x; i <= end.x; i++) {
+                    if f32(i * i + j * j) < params.limit {
+                        let t = window_read(part, vec2i(i, j));
+                        let w = weight(i) * weight(j);
+                        plain += w * t.xyz;
+                        strong += w * t.w * t.xyz;
+                    }
+                }
             }
         }
     }
@@ -70,5 +80,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if params.last != 0u {
         w = select(0.0, 1.0, t.x + t.z > 0.0);
     }
-    textureStore(target_image, vec2i(id.xy), vec4f(t, w));
+    if !outside(id) {
+        textureStore(target_image, vec2i(id.xy), vec4f(t, w));
+    }
 }

@@ -34,6 +34,23 @@ pub fn executor(test: &str) -> Option<Executor> {
     Some(executor)
 }
 
+/// An executor on a device of its own that reads windows of neighbours the other way than [`device`]: held in
+/// workgroup memory, or tap by tap.
+///
+/// # Panics
+/// As [`device`], and where the device cannot be opened twice.
+pub fn executor_with_other_windows(test: &str) -> Option<Executor> {
+    let shared_windows = Some(!device(test)?.shares_windows());
+    match Device::open(&Options { shared_windows, ..Options::default() }) {
+        Ok(device) => {
+            let mut executor = Executor::new(Arc::clone(&device));
+            executor.set_limits(device.max_side(), 48 << 20);
+            Some(executor)
+        }
+        Err(e) => panic!("{test} needs a second graphics device: {e}"),
+    }
+}
+
 fn is_required() -> bool {
     let is = |name: &str, value: &str| std::env::var(name).is_ok_and(|v| v == value);
     is("CI", "true") || is("ISOPHOTE_REQUIRE_GPU", "1")

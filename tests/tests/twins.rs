@@ -1,8 +1,9 @@
 //! Both twins of every kernel on equal input: the difference stays below the tolerance that the
-//! kernel declares.
+//! kernel declares. Shaders that can hold windows in workgroup memory are tried with and without.
 
 use isophote::kernels::KERNELS;
 use isophote_engine::cpu::Control;
+use isophote_engine::gpu::Executor;
 use isophote_tests::compare::Difference;
 use isophote_tests::sweep::sweep;
 use isophote_tests::{cases, device};
@@ -21,30 +22,46 @@ struct Tally {
 #[test]
 fn every_shader_agrees_with_its_cpu_twin() {
     let Some(mut gpu) = device::executor("every_shader_agrees_with_its_cpu_twin") else { return };
+    let Some(mut other) = device::executor_with_other_windows("every_shader_agrees_with_its_cpu_twin") else {
+        return;
+    };
     println!("device: {}", gpu.device().name());
     let mut tallies: BTreeMap<&str, Tally> = KERNELS.iter().map(|k| (k.name, Tally::default())).collect();
     sweep(|step| {
         let tally = tallies.entry(step.kernel.name).or_default();
         tally.runs += 1;
         let plan = step.plan_with(step.kernel);
-        let results = match gpu.run_images(&plan, &step.named_inputs(), step.region(), Control::default()) {
-            Ok(results) => results,
-            Err(e) => {
-                tally.failures.push(format!("{}: {e}", step.label));
-                return;
-            }
+        let run = |gpu: &mut Executor| {
+            gpu.run_images(&plan, &step.named_inputs(), step.region(), Control::default())
         };
-        for (index, (ours, theirs)) in step.outputs.iter().zip(&results).enumerate() {
-            let difference = Difference::between(ours, theirs, &step.kernel.tolerance);
-            tally.values += difference.values;
-            tally.outliers += difference.outliers;
-            tally.worst = tally.worst.max(difference.worst);
-            tally.ratio = tally.ratio.max(difference.ratio);
-            if !difference.is_within(&step.kernel.tolerance) {
-                tally.failures.push(format!(
-                    "{} output {index}: {} of {} values differ, {} not finite, worst at {}",
-                    step.label, difference.outliers, difference.values, difference.broken, difference.place
-                ));
+        let mut runs = vec![run(&mut gpu)];
+        if step.kernel.shader.contains("override shared_windows") {
+            runs.push(run(&mut other));
+        }
+        for results in runs {
+            let results = match results {
+                Ok(results) => results,
+                Err(e) => {
+                    tally.failures.push(format!("{}: {e}", step.label));
+                    return;
+                }
+            };
+            for (index, (ours, theirs)) in step.outputs.iter().zip(&results).enumerate() {
+                let difference = Difference::between(ours, theirs, &step.kernel.tolerance);
+                tally.values += difference.values;
+                tally.outliers += difference.outliers;
+                tally.worst = tally.worst.max(difference.worst);
+                tally.ratio = tally.ratio.max(difference.ratio);
+                if !difference.is_within(&step.kernel.tolerance) {
+                    tally.failures.push(format!(
+                        "{} output {index}: {} of {} values differ, {} not finite, worst at {}",
+                        step.label,
+                        difference.outliers,
+                        difference.values,
+                        difference.broken,
+                        difference.place
+                    ));
+                }
             }
         }
     });

@@ -20,6 +20,10 @@ pub struct Options {
     pub adapter: Option<String>,
     /// Ask for timestamps, where the adapter has them ([`Device::has_timestamps`]).
     pub timestamps: bool,
+    /// Whether kernels hold windows of neighbours in workgroup memory. `None` takes what is faster:
+    /// yes on hardware; no on drivers that compute on the CPU, where textures are in its caches and
+    /// workgroup memory is read lane by lane. The taps and their order are the same.
+    pub shared_windows: Option<bool>,
 }
 
 /// GPU objects created, and submissions made, by this library on a device.
@@ -70,6 +74,7 @@ pub struct Device {
     pub(super) queue: wgpu::Queue,
     pub(super) counters: Counters,
     pub(super) pipelines: Pipelines,
+    shared_windows: bool,
     info: wgpu::AdapterInfo,
     owned: bool,
     state: Arc<State>,
@@ -146,7 +151,9 @@ impl Device {
             let text = one_line(&format!("{reason:?}: {message}"));
             lost.lost.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(text);
         });
-        Ok(Self::with_state(raw, queue, true, state))
+        let mut device = Self::with_state(raw, queue, true, state);
+        device.shared_windows = options.shared_windows.unwrap_or(device.shared_windows);
+        Ok(device)
     }
 
     /// Uses a device that the caller owns and goes on using.
@@ -165,6 +172,7 @@ impl Device {
             queue,
             counters: Counters::default(),
             pipelines: Pipelines::default(),
+            shared_windows: info.device_type != wgpu::DeviceType::Cpu,
             info,
             owned,
             state,
@@ -189,6 +197,11 @@ impl Device {
     /// True for a driver that computes on the CPU.
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// True when kernels hold windows of neighbours in workgroup memory ([`Options::shared_windows`]).
+    pub fn shares_windows(&self) -> bool {
+        self.shared_windows
     }
 
     /// True when passes can be timed.

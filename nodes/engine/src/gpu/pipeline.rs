@@ -22,6 +22,9 @@ pub(super) fn bound_size(params: usize) -> u64 {
     params.next_multiple_of(16) as u64
 }
 
+/// The constant of shaders that can hold windows of neighbours in workgroup memory.
+const SHARED_WINDOWS: &str = "shared_windows";
+
 #[derive(Debug)]
 pub(super) struct Pipeline {
     pub compute: wgpu::ComputePipeline,
@@ -42,14 +45,19 @@ impl Device {
             return Ok(Arc::clone(pipeline));
         }
         let what = format!("kernel '{}'", shader.name);
-        let pipeline = Arc::new(self.guarded(&what, |device| create(device, shader))?);
+        let shared = f64::from(u8::from(self.shares_windows()));
+        // A shader must not be told of constants that it does not declare.
+        let has_windows = shader.source.contains(&format!("override {SHARED_WINDOWS}:"));
+        let constants = [(SHARED_WINDOWS, shared)];
+        let constants = if has_windows { &constants[..] } else { &[] };
+        let pipeline = Arc::new(self.guarded(&what, |device| create(device, shader, constants))?);
         count(&self.counters.pipelines);
         known.insert(Arc::clone(shader), Arc::clone(&pipeline));
         Ok(pipeline)
     }
 }
 
-fn create(device: &wgpu::Device, shader: &Shader) -> Pipeline {
+fn create(device: &wgpu::Device, shader: &Shader, constants: &[(&str, f64)]) -> Pipeline {
     let label = Some(shader.name.as_ref());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label,
@@ -67,7 +75,11 @@ fn create(device: &wgpu::Device, shader: &Shader) -> Pipeline {
         layout: Some(&pipeline_layout),
         module: &module,
         entry_point: Some("main"),
-        compilation_options: Default::default(),
+        compilation_options: wgpu::PipelineCompilationOptions {
+            constants,
+            // Kernels read no workgroup memory that they have not written.
+            zero_initialize_workgroup_memory: false,
+        },
         cache: None,
     });
     Pipeline { compute, layout }

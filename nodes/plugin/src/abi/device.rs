@@ -40,7 +40,7 @@ pub(super) unsafe extern "C" fn create(
             // SAFETY: the host promised text with a closing zero.
             Some(unsafe { args::text(adapter, "the adapter's name")? }.to_owned())
         };
-        let device = Device::open(&Options { adapter, timestamps: false })?;
+        let device = Device::open(&Options { adapter, ..Options::default() })?;
         Ok(DeviceObject { device, message: Mutex::default() })
     };
     // SAFETY: the host promised that both places may be written.

@@ -7,6 +7,7 @@ use super::catalogue::lasting;
 use super::contract::*;
 use super::guard::{Failure, Outcome, lock};
 use isophote::engine::program::Shader;
+use naga::back::pipeline_constants::process_overrides;
 use naga::back::{glsl, hlsl, msl, spv};
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
@@ -84,9 +85,12 @@ fn translate(kernel: &Shader, language: IsophoteLanguage) -> Outcome<Made> {
     let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
         .validate(&module)
         .map_err(|e| fail(&e.to_string()))?;
+    let bindings = bindings(&module);
+    // Other languages have no constants left open: those of WGSL take their defaults.
+    let (module, info) =
+        process_overrides(&module, &info, None, &Default::default()).map_err(|e| fail(&e.to_string()))?;
     let entry = module.entry_points.first().ok_or_else(|| fail("it has no entry point"))?;
-    let mut made =
-        Made { code: Vec::new(), size: 0, entry_point: entry.name.clone(), bindings: bindings(&module) };
+    let mut made = Made { code: Vec::new(), size: 0, entry_point: entry.name.clone(), bindings };
     renumber(&mut made.bindings, language);
     let text = match language {
         ISOPHOTE_LANGUAGE_SPIRV => {
@@ -158,12 +162,17 @@ const BOUNDS: BoundsCheckPolicies = BoundsCheckPolicies {
     binding_array: BoundsCheckPolicy::Unchecked,
 };
 
+/// Kernels read no workgroup memory that they have not written.
+const CLEAR_WORKGROUP_MEMORY: bool = false;
+
 fn spirv(module: &Module, info: &ModuleInfo) -> Result<Vec<u32>, String> {
     let options = spv::Options {
         lang_version: (1, 0),
         // Compute shaders have no positions to adjust; names help in debuggers.
         flags: spv::WriterFlags::DEBUG,
         bounds_check_policies: BOUNDS,
+        // As CLEAR_WORKGROUP_MEMORY.
+        zero_initialize_workgroup_memory: spv::ZeroInitializeWorkgroupMemoryMode::None,
         ..spv::Options::default()
     };
     spv::write_vec(module, info, &options, None).map_err(|e| e.to_string())
@@ -175,6 +184,7 @@ fn hlsl(module: &Module, info: &ModuleInfo, made: &mut Made) -> Result<String, S
         shader_model: hlsl::ShaderModel::V5_0,
         binding_map: made.bindings.iter().map(|b| (b.resource(), target(b))).collect(),
         fake_missing_bindings: false,
+        zero_initialize_workgroup_memory: CLEAR_WORKGROUP_MEMORY,
         ..hlsl::Options::default()
     };
     let mut text = String::new();
@@ -209,6 +219,7 @@ fn msl(module: &Module, info: &ModuleInfo, made: &mut Made) -> Result<String, St
         per_entry_point_map: [(made.entry_point.clone(), resources)].into(),
         fake_missing_bindings: false,
         bounds_check_policies: BOUNDS,
+        zero_initialize_workgroup_memory: CLEAR_WORKGROUP_MEMORY,
         ..msl::Options::default()
     };
     let (text, translation) = msl::write_string(module, info, &options, &msl::PipelineOptions::default())
@@ -223,6 +234,7 @@ fn glsl(module: &Module, info: &ModuleInfo, made: &Made) -> Result<String, Strin
     let options = glsl::Options {
         version: glsl::Version::Desktop(430),
         writer_flags: glsl::WriterFlags::empty(),
+        zero_initialize_workgroup_memory: CLEAR_WORKGROUP_MEMORY,
         binding_map: made.bindings.iter().map(|b| (b.resource(), b.slot as u8)).collect(),
         ..glsl::Options::default()
     };

@@ -2,7 +2,8 @@
 //! isotropic extended difference of Gaussians (4.7-4.10).
 //!
 //! Cost: one multiply-add per tap and value (four values a pixel), radius + 1 taps; two divisions
-//! and the threshold. Sixteen interleaved pixels at a time.
+//! and the threshold. Sixteen interleaved pixels at a time. The shader reads its windows through workgroup
+//! memory, radius / 4 + 3 loads a pixel.
 
 use crate::kernels::blocks::{BLOCK, write1};
 use crate::kernels::edge_threshold::{LEAST_COVERAGE, Xdog, dog_response, edge_threshold, edge_uncovered};

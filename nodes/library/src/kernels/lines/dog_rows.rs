@@ -2,6 +2,7 @@
 //! difference of Gaussians (4.5, 4.7).
 //!
 //! Cost: two multiply-adds per tap and value, radius + 1 taps. Sixteen interleaved pixels at a time.
+//! The shader reads its windows through workgroup memory, radius / 4 + 3 loads a pixel.
 
 use crate::kernels::support::{GaussianTable, gaussian_radius, gaussian_table};
 use crate::kernels::symmetric::flat;

@@ -6,6 +6,8 @@
 //! one lookup; the second's sums are kept apart and go to the opposite sectors in the end.
 //!
 //! Cost: pi radius^2 pixels, each half of two table lookups of 40 operations and 11 vector operations.
+//! The shader reads them through workgroup memory, about (1 + elongation)^2 radius^2 / 4 loads a pixel, up to an
+//! elongation of 2.
 
 use crate::kernels::painting::anisotropic_kuwahara::{Options, reach};
 use crate::kernels::planes::{CHANNELS, Planes};

@@ -8,7 +8,8 @@
 //! in double precision.
 //!
 //! Cost: 5 multiply-adds for about 0.45 pi radius^2 pixels of each sector; transformed, about
-//! 10 log2(block) operations for each of 18 transforms.
+//! 10 log2(block) operations for each of 18 transforms. The shader goes through the disc pixel by pixel, through
+//! workgroup memory: about radius^2 / 4 loads.
 
 use crate::kernels::block_convolution::{Convolution, Mask, block_side};
 use crate::kernels::planes::{CHANNELS, Planes};

@@ -6,6 +6,7 @@
 //! every sum is put together from two such, whatever the radius, and holds none but its own pixels.
 //!
 //! Cost: 3 additions on ten channels and 60 operations; other weights 20 multiply-adds each.
+//! The shader takes all weights singly, through workgroup memory: 3 count / 4 + 6 loads a pixel.
 
 use crate::kernels::painting::kuwahara_rows::{self, Side, Weights};
 use crate::kernels::support::{get_pixels4, put_pixels4};

@@ -5,6 +5,7 @@
 //! pixels alone, so that a highlight leaves no rounding behind as it does in a running sum.
 //!
 //! Cost: 2 log2(r + 1) additions on five channels; other weights 10 multiply-adds each.
+//! The shader takes all weights singly, through workgroup memory: count / 4 + 2 loads a pixel.
 
 use crate::kernels::blocks::write2;
 use crate::kernels::planes::{CHANNELS, Planes};

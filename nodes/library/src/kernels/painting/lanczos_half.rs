@@ -5,7 +5,8 @@
 //! Where coverage is partial their negative weights could outweigh the rest, and the mean of the four
 //! pixels below takes over. Rows are resampled first, each once.
 //!
-//! Cost: 36 multiply-adds and 60 operations on four channels per pixel of the coarser level.
+//! Cost: 36 multiply-adds and 60 operations on four channels per pixel of the coarser level. The shader takes
+//! 144 multiply-adds, through workgroup memory: 11 loads.
 
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};

@@ -4,7 +4,8 @@
 //!
 //! Cost: about 22 operations per pixel of the window, a disc of about 3.1 radius^2 or a line of
 //! 2 radius + 1 pixels. Neighbours lie on rows, so the rows are kept channel by channel and a tap is
-//! three loads of eight pixels; half of the operations are the exponential.
+//! three loads of eight pixels; half of the operations are the exponential. The shader reads its windows
+//! through workgroup memory, about radius^2 / 16 + radius / 2 + 1 loads a pixel.
 
 use crate::kernels::rows::Rows;
 use crate::kernels::support::put_pixels4;

@@ -3,7 +3,7 @@
 //! and by its coverage. The weights of a pixel never exceed 4 in sum, so that for time steps up to 1/4
 //! every step is a weighted mean.
 //!
-//! Cost: 70 operations.
+//! Cost: 70 operations. The shader reads through workgroup memory, 5 loads a pixel.
 
 use crate::kernels::rows::{Rows, strips};
 use crate::kernels::support::put_pixels4;

@@ -1,7 +1,8 @@
 //! One axis of a separable Gaussian on four channels (2.21); the smoothing of colours and tensors.
 //!
 //! Cost: radius + 1 multiply-adds per value. Rows and columns run the same arithmetic on
-//! interleaved values, sixteen pixels at a time.
+//! interleaved values, sixteen pixels at a time. The shader reads its windows through workgroup memory,
+//! radius / 4 + 3 loads a pixel.
 
 use crate::kernels::coverage::is_opaque;
 use crate::kernels::support::{GAUSSIAN_TAPS, GaussianTable, gaussian_radius, gaussian_table};

@@ -9,7 +9,8 @@
 //! vectors would turn to in its place, the major eigenvector of the weighted sum, unless the neighbours
 //! leave that to chance.
 //!
-//! Cost: 7 multiply-adds per neighbour, pi radius^2 of them, and about 50 operations.
+//! Cost: 7 multiply-adds per neighbour, pi radius^2 of them, and about 50 operations. The shader reads
+//! them through workgroup memory, about radius^2 / 16 + radius / 2 + 1 loads a pixel.
 
 use crate::kernels::rows::{Rows, strips};
 use crate::kernels::support::put_pixels4;

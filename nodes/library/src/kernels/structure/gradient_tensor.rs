@@ -7,8 +7,8 @@
 //! that is A grad P - P grad A = A^2 grad(P / A). Hidden colours have no part in it, and where all
 //! is opaque it is the plain gradient to the last bit.
 //!
-//! Cost: 4 radius + 2 multiply-adds on four channels on the CPU, where columns are summed once;
-//! 4 radius (2 radius + 1) in the shader, where they are summed for every pixel.
+//! Cost: 4 radius + 2 multiply-adds on four channels: columns are summed once, in the shader once
+//! for the pixels of a workgroup, which makes 1 + radius / 4 columns of 2 radius + 1 loads a pixel.
 
 use crate::kernels::rows::{Rows, strips};
 use crate::kernels::support::put_pixels4;

@@ -4,8 +4,8 @@
 //!
 //! Coverage as in `gradient_tensor`, with the picture's pixel around the place for its centre.
 //!
-//! Cost: 8 radius + 4 multiply-adds on four channels on the CPU, where columns are summed once;
-//! 2 (2 radius + 1)^2 in the shader.
+//! Cost: 8 radius + 4 multiply-adds on four channels: columns are summed once, in the shader once
+//! for the pixels of a workgroup, which makes 2/3 + radius / 4 columns of 2 radius + 1 loads a pixel.
 
 use crate::kernels::rows::{Rows, strips};
 use crate::kernels::structure::gradient_tensor::{Measure, outer};

@@ -1,0 +1,111 @@
+#import group
+
+// Windows of neighbours in workgroup memory: what the windows of many pixels share is fetched from the
+// texture once.
+//
+// The shader defines `window_tap(p: vec2i) -> vec4f`, what a window holds of the pixel at absolute position p.
+// A window is gone through in parts that fit the memory:
+//
+//   let step = window_step(end - begin + 1);
+//   for (var y = begin.y; y <= end.y; y += step.y) {
+//       for (var x = begin.x; x <= end.x; x += step.x) {
+//           let first = vec2i(x, y);
+//           let last = min(first + step - 1, end);
+//           let part = window_load(id, first, last);
+//           ... window_read(part, offset) for the offsets first to last
+//       }
+//   }
+//
+// Offsets are those of taps from their own pixel. What `first` and `last` are made of must be uniform.
+
+// Pixels that the taps of a part take: 8 KiB, so that several workgroups find room at once, and together with
+// the opposite ones less than the 16 KiB of the smallest devices.
+const WINDOW_PIXELS: i32 = 504;
+
+var<workgroup> window: array<vec4f, 504>;
+
+// The taps opposite those of `window`, for kernels that take both at once.
+var<workgroup> window_opposite: array<vec4f, 504>;
+
+struct WindowPart {
+    // The invocation's own pixel: absolute, and its index in the two arrays if that were in them.
+    pixel: vec2i,
+    index: i32,
+    opposite: i32,
+    // Pixels per row of the arrays.
+    stride: i32,
+    // False where taps are fetched one by one.
+    loaded: bool,
+}
+
+// How many of `taps` columns and rows to take at once. Parts of wide windows are about as high as wide, which
+// shares the most.
+fn window_step(taps: vec2i) -> vec2i {
+    var columns = min(taps.x, WINDOW_PIXELS / 8 - 7);
+    if taps.y > 1 {
+        let parts = (taps.x + 31) / 32;
+        columns = (taps.x + parts - 1) / parts;
+    }
+    return vec2i(columns, min(taps.y, WINDOW_PIXELS / (columns + 7) - 7));
+}
+
+// A part whose taps are fetched one by one.
+fn window_unshared(id: vec3u) -> WindowPart {
+    return WindowPart(group_pixel(id), 0, 0, 0, false);
+}
+
+// Loads the taps at the offsets `first` to `last` of all pixels of the workgroup.
+fn window_load(id: vec3u, first: vec2i, last: vec2i) -> WindowPart {
+    if !shared_windows {
+        return window_unshared(id);
+    }
+    let stride = last.x - first.x + 8;
+    let size = group_size(id) + last - first;
+    let corner = group_corner(id) + first;
+    let local = group_local(id);
+    // All have read the part before.
+    workgroupBarrier();
+    for (var y = local.y; y < size.y; y += 8) {
+        for (var x = local.x; x < size.x; x += 8) {
+            window[y * stride + x] = window_tap(corner + vec2i(x, y));
+        }
+    }
+    workgroupBarrier();
+    let seat = group_seat(id);
+    let index = (seat.y - first.y) * stride + seat.x - first.x;
+    let opposite = (seat.y + last.y) * stride + seat.x + last.x;
+    return WindowPart(group_pixel(id), index, opposite, stride, true);
+}
+
+// The same, and the taps at the offsets -`last` to -`first`.
+fn window_load_both(id: vec3u, first: vec2i, last: vec2i) -> WindowPart {
+    if shared_windows {
+        let stride = last.x - first.x + 8;
+        let size = group_size(id) + last - first;
+        let corner = group_corner(id) - last;
+        let local = group_local(id);
+        workgroupBarrier();
+        for (var y = local.y; y < size.y; y += 8) {
+            for (var x = local.x; x < size.x; x += 8) {
+                window_opposite[y * stride + x] = window_tap(corner + vec2i(x, y));
+            }
+        }
+    }
+    return window_load(id, first, last);
+}
+
+// The tap at `offset`.
+fn window_read(part: WindowPart, offset: vec2i) -> vec4f {
+    if part.loaded {
+        return window[part.index + offset.y * part.stride + offset.x];
+    }
+    return window_tap(part.pixel + offset);
+}
+
+// The tap at -`offset`.
+fn window_read_opposite(part: WindowPart, offset: vec2i) -> vec4f {
+    if part.loaded {
+        return window_opposite[part.opposite - offset.y * part.stride - offset.x];
+    }
+    return window_tap(part.pixel - offset);
+}
