@@ -2,6 +2,8 @@
 
 #![allow(unsafe_code, reason = "calls through the C table, and reading foreign layouts")]
 
+#[path = "openfx/aspect.rs"]
+mod aspect;
 #[path = "openfx/describe.rs"]
 mod describe;
 #[path = "openfx/memory.rs"]

@@ -1,7 +1,7 @@
 //! The OpenFX face: every node as an image effect of its own, for hosts such as Nuke, Resolve and Natron.
 //!
 //! Thin: [`effects`] derives what there is from the nodes' declarations, [`describe`] tells it to hosts,
-//! [`settings`] and [`image`] read what hosts have, and [`render`] runs the plan. Nothing is kept
+//! [`settings`] and [`image`] read what hosts have, [`squares`] makes their pixels square, and [`render`] runs the plan. Nothing is kept
 //! between calls but the host's functions, so that any action may come on any thread, in any number.
 
 mod describe;
@@ -11,9 +11,11 @@ mod host;
 mod image;
 mod instance;
 mod interface;
+mod memory;
 mod quirks;
 mod render;
 mod settings;
+mod squares;
 mod threads;
 
 use crate::abi::guard::lock;

@@ -212,6 +212,8 @@ pub struct Wanted {
     pub window: [i32; 4],
     /// Pixels per canonical unit.
     pub scale: f64,
+    /// That of x over that of y.
+    pub squeeze: f64,
     /// Fields.
     pub field: &'static CStr,
     /// Time.
@@ -221,7 +223,7 @@ pub struct Wanted {
 impl Wanted {
     /// A window at full size.
     pub fn new(window: [i32; 4]) -> Self {
-        Self { window, scale: 1.0, field: kOfxImageFieldNone, time: 0.0 }
+        Self { window, scale: 1.0, squeeze: 1.0, field: kOfxImageFieldNone, time: 0.0 }
     }
 }
 
@@ -299,7 +301,10 @@ impl Instance<'_> {
         let args = self.args();
         args.put(kOfxPropTime, vec![wanted.time.into()]);
         args.put(kOfxImageEffectPropRenderWindow, wanted.window.map(Value::from).to_vec());
-        args.put(kOfxImageEffectPropRenderScale, vec![wanted.scale.into(); 2]);
+        args.put(
+            kOfxImageEffectPropRenderScale,
+            vec![(wanted.scale * wanted.squeeze).into(), wanted.scale.into()],
+        );
         args.put(kOfxImageEffectPropFieldToRender, vec![wanted.field.into()]);
         let status = self.act(kOfxImageEffectActionRender, Some(&args), None);
         let lent = self.host.inner.lent.load(Ordering::SeqCst);

@@ -24,6 +24,8 @@ pub struct Layout {
     pub aspect: f64,
     /// Pixels per unit that its region of definition counts with.
     pub scale: f64,
+    /// Those in x over those in y, beside what the aspect makes of them.
+    pub squeeze: f64,
     /// Scale that the image names.
     pub claimed_scale: f64,
     /// Fields that it holds.
@@ -43,6 +45,7 @@ impl Default for Layout {
             origin: [0, 0],
             aspect: 1.0,
             scale: 1.0,
+            squeeze: 1.0,
             claimed_scale: 1.0,
             field: kOfxImageFieldNone,
             blue_first: false,
@@ -200,7 +203,8 @@ impl Picture {
 
     /// The whole picture's region of definition, canonical.
     pub fn defined(&self) -> OfxRectD {
-        let [x, y] = [self.layout.aspect / self.layout.scale, 1.0 / self.layout.scale];
+        let y = 1.0 / self.layout.scale;
+        let x = y * self.layout.aspect / self.layout.squeeze;
         let [x1, y1, x2, y2] = self.whole.map(f64::from);
         OfxRectD { x1: x1 * x, y1: y1 * y, x2: x2 * x, y2: y2 * y }
     }

@@ -1,7 +1,12 @@
 //! Memory: what an 8K frame of floats takes, by the plans that are rendered.
 
+/// What the plugin lets the images of a band take.
+#[path = "../../../nodes/plugin/src/ofx/memory.rs"]
+mod bounds;
+
 use crate::reference::*;
 use crate::render::plain;
+use bounds::{LEAST_ROWS, WORKING_MEMORY};
 use isophote::request::Guides;
 use isophote::{ColourSpace, Planned, Request};
 use isophote_engine::{Rect, Support};
@@ -16,9 +21,6 @@ const SIZE: [u32; 2] = [7680, 4320];
 const FRAME: u64 = SIZE[0] as u64 * SIZE[1] as u64 * 16;
 /// What the host's source and result, and the plugin's images, may take together.
 const MOST: u64 = 4 << 30;
-/// What the plugin lets the images of a band take, and the least rows of one.
-const WORKING_MEMORY: [u64; 2] = [768 << 20, 3000 << 20];
-const LEAST_ROWS: i32 = 64;
 
 #[test]
 fn an_8k_frame_fits_into_4_gib() {

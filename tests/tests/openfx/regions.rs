@@ -26,7 +26,7 @@ fn tiles_from_their_regions_of_interest_equal_the_full_frame() {
         let support = Planned::new(&effect.graph(false), Request::new(256, 256)).unwrap().plan().support();
         let local = support != isophote_engine::Support::Global;
         assert_eq!(declared, i32::from(local), "{}", effect.plugin.identifier());
-        for (origin, aspect) in [([0, 0], 1.0), ([-13, 7], 1.0667)] {
+        for (origin, aspect) in [([0, 0], 1.0), ([-13, 7], 1.0667), ([4, -3], 2.0)] {
             let layout = Layout { origin, aspect, padding: 6, ..Layout::default() };
             let instance = described.instance(kOfxImageEffectContextFilter);
             plain(&instance);
@@ -40,21 +40,13 @@ fn tiles_from_their_regions_of_interest_equal_the_full_frame() {
                 let roi = instance.regions([x1 * aspect, y1, x2 * aspect, y2], 1.0).expect("a region");
                 let roi = roi.numbers(&name);
                 let pixels = [roi[0] / aspect, roi[1], roi[2] / aspect, roi[3]].map(|v| v.round() as i32);
-                // What the plan says, in rows from the top.
-                let planned = Planned::new(
-                    &effect.graph(false),
-                    Request { scale: scale_of(aspect), ..Request::new(SIZE[0] as u32, SIZE[1] as u32) },
-                )
-                .unwrap();
                 let region = Rect {
                     x0: window[0] - x,
                     x1: window[2] - x,
                     y0: SIZE[1] - (window[3] - y),
                     y1: SIZE[1] - (window[1] - y),
                 };
-                let windows = planned.plan().windows(region);
-                let port = planned.plan().inputs().iter().find(|p| p.name == "color").unwrap();
-                let needed = windows[port.image.index()].union(&region);
+                let needed = needed(&effect, region, aspect);
                 let wanted = [needed.x0 + x, SIZE[1] - needed.y1 + y, needed.x1 + x, SIZE[1] - needed.y0 + y];
                 assert_eq!(pixels, wanted, "{}", effect.plugin.identifier());
                 instance.connect("Source", source.crop(pixels));
@@ -92,8 +84,24 @@ fn a_host_without_tiles_may_give_parts_all_the_same() {
     no_faults();
 }
 
-fn scale_of(aspect: f64) -> f32 {
-    if aspect == 1.0 { 1.0 } else { (1.0 / aspect).sqrt() as f32 }
+/// What the plan says that a region needs, in rows from the top. Pixels that are wider than high are made
+/// square, each from those that it touches and one more on each side, before the plan and after it.
+fn needed(effect: &Expected, region: Rect, aspect: f64) -> Rect {
+    let touched = |[x0, x1]: [i32; 2], factor: f64, most: i32| {
+        if aspect == 1.0 {
+            return [x0, x1];
+        }
+        let [first, end] = [f64::from(x0) * factor, f64::from(x1) * factor];
+        [((first + 1e-6).floor() as i32 - 1).max(0), ((end - 1e-6).ceil() as i32 + 1).min(most)]
+    };
+    let width = (f64::from(SIZE[0]) * aspect - 0.01).ceil() as i32;
+    let planned = Planned::new(&effect.graph(false), Request::new(width as u32, SIZE[1] as u32)).unwrap();
+    let [x0, x1] = touched([region.x0, region.x1], aspect, width);
+    let windows = planned.plan().windows(Rect { x0, x1, ..region });
+    let port = planned.plan().inputs().iter().find(|p| p.name == "color").unwrap();
+    let window = windows[port.image.index()];
+    let [x0, x1] = touched([window.x0, window.x1], 1.0 / aspect, SIZE[0]);
+    Rect { x0, x1, ..window }.union(&region)
 }
 
 #[test]

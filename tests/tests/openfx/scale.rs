@@ -8,12 +8,12 @@ use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::{Behaviour, Host};
 
 /// Side of the full picture.
-const SIDE: i32 = 192;
+pub const SIDE: i32 = 192;
 /// What a proxy must reach, in decibels.
 const LEAST: f64 = 40.0;
 
 /// A photo-like picture: soft shading and forms with edges as wide as a lens makes them.
-fn photo() -> Vec<f32> {
+pub fn photo() -> Vec<f32> {
     let soft = |d: f32| 1.0 / (1.0 + (-d / 3.0).exp());
     let pixel = |x: i32, y: i32| {
         let (x, y) = (x as f32 + 0.5, y as f32 + 0.5);

@@ -16,12 +16,14 @@ pub struct Frame {
     pub picture: Bounds,
     /// Pixels per canonical unit, in x (with the pixel aspect ratio in it) and in y.
     pub ratio: [f64; 2],
-    /// The one scale that lengths of the filters take.
+    /// Pixels per canonical unit where they are square; of others, along the finer side.
     pub scale: f32,
 }
 
 /// What is less than this share of a pixel is rounding.
 const ROUNDING: f64 = 1e-3;
+/// Pixels are square up to this factor between their sides: proxies have whole numbers of rows and columns.
+const SQUARE: f64 = 1.01;
 
 impl Frame {
     /// The frame of a clip with the region of definition `defined` (canonical), rendered at `scale`, with
@@ -73,13 +75,21 @@ impl Frame {
         if size.iter().any(|s| *s <= 0 || *s > i64::from(MAX_SIDE)) {
             return None;
         }
-        // Filters know square pixels only; the mean keeps the area that they cover.
-        let scale = if ratio[0] == ratio[1] { ratio[0] } else { (ratio[0] * ratio[1]).sqrt() };
+        let scale = match ratio {
+            [x, y] if x == y => x,
+            [x, y] if is_square(ratio) => (x * y).sqrt(),
+            [x, y] => x.max(y),
+        };
         (scale.is_finite() && scale > 0.0).then(|| Self {
             picture,
             ratio,
             scale: scale.clamp(1.0 / 1024.0, 64.0) as f32,
         })
+    }
+
+    /// Whether its pixels are square, as far as anyone can see.
+    pub fn is_square(&self) -> bool {
+        is_square(self.ratio)
     }
 
     /// Size of the picture.
@@ -110,6 +120,10 @@ impl Frame {
     pub fn canonical(&self, bounds: Bounds) -> [f64; 4] {
         [0, 1, 2, 3].map(|i| f64::from(bounds[i]) / self.ratio[i % 2])
     }
+}
+
+fn is_square([x, y]: [f64; 2]) -> bool {
+    x.max(y) <= SQUARE * x.min(y)
 }
 
 /// Whether `bounds` are `picture` made smaller, to a pixel.

@@ -6,11 +6,12 @@ use super::frame::Frame;
 use super::host::{Host, Outcome, Properties};
 use super::image::Clip;
 use super::interface::*;
+use super::memory::{LEAST_ROWS, WORKING_MEMORY};
 use super::settings::Settings;
-use isophote::ColourSpace;
-use isophote::engine::Support;
+use super::squares::Squares;
+use isophote::engine::{Plan, Rect, Support};
 use isophote::request::Guides;
-use isophote::{Planned, Request};
+use isophote::{ColourSpace, Graph, Planned, Request};
 use std::ffi::{CStr, CString};
 
 /// Time and scale of an action.
@@ -31,25 +32,81 @@ impl Moment {
     }
 }
 
-/// The plan for a frame. `guides` are those that have a picture.
-///
-/// # Errors
-/// Memory; failed, when the graph cannot be planned.
-pub fn plan(
-    settings: &Settings,
-    frame: &Frame,
-    premultiplied: bool,
-    guides: Guides,
-) -> isophote::Result<Planned> {
-    let [width, height] = frame.size();
-    let request = Request {
-        scale: frame.scale,
-        space: settings.space,
-        premultiplied,
-        guides,
-        ..Request::new(width, height)
-    };
-    Planned::new(&settings.graph, request)
+/// The plan for a frame, over square pixels.
+#[derive(Debug)]
+pub struct Prepared {
+    /// What is run.
+    pub planned: Planned,
+    /// Its pixels, where they are others than the host's. Colour is multiplied by alpha in them.
+    pub squares: Option<Squares>,
+}
+
+impl Prepared {
+    /// The plan for the values of an instance. `guides` are those that have a picture.
+    ///
+    /// # Errors
+    /// Memory; failed, when the graph cannot be planned.
+    pub fn new(
+        settings: &Settings,
+        frame: &Frame,
+        premultiplied: bool,
+        guides: Guides,
+    ) -> isophote::Result<Self> {
+        Self::of_graph(&settings.graph, settings.space, frame, premultiplied, guides)
+    }
+
+    fn of_graph(
+        graph: &Graph,
+        space: ColourSpace,
+        frame: &Frame,
+        premultiplied: bool,
+        guides: Guides,
+    ) -> isophote::Result<Self> {
+        let plan = |[width, height]: [u32; 2], scale, premultiplied| {
+            Planned::new(
+                graph,
+                Request { scale, space, premultiplied, guides, ..Request::new(width, height) },
+            )
+        };
+        let Some(mut squares) = Squares::of(frame) else {
+            return Ok(Self { planned: plan(frame.size(), frame.scale, premultiplied)?, squares: None });
+        };
+        let mut planned = plan(squares.size(), squares.scale, true)?;
+        if least_memory(planned.plan()) > WORKING_MEMORY[1] {
+            squares = Squares::as_many(frame);
+            planned = plan(squares.size(), squares.scale, true)?;
+        }
+        Ok(Self { planned, squares: Some(squares) })
+    }
+
+    /// The part of each of the plan's images that `region` of the frame needs.
+    pub fn windows(&self, region: Rect) -> Vec<Rect> {
+        self.planned.plan().windows(self.squares.map_or(region, |squares| squares.over(region)))
+    }
+
+    /// The host's pixels that a part of an image is made from.
+    pub fn under(&self, window: Rect) -> Rect {
+        self.squares.map_or(window, |squares| squares.under(window))
+    }
+
+    /// Rows of the host's in one band.
+    pub fn band_rows(&self, region: Rect) -> i32 {
+        let plan = self.planned.plan();
+        let Some(squares) = self.squares else { return plan.band_rows(region, WORKING_MEMORY, LEAST_ROWS) };
+        let over = squares.over(region);
+        let rows = plan.band_rows(over, WORKING_MEMORY, LEAST_ROWS);
+        let share = f64::from(rows) / f64::from(over.height().max(1));
+        ((share * f64::from(region.height())) as i32).max(1)
+    }
+}
+
+/// Bytes that the images of the whole picture take, in the bands that take least.
+fn least_memory(plan: &Plan) -> u64 {
+    let [width, height] = plan.size();
+    let all = Rect::of_size(width, height);
+    let rows = plan.band_rows(all, WORKING_MEMORY, LEAST_ROWS);
+    let middle = (all.y1 - rows) / 2;
+    plan.peak_bytes(&plan.windows(Rect { y0: middle, y1: middle + rows, ..all }))
 }
 
 /// The region of definition: the source's, whatever else is connected.
@@ -99,14 +156,13 @@ pub fn regions_of_interest(
         depth: has(isophote::graph::GraphInput::Depth),
         object_id: false,
     };
-    let planned = plan(&settings, &frame, true, guides).map_err(|_| kOfxStatFailed)?;
-    let plan = planned.plan();
-    let windows = plan.windows(region);
+    let prepared = Prepared::new(&settings, &frame, true, guides).map_err(|_| kOfxStatFailed)?;
+    let windows = prepared.windows(region);
     // Lines of the other field lend the first and last of a field their neighbours.
     let order = source.properties.string(kOfxImageClipPropFieldOrder, 0);
     let fields = order.is_some_and(|order| order.as_c_str() != kOfxImageFieldNone);
     let mut answered = false;
-    let mut tell = |clip: &CStr, rect: isophote::engine::Rect| {
+    let mut tell = |clip: &CStr, rect: Rect| {
         let mut bounds = frame.outside(rect);
         if fields {
             (bounds[1], bounds[3]) = (bounds[1] - 1, bounds[3] + 1);
@@ -114,8 +170,8 @@ pub fn regions_of_interest(
         let name = CString::new(format!("{ROI_PREFIX}{}", clip.to_string_lossy())).unwrap_or_default();
         answered |= answer.set_doubles(&name, &frame.canonical(bounds));
     };
-    for port in plan.inputs() {
-        let window = windows[port.image.index()].union(&region);
+    for port in prepared.planned.plan().inputs() {
+        let window = prepared.under(windows[port.image.index()]).union(&region);
         match isophote::graph::GraphInput::from_id(&port.name) {
             Some(isophote::graph::GraphInput::Color) => tell(SOURCE, window),
             Some(guide) => {
@@ -210,4 +266,41 @@ pub fn changed(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) 
 /// Failed, when there is none.
 pub fn output(host: &Host, instance: Handle) -> Outcome<Clip<'_>> {
     Clip::of(host, instance, OUTPUT).ok_or(kOfxStatFailed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::effects::{EFFECTS, Form};
+    use super::*;
+
+    #[test]
+    fn an_8k_frame_of_any_pixels_fits_into_4_gib() {
+        let guides = Guides { normal: true, depth: true, object_id: false };
+        for par in [0.5, 1.0667, 2.0, 20.0] {
+            let picture = [0, 0, 7680, 4320];
+            let frame = Frame { picture, ratio: [1.0 / par, 1.0], scale: 1.0 / par.min(1.0) as f32 };
+            let whole = Rect::of_size(7680, 4320);
+            let bytes = |window: Rect| window.area() * 16;
+            for effect in EFFECTS.iter() {
+                for over in [false, true] {
+                    if over && effect.form != Form::Lines {
+                        continue;
+                    }
+                    let (graph, _) = effect.graph(over).unwrap();
+                    let prepared =
+                        Prepared::of_graph(&graph, ColourSpace::Linear, &frame, true, guides).unwrap();
+                    let rows = prepared.band_rows(whole);
+                    let middle = (4320 - rows) / 2;
+                    let band = Rect { y0: middle, y1: middle + rows, ..whole };
+                    let (plan, windows) = (prepared.planned.plan(), prepared.windows(band));
+                    // The host's pixels of a guide or the colour are gone when the last squares are made.
+                    let squares = plan.inputs().iter().map(|port| windows[port.image.index()]);
+                    let read = squares.map(|w| bytes(w) + 2 * bytes(prepared.under(w))).sum::<u64>();
+                    let most = 2 * bytes(whole) + plan.peak_bytes(&windows).max(read);
+                    let gib = most as f64 / (1_u64 << 30) as f64;
+                    assert!(most <= 4 << 30, "{:?} at {par}: {gib:.2} GiB", effect.identifier);
+                }
+            }
+        }
+    }
 }

@@ -6,8 +6,9 @@ use super::faults;
 use super::frame::{Bounds, Frame};
 use super::host::{Host, Outcome};
 use super::image::{Alpha, Beyond, Clip, Fetched};
-use super::instance::{self, Moment};
+use super::instance::{self, Moment, Prepared};
 use super::interface::*;
+use super::memory::LEAST_ROWS;
 use super::settings::Settings;
 use super::threads::FrameThreads;
 use isophote::engine::cpu::{Control, CpuExecutor};
@@ -16,12 +17,6 @@ use isophote::graph::GraphInput;
 use isophote::request::Guides;
 use isophote::{ColourSpace, Error};
 use std::sync::Mutex;
-
-/// Bytes that the working images of one band should take, and those that they may, where the passes allow
-/// bands. With a source and a result of 8K in floats, 4 GiB are not exceeded.
-const WORKING_MEMORY: [u64; 2] = [768 << 20, 3000 << 20];
-/// Bands of fewer rows would spend most of their time on what lies around them.
-const LEAST_ROWS: i32 = 64;
 
 /// One field of an interlaced picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -173,16 +168,16 @@ impl Job<'_> {
         let guides =
             Guides { normal: has(GraphInput::Normal), depth: has(GraphInput::Depth), object_id: false };
         let premultiplied = self.source.alpha != Alpha::Unpremultiplied;
-        let planned = instance::plan(&self.settings, &self.frame, premultiplied, guides)?;
-        let plan = planned.plan();
+        let prepared = Prepared::new(&self.settings, &self.frame, premultiplied, guides)?;
+        let (plan, squares) = (prepared.planned.plan(), prepared.squares);
         let threads = FrameThreads::of(self.host);
         // Hosts need not expect the question from two threads at once.
         let instance = Mutex::new(Instance(self.instance));
         let aborted = || instance.lock().is_ok_and(|instance| self.host.aborted(instance.0));
         let control = Control { cancelled: Some(&aborted), progress: None };
         let mut executor = CpuExecutor::new();
-        for band in bands(inside, plan.band_rows(inside, WORKING_MEMORY, LEAST_ROWS)) {
-            let windows = plan.windows(band);
+        for band in bands(inside, prepared.band_rows(inside)) {
+            let windows = prepared.windows(band);
             let mut images = Vec::new();
             for port in plan.inputs() {
                 let window = windows[port.image.index()];
@@ -192,17 +187,33 @@ impl Job<'_> {
                     guide => self.guides.iter().find(|(g, _)| *g == guide).map(|(_, image)| image),
                 };
                 if let Some(image) = given.filter(|_| !window.is_empty()) {
-                    images.push((input, self.read(input, image, window)?));
+                    let mut pixels = self.read(input, image, prepared.under(window))?;
+                    if let Some(squares) = squares {
+                        if input == GraphInput::Color && !premultiplied {
+                            multiply(&mut pixels);
+                        }
+                        pixels = squares
+                            .from_host(pixels, window, input, threads.threads())
+                            .map_err(Error::from)?;
+                    }
+                    images.push((input, pixels));
                 }
             }
             let named: Vec<(&str, &Image)> = images.iter().map(|(i, image)| (i.id(), image)).collect();
+            let region = squares.map_or(band, |squares| squares.over(band));
             let results =
-                executor.run(plan, &named, band, threads.threads(), control).map_err(Error::from)?;
-            let result = results.into_iter().next().ok_or(kOfxStatFailed)?;
+                executor.run(plan, &named, region, threads.threads(), control).map_err(Error::from)?;
+            let mut result = results.into_iter().next().ok_or(kOfxStatFailed)?;
             drop(images);
             if band.y1 == inside.y1 {
                 // What it kept for the next band.
                 executor = CpuExecutor::new();
+            }
+            if let Some(squares) = squares {
+                result = squares.to_host(result, band, threads.threads()).map_err(Error::from)?;
+                if !premultiplied && result.channels() == 4 {
+                    divide(&mut result);
+                }
             }
             self.write(self.finished(result, band)?)?;
         }
@@ -289,6 +300,22 @@ impl Job<'_> {
             }
         }
         Ok(())
+    }
+}
+
+/// Colour times alpha.
+fn multiply(image: &mut Image) {
+    for pixel in image.data_mut().chunks_exact_mut(4) {
+        let alpha = pixel[3];
+        pixel[..3].iter_mut().for_each(|v| *v *= alpha);
+    }
+}
+
+/// Colour over alpha, where there is any.
+fn divide(image: &mut Image) {
+    for pixel in image.data_mut().chunks_exact_mut(4).filter(|pixel| pixel[3] > 0.0) {
+        let alpha = pixel[3];
+        pixel[..3].iter_mut().for_each(|v| *v /= alpha);
     }
 }
 
