@@ -34,14 +34,14 @@ pub fn executor(test: &str) -> Option<Executor> {
     Some(executor)
 }
 
-/// An executor on a device of its own that reads windows of neighbours the other way than [`device`]: held in
-/// workgroup memory, or tap by tap.
+/// An executor on a device of its own that reads windows of neighbours from workgroup memory, or tap by tap,
+/// whatever is faster there.
 ///
 /// # Panics
 /// As [`device`], and where the device cannot be opened twice.
-pub fn executor_with_other_windows(test: &str) -> Option<Executor> {
-    let shared_windows = Some(!device(test)?.shares_windows());
-    match Device::open(&Options { shared_windows, ..Options::default() }) {
+pub fn executor_with_windows(test: &str, shared: bool) -> Option<Executor> {
+    device(test)?;
+    match Device::open(&Options { shared_windows: Some(shared), ..Options::default() }) {
         Ok(device) => {
             let mut executor = Executor::new(Arc::clone(&device));
             executor.set_limits(device.max_side(), 48 << 20);

@@ -18,7 +18,10 @@ const CHANGES: usize = 6;
 
 #[test]
 fn a_changed_number_in_a_shader_is_noticed() {
-    let Some(mut gpu) = device::executor("a_changed_number_in_a_shader_is_noticed") else { return };
+    // Shaders do more where windows are in workgroup memory.
+    let Some(mut gpu) = device::executor_with_windows("a_changed_number_in_a_shader_is_noticed", true) else {
+        return;
+    };
     let mut steps: BTreeMap<&str, Vec<Step>> = BTreeMap::new();
     sweep(|step| {
         let kept = steps.entry(step.kernel.name).or_default();

@@ -22,7 +22,9 @@ struct Tally {
 #[test]
 fn every_shader_agrees_with_its_cpu_twin() {
     let Some(mut gpu) = device::executor("every_shader_agrees_with_its_cpu_twin") else { return };
-    let Some(mut other) = device::executor_with_other_windows("every_shader_agrees_with_its_cpu_twin") else {
+    let shared = !gpu.device().shares_windows();
+    let Some(mut other) = device::executor_with_windows("every_shader_agrees_with_its_cpu_twin", shared)
+    else {
         return;
     };
     println!("device: {}", gpu.device().name());
