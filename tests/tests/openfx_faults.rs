@@ -3,6 +3,9 @@
 
 #![allow(unsafe_code, reason = "changing the environment, and calls that no host should make")]
 
+#[path = "openfx/allocations.rs"]
+mod allocations;
+
 use isophote_tests::library;
 use isophote_tests::ofx::effect::{Described, Wanted};
 use isophote_tests::ofx::interface::*;
@@ -10,9 +13,18 @@ use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::{Behaviour, Binary, Host, faults};
 use std::ffi::CStr;
 use std::ptr::null_mut;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 const SIZE: i32 = 32;
+/// Allocations that the runner of the tests may make or free meanwhile.
+const MOST_OF_OTHERS: i64 = 100;
+
+/// The tests run one after the other, whatever their runner does: they measure the whole process.
+fn alone() -> MutexGuard<'static, ()> {
+    static ALONE: Mutex<()> = Mutex::new(());
+    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 fn picture(layout: Layout) -> Picture {
     let values = (0..SIZE * SIZE * 4).map(|i| if i % 4 == 3 { 1.0 } else { (i * 37 % 101) as f32 / 101.0 });
@@ -28,6 +40,7 @@ fn resident() -> i64 {
 
 #[test]
 fn a_panic_becomes_a_status_and_the_host_goes_on() {
+    let _alone = alone();
     if !cfg!(debug_assertions) {
         return;
     }
@@ -66,6 +79,7 @@ fn a_panic_becomes_a_status_and_the_host_goes_on() {
 
 #[test]
 fn failures_are_told_once_through_whatever_messages_there_are() {
+    let _alone = alone();
     if !cfg!(debug_assertions) {
         return;
     }
@@ -100,6 +114,7 @@ fn failures_are_told_once_through_whatever_messages_there_are() {
 
 #[test]
 fn bad_calls_are_answered() {
+    let _alone = alone();
     let binary = Binary::open(library::path());
     let host = Host::new(Behaviour::default());
     for plugin in binary.plugins() {
@@ -122,8 +137,21 @@ fn bad_calls_are_answered() {
     }
 }
 
-/// Cycles are neither slower nor larger at the end than they were at first.
-fn steady(count: usize, mut cycle: impl FnMut()) {
+/// Allocations that are alive once threads that were told to end have ended.
+fn allocations_at_rest() -> i64 {
+    let (mut last, mut same) = (allocations::alive(), 0);
+    while same < 5 {
+        std::thread::sleep(Duration::from_millis(10));
+        let now = allocations::alive();
+        same = if now == last { same + 1 } else { 0 };
+        last = now;
+    }
+    last
+}
+
+/// Cycles leave nothing behind. Returns the time of the fastest among the first, and among the last: of many,
+/// since other work disturbs the others.
+fn steady(what: &str, count: usize, mut cycle: impl FnMut()) -> [Duration; 2] {
     let part = count / 4;
     let mut quarter = || {
         let mut least = Duration::MAX;
@@ -135,45 +163,99 @@ fn steady(count: usize, mut cycle: impl FnMut()) {
         least
     };
     let first = quarter();
-    let before = resident();
+    let before = (resident(), allocations_at_rest());
     quarter();
     quarter();
     let last = quarter();
-    let grown = resident() - before;
-    assert!(grown < 3 << 20, "{grown} bytes more after {count} cycles");
-    // The fastest of many, since other work disturbs the others.
+    let left = allocations_at_rest() - before.1;
+    println!("{what}: {left} allocations more, {first:?} at first, {last:?} at last");
+    // One for each cycle would be twelve times as many. Queues of threads may hold one more or less.
+    assert!(left <= part as i64 / 4, "{what}: {left} allocations more after {count} cycles");
+    let grown = resident() - before.0;
+    assert!(grown < 3 << 20, "{what}: {grown} bytes more after {count} cycles");
+    [first, last]
+}
+
+/// Cycles do not become slower.
+fn assert_as_fast([first, last]: [Duration; 2]) {
     assert!(last < first * 3 + Duration::from_millis(2), "{first:?} at first, {last:?} at last");
 }
 
 #[test]
-fn a_thousand_instances_leak_nothing() {
+fn allocations_of_this_process_are_counted() {
+    let _alone = alone();
+    if !cfg!(all(target_os = "linux", target_env = "gnu")) {
+        return;
+    }
+    assert!(allocations::are_counted());
+    let before = allocations::alive();
+    let kept: Vec<Box<u64>> = (0..1000).map(Box::new).collect();
+    assert!(allocations::alive() - before >= 1000 - MOST_OF_OTHERS);
+    drop(kept);
+    assert!((allocations::alive() - before).abs() <= MOST_OF_OTHERS);
+    // Those of the library as well.
     let binary = Binary::open(library::path());
     let host = Host::new(Behaviour::default());
-    let (plugin, layout) = (binary.plugin("org.isophote.gaussian"), Layout::default());
-    let described = Described::new(&host, plugin);
+    let described: Vec<_> = binary.plugins().iter().map(|plugin| Described::new(&host, *plugin)).collect();
+    let before = allocations::alive();
+    for plugin in binary.plugins() {
+        assert_eq!(plugin.act(kOfxActionUnload, null_mut(), None, None), kOfxStatOK);
+    }
+    // What it knew of the host, once for each effect.
+    assert!(before - allocations::alive() >= described.len() as i64 / 2);
+}
+
+/// Instances of each effect that are created, rendered and destroyed: more than a thousand altogether.
+const INSTANCES: usize = 48;
+
+#[test]
+fn a_thousand_instances_of_all_effects_leak_nothing() {
+    let _alone = alone();
+    let binary = Binary::open(library::path());
+    let host = Host::new(Behaviour::default());
+    let layout = Layout::default();
     let source = picture(layout);
-    steady(1000, || {
-        let instance = described.instance(kOfxImageEffectContextFilter);
-        instance.connect("Source", source.clone());
-        instance.render(layout, [SIZE; 2]);
-    });
+    assert!(binary.plugins().len() * INSTANCES > 1000);
+    let mut all = [Duration::ZERO; 2];
+    for plugin in binary.plugins() {
+        let described = Described::new(&host, *plugin);
+        let times = steady(&plugin.identifier(), INSTANCES, || {
+            let instance = described.instance(kOfxImageEffectContextFilter);
+            instance.connect("Source", source.clone());
+            instance.render(layout, [SIZE; 2]);
+        });
+        all = [all[0] + times[0], all[1] + times[1]];
+    }
+    assert_as_fast(all);
     assert!(faults().is_empty(), "{:?}", faults());
 }
 
 #[test]
 fn a_hundred_loads_leak_nothing() {
+    let _alone = alone();
     let layout = Layout::default();
-    let host = Host::new(Behaviour::default());
     let source = picture(layout);
-    steady(100, || {
+    let mut turn = 0;
+    let times = steady("loading", 100, || {
+        // A new one each time, since a host keeps the texts that it has handed out.
+        let host = Host::new(Behaviour::default());
         let binary = Binary::open(library::path());
-        let plugin = binary.plugin("org.isophote.gaussian");
+        for plugin in binary.plugins() {
+            let described = Described::new(&host, *plugin);
+            drop(described.instance(kOfxImageEffectContextGeneral));
+        }
+        // Each load renders another effect.
+        let plugin = binary.plugins()[turn % binary.plugins().len()];
+        turn += 1;
         {
             let instance = Described::new(&host, plugin).instance(kOfxImageEffectContextFilter);
             instance.connect("Source", source.clone());
             instance.render(layout, [SIZE; 2]);
         }
-        assert_eq!(plugin.act(kOfxActionUnload, null_mut(), None, None), kOfxStatOK);
+        for plugin in binary.plugins() {
+            assert_eq!(plugin.act(kOfxActionUnload, null_mut(), None, None), kOfxStatOK);
+        }
     });
+    assert_as_fast(times);
     assert!(faults().is_empty(), "{:?}", faults());
 }
