@@ -1,14 +1,15 @@
 // Second pass of the separable flow-based difference of Gaussians: a Gaussian of the response along
 // the stream line of the tensor field, then the threshold (section 4.5, 4.8).
-// Cost: per step one bilinear sample of the response and one (Euler) or two tensor samples.
+// Cost: per step one bilinear sample of the response and one (Euler, Adams-Bashforth) or two
+// tensor samples.
 #import stream
 #import edge_threshold
 
 struct Params {
     // Standard deviation along the line, pixels.
     sigma: f32,
-    // 1: second-order Runge-Kutta; 0: Euler.
-    midpoint: u32,
+    // 0: Euler; 1: second-order Runge-Kutta; 2: Adams-Bashforth.
+    integrator: u32,
     // How the response becomes an edge image, see edge_threshold.
     threshold: u32,
     epsilon: f32,
@@ -36,7 +37,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     for (var side = -1.0; side <= 1.0; side += 2.0) {
         var line = stream_begin(origin, side * tangent);
         for (var u = 1.0; u <= limit; u += 1.0) {
-            stream_step(&line, field, 1u, 1.0, params.midpoint != 0u);
+            stream_step(&line, field, 1u, 1.0, params.integrator);
             if stream_outside(0u, line.position) {
                 break;
             }

@@ -18,7 +18,7 @@ struct Params {
     edge: f32,
     // Standard deviation along the line, pixels.
     sigma: f32,
-    // 0: Euler; 1: second-order Runge-Kutta; 2: Cabral-Leedom.
+    // 0: Euler; 1: second-order Runge-Kutta; 2: Adams-Bashforth; 3: Cabral-Leedom.
     stepping: u32,
     // How the response becomes an edge image, see edge_threshold.
     threshold: u32,
@@ -33,6 +33,8 @@ struct Params {
 // Lightness less the lines that guides draw.
 @group(0) @binding(4) var marked: texture_2d<f32>;
 @group(0) @binding(5) var target_image: texture_storage_2d<r32float, write>;
+
+const CABRAL_LEEDOM = 3u;
 
 // Response across the tangent t at p, as (u alpha, alpha).
 fn across(p: vec2f, t: vec2f) -> vec2f {
@@ -67,14 +69,14 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let limit = floor(2.0 * params.sigma + 1e-3);
     let tangent = tensor_tangent(fetch(field, 1u, p));
     var sum = vec2f(0.0);
-    if params.stepping != 2u || limit <= 0.0 {
+    if params.stepping != CABRAL_LEEDOM || limit <= 0.0 {
         sum = across(centre(id), tangent);
     }
     // exp(-u^2 / 2 sigma^2) as a power of two; 1 / (sigma sqrt 2).
     let falloff = -0.72134752 / max(params.sigma * params.sigma, 1e-6);
     let inverse = 0.70710678 / max(params.sigma, 1e-3);
     for (var side = -1.0; side <= 1.0; side += 2.0) {
-        if params.stepping == 2u {
+        if params.stepping == CABRAL_LEEDOM {
             var line = pixel_line_begin(p, side * tangent);
             var u = 0.0;
             for (var i = 0; i < pixel_line_steps(limit) && u < limit; i++) {
@@ -92,7 +94,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
         var line = stream_begin(centre(id), side * tangent);
         for (var u = 1.0; u <= limit; u += 1.0) {
-            stream_step(&line, field, 1u, 1.0, params.stepping == 1u);
+            stream_step(&line, field, 1u, 1.0, params.stepping);
             if stream_outside(0u, line.position) {
                 break;
             }

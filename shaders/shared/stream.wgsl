@@ -9,12 +9,13 @@
 //
 //   var line = stream_begin(centre(id), side * stream_tangent(field, slot, centre(id)));
 //   for (u = h; u <= radius; u += h) {
-//       stream_step(&line, field, slot, h, midpoint);
+//       stream_step(&line, field, slot, h, integrator);
 //       if stream_outside(slot, line.position) { break; }
 //       ...
 //   }
 //
-// Every tensor is then read within `radius` of the centre: a kernel's support is floor(radius) + 1.
+// Every tensor is then read within `radius` of the centre, or h / 2 further by Adams' and Bashforth's method: a
+// kernel's support is floor(radius) + 1 for steps of one pixel.
 
 struct Stream {
     // Where the line has come to, absolute.
@@ -43,19 +44,34 @@ fn stream_tangent_along(field: texture_2d<f32>, slot: u32, p: vec2f, direction: 
     return tensor_tangent_along(tensor.x - tensor.z, tensor.y, direction);
 }
 
-// Moves by `h` pixels: Euler's method (2.176, 2.177) or, with `midpoint`, the second-order
-// Runge-Kutta method (2.182).
-fn stream_step(line: ptr<function, Stream>, field: texture_2d<f32>, slot: u32, h: f32, midpoint: bool) {
+// Euler's method (2.176, 2.177).
+const STREAM_EULER = 0u;
+// The midpoint method, a second-order Runge-Kutta method (2.182).
+const STREAM_MIDPOINT = 1u;
+// The two-step method of Adams and Bashforth, of second order as well; its first step is the midpoint
+// method's.
+const STREAM_ADAMS_BASHFORTH = 2u;
+
+// Moves by `h` pixels.
+fn stream_step(line: ptr<function, Stream>, field: texture_2d<f32>, slot: u32, h: f32, integrator: u32) {
     let from_here = (*line).position;
     let last = (*line).direction;
+    let begins = (*line).begins;
     var next = Along(last, 1.0);
-    if !(*line).begins {
+    if !begins {
         next = stream_tangent_along(field, slot, from_here, last);
     }
-    if midpoint {
+    if integrator == STREAM_ADAMS_BASHFORTH && !begins {
+        let there = (1.5 * h) * next.tangent + ((-0.5 * h) * last + from_here);
+        *line = Stream(there, next.tangent, next.cosine, false);
+        return;
+    }
+    if integrator != STREAM_EULER {
         next = stream_tangent_along(field, slot, from_here + (0.5 * h) * next.tangent, last);
     }
-    *line = Stream(from_here + h * next.tangent, next.tangent, next.cosine, false);
+    // After its first step the two-step method still asks for the tangent at the beginning.
+    let direction = select(next.tangent, last, integrator == STREAM_ADAMS_BASHFORTH);
+    *line = Stream(from_here + h * next.tangent, direction, next.cosine, false);
 }
 
 // True when p has left the picture of input `slot`.

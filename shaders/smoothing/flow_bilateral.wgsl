@@ -84,7 +84,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         var last = first;
         var last_u = 0.0;
         for (var u = 1.0; u <= params.radius; u += 1.0) {
-            stream_step(&line, tensors, INPUT_TENSORS, 1.0, params.midpoint != 0u);
+            stream_step(&line, tensors, INPUT_TENSORS, 1.0, params.midpoint);
             var back = 0.0;
             if centres {
                 back = distance_back(line.position, line.direction);

@@ -34,7 +34,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     for (var side = -1.0; side <= 1.0; side += 2.0) {
         var line = stream_begin(origin, side * tangent);
         for (var u = 1.0; u <= limit; u += 1.0) {
-            stream_step(&line, tensors, INPUT_TENSORS, 1.0, true);
+            stream_step(&line, tensors, INPUT_TENSORS, 1.0, STREAM_MIDPOINT);
             if stream_outside(0u, line.position) {
                 break;
             }

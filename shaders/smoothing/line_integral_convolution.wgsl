@@ -1,6 +1,7 @@
 // Line integral convolution of a colour with a Gaussian (2.186) along the stream lines of a tensor
 // field, with the length adapted to the anisotropy (§ 6.3.1) or to the curvature (§ 6.3.2).
-// Cost: per step one bilinear colour sample and one (Euler) or two tensor samples with their tangents.
+// Cost: per step one bilinear colour sample and one (Euler, Adams-Bashforth) or two tensor samples with
+// their tangents.
 #import coverage
 #import stream
 
@@ -11,8 +12,8 @@ struct Params {
     step: f32,
     // A side ends at a step that turns by more than the angle of this cosine.
     least_turn: f32,
-    // 1: second-order Runge-Kutta; 0: Euler.
-    midpoint: u32,
+    // 0: Euler; 1: second-order Runge-Kutta; 2: Adams-Bashforth.
+    integrator: u32,
     // 0: none; 1: anisotropy; 2: angle.
     adapt: u32,
 }
@@ -52,7 +53,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         var line = stream_begin(origin, side * tangent);
         var u = 0.0;
         while u + params.step <= limit {
-            stream_step(&line, field, INPUT_FIELD, params.step, params.midpoint != 0u);
+            stream_step(&line, field, INPUT_FIELD, params.step, params.integrator);
             var du = params.step;
             if params.adapt == 2u {
                 du = max(du, acos(min(line.turn, 1.0)) * radius / 3.14159265);

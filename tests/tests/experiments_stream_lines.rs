@@ -42,14 +42,17 @@ fn euler_drifts_outwards_and_runge_kutta_does_not() {
         7,
         "Figure 2.31",
         "Drift outwards on a circular field, pixels, sigma 8",
-        &["radius", "Euler", "Runge-Kutta", "Cabral-Leedom"],
+        &["radius", "Euler", "Runge-Kutta", "Adams-Bashforth", "Cabral-Leedom"],
     );
     for radius in [16.0, 24.0, 36.0, 50.0] {
-        let [euler, rk2, cabral] = ["euler", "rk2", "cabral_leedom"].map(|i| drift(i, radius));
-        table.row(&[format!("{radius}"), format!("{euler:.2}"), format!("{rk2:.2}"), format!("{cabral:.2}")]);
+        let [euler, rk2, two_step, cabral] =
+            ["euler", "rk2", "adams_bashforth", "cabral_leedom"].map(|i| drift(i, radius));
+        let drifts = [euler, rk2, two_step, cabral].map(|drift| format!("{drift:.2}"));
+        table.row(&[&[format!("{radius}")], &drifts[..]].concat());
         // Each step of length h leads h^2 / 2r outwards.
         assert!(euler > 0.8 * 8.0 * 0.7 / (2.0 * radius), "Euler drifts");
         assert!(rk2.abs() < 0.1 * euler, "the second order drifts ten times less: {rk2} to {euler}");
+        assert!(two_step.abs() < 0.1 * euler, "and so does the two-step method: {two_step} to {euler}");
         assert!(cabral.abs() < euler, "directions of the pixels themselves do not lead outwards: {cabral}");
     }
     table.print();

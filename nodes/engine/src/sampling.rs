@@ -51,75 +51,6 @@ pub fn sample_linear4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S
     transposed(pixels)
 }
 
-/// Eight positions that keep a pixel's distance from the edges: the pixels above and to the left of them,
-/// and the shares of the next ones. Images that are sampled at the same positions share it.
-#[derive(Clone, Copy)]
-pub struct InnerPlace<S: Simd> {
-    column: i32x8<S>,
-    row: i32x8<S>,
-    /// Share of the pixels to the right, 0..1.
-    pub right: f32x8<S>,
-    /// Share of the pixels below, 0..1.
-    pub below: f32x8<S>,
-}
-
-impl<S: Simd> InnerPlace<S> {
-    /// The place of positions (x, y).
-    #[inline(always)]
-    pub fn new(x: f32x8<S>, y: f32x8<S>) -> Self {
-        let (x, y) = (x - 0.5, y - 0.5);
-        // Inner places are positive, where cutting off the fraction is rounding down, and faster.
-        let (column, row) = (x.to_int::<i32x8<S>>(), y.to_int::<i32x8<S>>());
-        let (left, top) = (column.to_float::<f32x8<S>>(), row.to_float::<f32x8<S>>());
-        Self { column, row, right: x - left, below: y - top }
-    }
-
-    /// Where the pixels above and to the left begin in the data of `view`.
-    #[inline(always)]
-    pub fn offsets(&self, view: &View<'_>) -> [i32; 8] {
-        let (held, stride, channels) = (view.window(), view.stride() as i32, view.channels() as i32);
-        let first = held.y0 * stride + held.x0 * channels;
-        (self.row * stride + self.column * channels - first).to_array()
-    }
-}
-
-/// [`sample_linear4`] at an inner place.
-#[inline(always)]
-pub fn sample_inner4<S: Simd>(simd: S, view: &View<'_>, place: &InnerPlace<S>) -> [f32x8<S>; 4] {
-    let (at, stride, fx, fy) =
-        (place.offsets(view), view.stride() as u32 as usize, spread(place.right), spread(place.below));
-    // Two slices of one length share the check of the range.
-    let (data, mut pixels) = (view.data(), [f32x8::splat(simd, 0.0); 4]);
-    let (upper, lower) = (&data[..data.len() - stride], &data[stride..]);
-    for i in 0..4 {
-        let (low, high) = (at[i] as u32 as usize, at[i + 4] as u32 as usize);
-        let (top, bottom) = (&upper[low..low + 8], &lower[low..low + 8]);
-        let (top_high, bottom_high) = (&upper[high..high + 8], &lower[high..high + 8]);
-        let a = load_pixels(simd, top, top_high);
-        let b = load_pixels(simd, &top[4..], &top_high[4..]);
-        let c = load_pixels(simd, bottom, bottom_high);
-        let d = load_pixels(simd, &bottom[4..], &bottom_high[4..]);
-        pixels[i] = bilinear([a, b, c, d], fx[i], fy[i]);
-    }
-    transposed(pixels)
-}
-
-/// [`sample_linear2`] at an inner place.
-#[inline(always)]
-pub fn sample_inner2<S: Simd>(simd: S, view: &View<'_>, place: &InnerPlace<S>) -> [f32x8<S>; 2] {
-    let (at, stride, below) = (place.offsets(view), view.stride() as u32 as usize, spread(place.below));
-    let (data, mut pixels) = (view.data(), [f32x8::splat(simd, 0.0); 4]);
-    let (upper, lower) = (&data[..data.len() - stride], &data[stride..]);
-    for i in 0..4 {
-        let (low, high) = (at[i] as u32 as usize, at[i + 4] as u32 as usize);
-        let a = load_pixels(simd, &upper[low..low + 4], &upper[high..high + 4]);
-        let b = load_pixels(simd, &lower[low..low + 4], &lower[high..high + 4]);
-        pixels[i] = (b - a).mul_add(below[i], a);
-    }
-    let [l0, l1, r0, r1] = transposed(pixels);
-    [(r0 - l0).mul_add(place.right, l0), (r1 - l1).mul_add(place.right, l1)]
-}
-
 #[inline(always)]
 fn bilinear<S: Simd>([a, b, c, d]: [f32x8<S>; 4], fx: f32x8<S>, fy: f32x8<S>) -> f32x8<S> {
     let top = (b - a).mul_add(fx, a);
@@ -302,20 +233,5 @@ mod tests {
         });
         assert_eq!(first, got);
         assert_eq!(second, got.map(|v| 9.0 - v));
-    }
-
-    #[test]
-    fn inner_samples_are_those_of_anywhere() {
-        let values = |channels: u32| (0..30 * 9 * channels).map(|i| ((i * 7919) % 1013) as f32 / 7.0);
-        let [two, four] =
-            [2, 4].map(|channels| Image::from_vec(30, 9, channels, values(channels).collect()).unwrap());
-        dispatch!(Level::new(), simd => {
-            let x = f32x8::from_slice(simd, &[1.5, 2.0, 28.4, 13.7, 9.01, 20.0, 3.5, 27.99]);
-            let y = f32x8::from_slice(simd, &[1.5, 7.4, 2.0, 3.3, 4.5, 5.99, 6.0, 7.1]);
-            let (two, four) = (View::new(&two, [30, 9]), View::new(&four, [30, 9]));
-            let (place, bits) = (InnerPlace::new(x, y), |v: f32x8<_>| v.to_array());
-            assert_eq!(sample_inner2(simd, &two, &place).map(bits), sample_linear2(simd, &two, x, y).map(bits));
-            assert_eq!(sample_inner4(simd, &four, &place).map(bits), sample_linear4(simd, &four, x, y).map(bits));
-        });
     }
 }

@@ -20,6 +20,7 @@ pub mod rows;
 pub mod sectors;
 pub mod stream_line;
 pub mod support;
+pub mod surroundings;
 pub mod symmetric;
 pub mod tensor_algebra;
 pub mod value_noise;

@@ -5,26 +5,52 @@
 //! cancel. A line is traced from its centre in one direction and then in the other. Lanes whose line
 //! has ended stay where they are while the others go on.
 //!
-//! Cost: a step samples one tensor (Euler) or two (second order), bilinearly, and finds their axes;
-//! the first step saves one.
+//! Cost: a step samples one tensor (Euler, Adams-Bashforth) or two (midpoint), bilinearly, and finds their
+//! axes; the first step saves one of two or adds one of one.
 
+use crate::kernels::surroundings::{Frame, Place, Surroundings, TWO};
 use crate::kernels::tensor_algebra::{tangent, tangent_along};
+use isophote_engine::View;
 use isophote_engine::fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
-use isophote_engine::math::{InnerPlace, sample_inner2, sample_linear2, sample_linear4};
-use isophote_engine::{Rect, View};
+use isophote_engine::math::{sample_linear2, sample_linear4};
+
+/// How a stream line goes on to its next point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Integrator {
+    /// Euler's method, first order (2.176, 2.177).
+    Euler = 0,
+    /// The midpoint method, a second-order Runge-Kutta method (2.182).
+    Midpoint = 1,
+    /// The two-step method of Adams and Bashforth, x + h (3 t - t') / 2 with the tangents t here and t' one step
+    /// before: second order as well, and one sample of the field a step instead of two. Its first step is
+    /// the midpoint method's.
+    AdamsBashforth = 2,
+}
+
+impl Integrator {
+    /// The integrator that shaders know by this number.
+    pub fn of(number: u32) -> Self {
+        match number {
+            0 => Self::Euler,
+            1 => Self::Midpoint,
+            _ => Self::AdamsBashforth,
+        }
+    }
+}
 
 /// A tensor field and how its stream lines are stepped.
 ///
 /// As long as steps are only taken up to an arc length of `radius`, every tensor is read within
-/// floor(radius) + 1 pixels of the centre in x and in y.
+/// floor(radius) + 1 pixels of the centre in x and in y; by Adams' and Bashforth's method, which goes up to half
+/// a step further, within floor(radius + h / 2) + 1.
 #[derive(Clone, Copy, Debug)]
 pub struct StreamField<'a> {
     /// Tensors (E, F, G, w), or as much of them as orientation needs, (E - G, F).
     pub tensors: View<'a>,
     /// Step size h in pixels.
     pub step: f32,
-    /// True for the second-order Runge-Kutta method (2.182), false for Euler's (2.176, 2.177).
-    pub midpoint: bool,
+    /// How lines are stepped.
+    pub integrator: Integrator,
 }
 
 /// Eight lines, each traced in one direction.
@@ -74,6 +100,26 @@ impl<S: Simd> Stream<S> {
         self.straight(h);
     }
 
+    /// A step of the method of Adams and Bashforth, where the field is `here`.
+    #[inline(always)]
+    fn extrapolate(&mut self, [difference, f]: [f32x8<S>; 2], h: f32x8<S>) {
+        let ([tx, ty], turn) = tangent_along(difference, f, self.direction);
+        let (h, back) = (h * 1.5, h * -0.5);
+        self.x = h.mul_add(tx, back.mul_add(self.direction[0], self.x));
+        self.y = h.mul_add(ty, back.mul_add(self.direction[1], self.y));
+        self.direction = [tx, ty];
+        self.turn = turn;
+    }
+
+    /// A first step of length `h` along the tangent of the field halfway, after which the tangent at its
+    /// beginning is still the last one.
+    #[inline(always)]
+    fn set_out(&mut self, halfway: [f32x8<S>; 2], h: f32x8<S>) {
+        let first = self.direction;
+        self.follow(halfway, h);
+        self.direction = first;
+    }
+
     /// A step of length `h` in the direction of the last one.
     #[inline(always)]
     fn straight(&mut self, h: f32x8<S>) {
@@ -105,131 +151,130 @@ impl StreamField<'_> {
         [e - g, f]
     }
 
-    /// Moves the `active` lanes by one step.
-    #[inline(always)]
-    pub fn advance<S: Simd>(&self, simd: S, line: &mut Stream<S>, active: mask32x8<S>) {
-        let h = self.steps(simd, active);
-        let begins = line.begins;
-        let mut field = [h; 2];
-        if !begins {
-            field = self.at(simd, line.x, line.y);
-        }
-        if self.midpoint {
-            let [x, y] = line.halfway(field, h);
-            line.follow(self.at(simd, x, y), h);
-        } else if begins {
-            line.straight(h);
-        } else {
-            line.follow(field, h);
-        }
-    }
-
-    /// Moves both sides of eight lines by one step.
+    /// Moves the `active` lanes of `N` times eight lines by one step.
     ///
-    /// A step is a long chain of operations that wait for each other; two independent ones, side by
-    /// side, take little longer than one.
+    /// A step is a long chain of operations that wait for each other; independent ones, side by side,
+    /// take little longer than one.
     #[inline(always)]
-    pub fn advance_both<S: Simd>(&self, simd: S, lines: &mut [Stream<S>; 2], active: [mask32x8<S>; 2]) {
-        let h = [self.steps(simd, active[0]), self.steps(simd, active[1])];
-        let begins = lines[0].begins;
-        let mut field = [h; 2];
-        if !begins {
-            field = [self.at(simd, lines[0].x, lines[0].y), self.at(simd, lines[1].x, lines[1].y)];
-        }
-        if self.midpoint {
-            let [x0, y0] = lines[0].halfway(field[0], h[0]);
-            let [x1, y1] = lines[1].halfway(field[1], h[1]);
-            field = [self.at(simd, x0, y0), self.at(simd, x1, y1)];
-        } else if begins {
-            lines[0].straight(h[0]);
-            lines[1].straight(h[1]);
-            return;
-        }
-        lines[0].follow(field[0], h[0]);
-        lines[1].follow(field[1], h[1]);
-    }
-
-    /// Moves all lanes of `N` times eight lines by one step, from places where the field is `here`; what
-    /// is there does not matter for the first step.
-    ///
-    /// The lines are inner ones, which stay off the picture's edges, and the field is (E - G, F). The
-    /// arithmetic is that of [`StreamField::advance_both`] without what the edges ask for; whoever takes
-    /// samples at the new positions asks for the field there with [`StreamField::at_inner`] as well,
-    /// so that both share the place and the wait.
-    #[inline(always)]
-    pub fn advance_inner<S: Simd, const N: usize>(
+    pub fn advance<S: Simd, const N: usize>(
         &self,
         simd: S,
         lines: &mut [Stream<S>; N],
-        here: &[[f32x8<S>; 2]; N],
+        active: [mask32x8<S>; N],
     ) {
-        let h = f32x8::splat(simd, self.step);
-        let begins = lines[0].begins;
-        if self.midpoint {
-            // In stages: what waits in one line is filled by the same of the others.
-            let mut middle = *here;
+        let zero = f32x8::splat(simd, 0.0);
+        let (mut h, mut here) = ([zero; N], [[zero; 2]; N]);
+        for i in 0..N {
+            h[i] = active[i].select(f32x8::splat(simd, self.step), zero);
+        }
+        if !lines[0].begins {
             for i in 0..N {
-                middle[i] = lines[i].halfway(here[i], h);
-            }
-            for i in 0..N {
-                middle[i] = self.at_inner(simd, &InnerPlace::new(middle[i][0], middle[i][1]));
-            }
-            for i in 0..N {
-                lines[i].follow(middle[i], h);
-            }
-        } else {
-            for i in 0..N {
-                if begins {
-                    lines[i].straight(h);
-                } else {
-                    lines[i].follow(here[i], h);
-                }
+                here[i] = self.at(simd, lines[i].x, lines[i].y);
             }
         }
-    }
-
-    /// (E - G, F) at an inner place of a field of these two.
-    #[inline(always)]
-    pub fn at_inner<S: Simd>(&self, simd: S, place: &InnerPlace<S>) -> [f32x8<S>; 2] {
-        sample_inner2(simd, &self.tensors, place)
-    }
-
-    /// True when lines of length `radius` through `len` pixels from (x, y) on stay off the edges.
-    #[inline(always)]
-    pub fn is_inner(&self, x: i32, y: i32, len: i32, radius: i32) -> bool {
-        let inner = self.inner(radius);
-        x >= inner.x0 && y >= inner.y0 && x + len <= inner.x1 && y < inner.y1
-    }
-
-    /// The pixels through which lines of length `radius` stay off the edges; empty (x1 below x0) when there
-    /// are none, or when the field holds more than (E - G, F).
-    #[inline(always)]
-    pub fn inner(&self, radius: i32) -> Rect {
-        let ([w, h], margin) = (self.tensors.full(), radius + 2);
-        if self.tensors.channels() != 2 {
-            return Rect { x0: 0, y0: 0, x1: 0, y1: 0 };
-        }
-        Rect { x0: margin, y0: margin, x1: w - margin, y1: h - margin }
-    }
-
-    #[inline(always)]
-    fn steps<S: Simd>(&self, simd: S, active: mask32x8<S>) -> f32x8<S> {
-        active.select(f32x8::splat(simd, self.step), f32x8::splat(simd, 0.0))
+        step(
+            self.integrator,
+            lines,
+            h,
+            here,
+            #[inline(always)]
+            |x, y| self.at(simd, x, y),
+        );
     }
 
     /// Lanes whose line lies inside the picture.
     #[inline(always)]
-    pub fn inside<S: Simd>(&self, simd: S, line: &Stream<S>) -> mask32x8<S> {
-        self.holds(simd, line.x, line.y)
+    pub fn inside<S: Simd>(&self, line: &Stream<S>) -> mask32x8<S> {
+        holds(self.tensors.full(), line.x, line.y)
+    }
+}
+
+/// Moves lines by steps of length `h` from places where the field is `here`, which does not matter for their
+/// first step; `at` tells what it is elsewhere.
+#[inline(always)]
+fn step<S: Simd, const N: usize>(
+    integrator: Integrator,
+    lines: &mut [Stream<S>; N],
+    h: [f32x8<S>; N],
+    here: [[f32x8<S>; 2]; N],
+    at: impl Fn(f32x8<S>, f32x8<S>) -> [f32x8<S>; 2],
+) {
+    let begins = lines[0].begins;
+    let mut field = here;
+    // In stages: what waits in one line is filled by the same of the others.
+    if integrator == Integrator::Midpoint || (begins && integrator == Integrator::AdamsBashforth) {
+        for i in 0..N {
+            field[i] = lines[i].halfway(here[i], h[i]);
+        }
+        for i in 0..N {
+            field[i] = at(field[i][0], field[i][1]);
+        }
+    }
+    for i in 0..N {
+        match integrator {
+            Integrator::Euler if begins => lines[i].straight(h[i]),
+            Integrator::Euler | Integrator::Midpoint => lines[i].follow(field[i], h[i]),
+            Integrator::AdamsBashforth if begins => lines[i].set_out(field[i], h[i]),
+            Integrator::AdamsBashforth => lines[i].extrapolate(field[i], h[i]),
+        }
+    }
+}
+
+/// Lanes whose position lies inside a picture of so many pixels.
+#[inline(always)]
+pub fn holds<S: Simd>([w, h]: [i32; 2], x: f32x8<S>, y: f32x8<S>) -> mask32x8<S> {
+    let simd = x.simd;
+    let (w, h) = (f32x8::splat(simd, w as f32), f32x8::splat(simd, h as f32));
+    let zero = f32x8::splat(simd, 0.0);
+    x.simd_ge(zero) & x.simd_lt(w) & y.simd_ge(zero) & y.simd_lt(h)
+}
+
+/// A tensor field around one tile, for many lines that are followed at once.
+#[derive(Clone, Copy, Debug)]
+pub struct NearField<'a> {
+    /// What part of the picture is held.
+    pub frame: &'a Frame,
+    /// (E - G, F).
+    pub tensors: &'a Surroundings<TWO>,
+    /// Step size h in pixels.
+    pub step: f32,
+    /// How lines are stepped.
+    pub integrator: Integrator,
+}
+
+impl NearField<'_> {
+    /// Moves all lanes of `N` times eight lines by one step from the places where they are.
+    ///
+    /// The arithmetic is that of [`StreamField::advance`], but that no lane stays where it is: lines that
+    /// have ended go on within what is held.
+    #[inline(always)]
+    pub fn advance<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        lines: &mut [Stream<S>; N],
+        places: &[Place<S>; N],
+    ) {
+        let h = [f32x8::splat(simd, self.step); N];
+        let mut here = [[f32x8::splat(simd, 0.0); 2]; N];
+        if !lines[0].begins {
+            for i in 0..N {
+                here[i] = self.at(simd, &places[i]);
+            }
+        }
+        step(
+            self.integrator,
+            lines,
+            h,
+            here,
+            #[inline(always)]
+            |x, y| self.at(simd, &Place::new(self.frame, x, y)),
+        );
     }
 
-    /// Lanes whose position lies inside the picture.
+    /// (E - G, F) at a place.
     #[inline(always)]
-    pub fn holds<S: Simd>(&self, simd: S, x: f32x8<S>, y: f32x8<S>) -> mask32x8<S> {
-        let [w, h] = self.tensors.full();
-        let (w, h) = (f32x8::splat(simd, w as f32), f32x8::splat(simd, h as f32));
-        let zero = f32x8::splat(simd, 0.0);
-        x.simd_ge(zero) & x.simd_lt(w) & y.simd_ge(zero) & y.simd_lt(h)
+    pub fn at<S: Simd>(&self, simd: S, place: &Place<S>) -> [f32x8<S>; 2] {
+        self.tensors.sample(simd, place)
     }
 }
 
@@ -272,43 +317,50 @@ mod tests {
     }
 
     /// By how much lines of `steps` steps leave their circles, summed over eight radii.
-    fn drift(midpoint: bool, steps: usize) -> f32 {
+    fn drift(integrator: Integrator, steps: usize) -> f32 {
         let image = circles();
         let tensors = View::new(&image, [SIDE as i32; 2]);
-        let field = StreamField { tensors, step: 1.0, midpoint };
+        let field = StreamField { tensors, step: 1.0, integrator };
         let middle = SIDE as f32 / 2.0;
         dispatch!(Level::new(), simd => {
             let start = f32x8::from_fn(simd, |lane| 10.0 + 3.0 * lane as f32);
             let (x, y) = (start + middle, f32x8::splat(simd, middle));
-            let mut line = Stream::begin(x, y, field.tangent(simd, x, y));
+            let mut line = [Stream::begin(x, y, field.tangent(simd, x, y))];
             for _ in 0..steps {
-                field.advance(simd, &mut line, mask32x8::splat(simd, true));
+                field.advance(simd, &mut line, [mask32x8::splat(simd, true)]);
             }
-            let (x, y) = (line.x - middle, line.y - middle);
+            let (x, y) = (line[0].x - middle, line[0].y - middle);
             let off = (x * x + y * y).sqrt() - start;
             off.to_array().iter().sum()
         })
     }
 
     #[test]
-    fn euler_drifts_outwards_and_the_midpoint_method_ten_times_less() {
-        let (euler, midpoint) = (drift(false, 30), drift(true, 30));
+    fn euler_drifts_outwards_and_methods_of_second_order_ten_times_less() {
+        let [euler, midpoint, two_step] =
+            [Integrator::Euler, Integrator::Midpoint, Integrator::AdamsBashforth].map(|i| drift(i, 30));
         assert!(euler > 2.0, "Euler drifts by {euler}");
-        assert!(midpoint.abs() * 10.0 < euler, "the midpoint method drifts by {midpoint}, Euler by {euler}");
+        for (method, drift) in [("midpoint", midpoint), ("Adams-Bashforth", two_step)] {
+            assert!(drift.abs() * 10.0 < euler, "{method} drifts by {drift}, Euler by {euler}");
+        }
     }
 
     #[test]
     fn ended_lanes_stay_where_they_are() {
         let image = circles();
-        let field = StreamField { tensors: View::new(&image, [SIDE as i32; 2]), step: 1.0, midpoint: true };
+        let field = StreamField {
+            tensors: View::new(&image, [SIDE as i32; 2]),
+            step: 1.0,
+            integrator: Integrator::Midpoint,
+        };
         dispatch!(Level::new(), simd => {
             let at = centres(simd, 40, 9, 90);
-            let mut line = Stream::begin(at[0], at[1], field.tangent(simd, at[0], at[1]));
-            let active = line.x.simd_lt(f32x8::splat(simd, 44.0));
+            let mut line = [Stream::begin(at[0], at[1], field.tangent(simd, at[0], at[1]))];
+            let active = line[0].x.simd_lt(f32x8::splat(simd, 44.0));
             for _ in 0..3 {
-                field.advance(simd, &mut line, active);
+                field.advance(simd, &mut line, [active]);
             }
-            let moved = ((line.x - at[0]) * (line.x - at[0]) + (line.y - at[1]) * (line.y - at[1])).sqrt();
+            let moved = ((line[0].x - at[0]) * (line[0].x - at[0]) + (line[0].y - at[1]) * (line[0].y - at[1])).sqrt();
             assert!(moved.to_array()[..4].iter().all(|m| (2.8..=3.0001).contains(m)));
             assert_eq!(moved.to_array()[4..], [0.0; 4]);
         });

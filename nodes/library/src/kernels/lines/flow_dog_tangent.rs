@@ -1,15 +1,16 @@
 //! Second pass of the separable flow-based difference of Gaussians: a Gaussian of the response along
 //! the stream line of the tensor field (§ 2.9, 4.5), then the threshold (4.8).
 //!
-//! Cost: 4 sigma_m steps per pixel, each one bilinear sample of two values and one (Euler) or two
-//! samples of orientation with their tangents, about 100 operations.
+//! Cost: 4 sigma_m steps per pixel, each one bilinear sample of two values and one (Euler,
+//! Adams-Bashforth) or two samples of orientation with their tangents, about 70 or 110 operations.
 
-use crate::kernels::blocks::{BLOCK, Block, TILE, write1};
+use crate::kernels::blocks::{BLOCK, Block, for_blocks_in_tiles, write1};
 use crate::kernels::edge_threshold::{LEAST_COVERAGE, Xdog, edge_threshold, edge_uncovered};
-use crate::kernels::stream_line::{Stream, StreamField, centres};
+use crate::kernels::stream_line::{Integrator, NearField, Stream, StreamField, centres, holds};
+use crate::kernels::surroundings::{Frame, Place, Surroundings, TWO};
 use crate::kernels::tensor_algebra::tangent;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, mask32x8, prelude::*};
-use isophote_engine::math::{InnerPlace, sample_inner2, sample_linear2};
+use isophote_engine::math::sample_linear2;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::params! {
@@ -17,8 +18,8 @@ crate::params! {
     pub struct Params for flow_dog_tangent {
         /// Standard deviation along the line, pixels.
         pub sigma: f32,
-        /// 1: second-order Runge-Kutta; 0: Euler.
-        pub midpoint: u32,
+        /// 0: Euler; 1: second-order Runge-Kutta; 2: Adams-Bashforth.
+        pub integrator: u32,
         /// [`Threshold`](crate::kernels::edge_threshold::Threshold) as a number.
         pub threshold: u32,
         /// Response from which on there is no line.
@@ -32,7 +33,7 @@ crate::kernel!(flow_dog_tangent {
     cpu: run,
     cost: |params| {
         let p: Params = bytemuck::pod_read_unaligned(params);
-        2.0 * f64::from(radius(p.sigma)) * if p.midpoint != 0 { 110.0 } else { 60.0 } + 30.0
+        2.0 * f64::from(radius(p.sigma)) * if p.integrator == Integrator::Midpoint as u32 { 110.0 } else { 70.0 } + 30.0
     },
     tolerance: Tolerance {
         absolute: 2e-3,
@@ -55,17 +56,17 @@ pub fn edges(
     response: ImageId,
     field: ImageId,
     sigma: f32,
-    midpoint: bool,
+    integrator: Integrator,
     xdog: &Xdog,
 ) -> ImageId {
     let params = Params {
         sigma,
-        midpoint: midpoint.into(),
+        integrator: integrator as u32,
         threshold: xdog.threshold as u32,
         epsilon: xdog.epsilon,
         phi: xdog.phi,
     };
-    // A bilinear sample at distance L reads one pixel further.
+    // A bilinear sample at distance L reads one pixel further, and so does one half a step beyond.
     let support = Support::Pixels(radius(sigma) as u32 + 1);
     plan.pass(&KERNEL, &[response, field], &params, Class::Field, support)
 }
@@ -78,106 +79,117 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 #[inline(always)]
 fn smooth<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let (response, tensors) = (&pass.inputs[0], &pass.inputs[1]);
-    let field = StreamField { tensors: *tensors, step: 1.0, midpoint: params.midpoint != 0 };
     let falloff = -0.721_347_52 / (params.sigma * params.sigma).max(1e-6);
     // All lanes share the arc length, and so the weights.
     let weights: Vec<f32> =
         (1..=radius(params.sigma) as i32).map(|u| (falloff * (u * u) as f32).exp2()).collect();
-    let (window, reach) = (band.window, weights.len() as i32);
-    let mut start = window.x0;
-    while start < window.x1 {
-        let end = (start + TILE).min(window.x1);
-        for y in window.y0..window.y1 {
-            let row = band.row_mut(0, y);
-            let mut x = start;
-            while x < end {
-                let at = (x - window.x0) as usize;
-                let len = (end - x).min(2 * BLOCK as i32);
-                if len == 2 * BLOCK as i32 && field.is_inner(x, y, len, reach) {
-                    inner(simd, params, response, &field, &weights, [x, y], &mut row[at..at + 2 * BLOCK]);
-                    x += len;
-                    continue;
+    let reach = weights.len() as i32 + 1;
+    let integrator = Integrator::of(params.integrator);
+    if !Frame::suits(reach) {
+        let field = StreamField { tensors: *tensors, step: 1.0, integrator };
+        for_blocks_in_tiles::<1>(band, |block, target| {
+            write1(line(params, far(simd, response, &field, &weights, &block)), target);
+        });
+        return;
+    }
+    let (mut responses, mut field) = (Surroundings::default(), Surroundings::default());
+    let window = band.window;
+    for frame in Frame::tiles(window, reach) {
+        responses.load(response, &frame);
+        field.load(tensors, &frame);
+        let near = NearField { frame: &frame, tensors: &field, step: 1.0, integrator };
+        let edges = frame.meets_edges(tensors.full()).then_some(tensors.full());
+        let columns = (frame.tile.x0 - window.x0) as usize..(frame.tile.x1 - window.x0) as usize;
+        for y in frame.tile.y0..frame.tile.y1 {
+            let row = &mut band.row_mut(0, y)[columns.clone()];
+            for (i, target) in row.chunks_mut(2 * BLOCK).enumerate() {
+                let x = frame.tile.x0 + (2 * BLOCK * i) as i32;
+                let len = target.len();
+                // A block behind the end of the row does the first one's work again.
+                let second = if len > BLOCK { BLOCK } else { 0 };
+                let blocks = [
+                    Block { x, y, len: len.min(BLOCK) },
+                    Block { x: x + second as i32, y, len: (len - second).min(BLOCK) },
+                ];
+                let sums = sums(simd, [response, tensors], &responses, &near, edges, &weights, &blocks);
+                for (sum, target) in sums.into_iter().zip(target.chunks_mut(BLOCK)) {
+                    write1(line(params, sum), target);
                 }
-                let block = Block { x, y, len: BLOCK.min(len as usize) };
-                let target = &mut row[at..at + block.len];
-                clamped(simd, params, response, &field, &weights, &block, target);
-                x += BLOCK as i32;
             }
         }
-        start = end;
     }
 }
 
-/// Sixteen pixels from `at` on whose lines stay off the picture's edges.
+/// Weighted sums of (u alpha, alpha) along the lines through two blocks; `edges` is the size of the picture
+/// where lines may leave it.
 ///
 /// A step is a long chain of operations that wait for each other; four of them, two blocks with two sides
 /// each, fill the time.
 #[inline(always)]
-fn inner<S: Simd>(
+fn sums<S: Simd>(
     simd: S,
-    params: &Params,
-    response: &View<'_>,
-    field: &StreamField<'_>,
+    [response, tensors]: [&View<'_>; 2],
+    responses: &Surroundings<TWO>,
+    field: &NearField<'_>,
+    edges: Option<[i32; 2]>,
     weights: &[f32],
-    [x, y]: [i32; 2],
-    target: &mut [f32],
-) {
-    let blocks = [Block { x, y, len: BLOCK }, Block { x: x + BLOCK as i32, y, len: BLOCK }];
-    let ([a, b], [c, d]) = (begun(simd, field, &blocks[0]), begun(simd, field, &blocks[1]));
+    blocks: &[Block; 2],
+) -> [[f32x8<S>; 2]; 2] {
+    let zero = f32x8::splat(simd, 0.0);
+    let ([a, b], [c, d]) = (begun(simd, tensors, &blocks[0]), begun(simd, tensors, &blocks[1]));
     let mut lines = [a, b, c, d];
+    let mut active = [mask32x8::splat(simd, true); 4];
     let mut sums = [blocks[0].read2(simd, response), blocks[1].read2(simd, response)];
-    let mut here = [a.direction, b.direction, c.direction, d.direction];
-    for (u, weight) in weights.iter().enumerate() {
-        field.advance_inner(simd, &mut lines, &here);
-        let weight = f32x8::splat(simd, *weight);
+    let mut places = [Place::new(field.frame, lines[0].x, lines[0].y); 4];
+    for weight in weights {
+        field.advance(simd, &mut lines, &places);
         for i in 0..4 {
-            let place = InnerPlace::new(lines[i].x, lines[i].y);
-            if u + 1 < weights.len() {
-                here[i] = field.at_inner(simd, &place);
+            places[i] = Place::new(field.frame, lines[i].x, lines[i].y);
+            let mut weight = f32x8::splat(simd, *weight);
+            if let Some(full) = edges {
+                active[i] &= holds(full, lines[i].x, lines[i].y);
+                weight = active[i].select(weight, zero);
             }
-            let [v, alpha] = sample_inner2(simd, response, &place);
+            let [v, alpha] = responses.sample(simd, &places[i]);
             let [sum, norm] = sums[i / 2];
             sums[i / 2] = [weight.mul_add(v, sum), weight.mul_add(alpha, norm)];
         }
     }
-    write1(line(params, sums[0]), &mut target[..BLOCK]);
-    write1(line(params, sums[1]), &mut target[BLOCK..]);
+    sums
 }
 
 /// Both sides of the lines through a block.
 #[inline(always)]
-fn begun<S: Simd>(simd: S, field: &StreamField<'_>, block: &Block) -> [Stream<S>; 2] {
-    let [difference, f] = block.read2(simd, &field.tensors);
+fn begun<S: Simd>(simd: S, tensors: &View<'_>, block: &Block) -> [Stream<S>; 2] {
+    let [difference, f] = block.read2(simd, tensors);
     let [x, y] = centres(simd, block.x, block.y, block.x + block.len as i32 - 1);
     Stream::both_sides(x, y, tangent(difference, f, f32x8::splat(simd, 0.0)))
 }
 
-/// Up to eight pixels anywhere.
+/// The same sums for one block whose lines reach too far for copies of what is around tiles.
 #[inline(always)]
-fn clamped<S: Simd>(
+fn far<S: Simd>(
     simd: S,
-    params: &Params,
     response: &View<'_>,
     field: &StreamField<'_>,
     weights: &[f32],
     block: &Block,
-    target: &mut [f32],
-) {
+) -> [f32x8<S>; 2] {
     let zero = f32x8::splat(simd, 0.0);
-    let mut lines = begun(simd, field, block);
+    let mut lines = begun(simd, &field.tensors, block);
     let mut active = [mask32x8::splat(simd, true); 2];
     let [mut sum, mut norm] = block.read2(simd, response);
     for weight in weights {
-        field.advance_both(simd, &mut lines, active);
+        field.advance(simd, &mut lines, active);
         for side in 0..2 {
-            active[side] &= field.inside(simd, &lines[side]);
+            active[side] &= field.inside(&lines[side]);
             let weight = active[side].select(f32x8::splat(simd, *weight), zero);
             let [v, alpha] = sample_linear2(simd, response, lines[side].x, lines[side].y);
             sum = weight.mul_add(v, sum);
             norm = weight.mul_add(alpha, norm);
         }
     }
-    write1(line(params, [sum, norm]), target);
+    [sum, norm]
 }
 
 /// The edge image of weighted sums of (u alpha, alpha).

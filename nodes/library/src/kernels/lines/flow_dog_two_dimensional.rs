@@ -9,7 +9,7 @@ use crate::kernels::blocks::{for_blocks, write1};
 use crate::kernels::edge_threshold::{LEAST_COVERAGE, Xdog, dog_response, edge_threshold, edge_uncovered};
 use crate::kernels::lines::flow_dog_gradient::halfwidth;
 use crate::kernels::pixel_line::{PixelLine, error_function, most_steps};
-use crate::kernels::stream_line::{Stream, StreamField, centres};
+use crate::kernels::stream_line::{Integrator, Stream, StreamField, centres};
 use crate::kernels::tensor_algebra::tangent;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, mask32x8, prelude::*};
 use isophote_engine::math::{Elementary, sample_linear2};
@@ -60,12 +60,20 @@ crate::kernel!(flow_dog_two_dimensional {
 /// How the stream line is traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stepping {
-    /// Euler's method (2.177).
-    Euler = 0,
-    /// The second-order midpoint method (2.182).
-    Midpoint = 1,
+    /// In steps of one pixel.
+    Along(Integrator),
     /// From pixel boundary to pixel boundary (§ 2.9.4); points are the pixels that the line takes.
-    CabralLeedom = 2,
+    CabralLeedom,
+}
+
+impl Stepping {
+    /// What the shader calls it.
+    const fn number(self) -> u32 {
+        match self {
+            Self::Along(integrator) => integrator as u32,
+            Self::CabralLeedom => 3,
+        }
+    }
 }
 
 /// L = floor(2 sigma) (§ 2.9.3); a last bit must not decide whether a whole number is reached.
@@ -92,7 +100,7 @@ pub fn edges(
         base: xdog.base,
         edge: xdog.edge,
         sigma: sigma_m,
-        stepping: stepping as u32,
+        stepping: stepping.number(),
         threshold: xdog.threshold as u32,
         epsilon: xdog.epsilon,
         phi: xdog.phi,
@@ -111,12 +119,11 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 fn both_ways<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let field = &pass.inputs[1];
     let around = Around { lightness: &pass.inputs[0], marked: &pass.inputs[2], params };
-    let midpoint = params.stepping == Stepping::Midpoint as u32;
-    let stream = StreamField { tensors: *field, step: 1.0, midpoint };
+    let stream = StreamField { tensors: *field, step: 1.0, integrator: Integrator::of(params.stepping) };
     let limit = radius(params.sigma);
     let falloff = -0.721_347_52 / (params.sigma * params.sigma).max(1e-6);
     let inverse = std::f32::consts::FRAC_1_SQRT_2 / params.sigma.max(1e-3);
-    let by_pixels = params.stepping == Stepping::CabralLeedom as u32;
+    let by_pixels = params.stepping == Stepping::CabralLeedom.number();
     let last = band.window.x1 - 1;
     for_blocks::<1>(
         band,
@@ -153,11 +160,12 @@ fn both_ways<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut B
                     }
                     continue;
                 }
-                let mut line = Stream::begin(x, y, [tx * side, ty * side]);
+                let mut lines = [Stream::begin(x, y, [tx * side, ty * side])];
                 let mut active = mask32x8::splat(simd, true);
                 for u in 1..=limit as i32 {
-                    stream.advance(simd, &mut line, active);
-                    active &= stream.inside(simd, &line);
+                    stream.advance(simd, &mut lines, [active]);
+                    let line = &lines[0];
+                    active &= stream.inside(line);
                     let weight = f32x8::splat(simd, (falloff * (u * u) as f32).exp2());
                     let here = stream.tangent(simd, line.x, line.y);
                     around.add(simd, &mut sum, active.select(weight, zero), [line.x, line.y], here);

@@ -13,7 +13,7 @@ use crate::kernels::blocks::for_blocks_in_tiles;
 use crate::kernels::coverage::Covered;
 use crate::kernels::lines::orientation_field;
 use crate::kernels::smoothing::oriented_bilateral::Sampling;
-use crate::kernels::stream_line::{Stream, StreamField, centres};
+use crate::kernels::stream_line::{Integrator, Stream, StreamField, centres, holds};
 use crate::kernels::support::{get_pixels2, get_pixels4, put_pixels4};
 use crate::kernels::tensor_algebra::tangent;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
@@ -98,7 +98,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         params,
         origins: pass.inputs[0],
         source: covered.as_ref().map_or(pass.inputs[0], |c| c.view(&pass.inputs[0])),
-        field: StreamField { tensors: pass.inputs[1], step: 1.0, midpoint: params.midpoint != 0 },
+        field: StreamField { tensors: pass.inputs[1], step: 1.0, integrator: Integrator::of(params.midpoint) },
         opaque: covered.as_ref().is_some_and(Covered::is_opaque),
     };
     let last = band.window.x1 - 1;
@@ -147,7 +147,7 @@ impl Filter<'_> {
         let (mut before, mut before_u) = ([first; 2], [zero; 2]);
         let mut u = 1.0;
         while u <= params.radius && (active[0] | active[1]).any_true() {
-            self.field.advance_both(simd, &mut lines, active);
+            self.field.advance(simd, &mut lines, active);
             for side in 0..2 {
                 let line = &lines[side];
                 let mut sampled = active[side];
@@ -159,7 +159,7 @@ impl Filter<'_> {
                 }
                 let sx = line.x - back * line.direction[0];
                 let sy = line.y - back * line.direction[1];
-                let inside = self.field.holds(simd, sx, sy);
+                let inside = holds(self.field.tensors.full(), sx, sy);
                 active[side] &= inside | !sampled;
                 sampled &= inside;
                 let at = f32x8::splat(simd, u) - back;

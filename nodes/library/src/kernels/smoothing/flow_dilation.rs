@@ -7,7 +7,7 @@
 //! about 130 operations.
 
 use crate::kernels::coverage::Covered;
-use crate::kernels::stream_line::{Stream, StreamField, centres};
+use crate::kernels::stream_line::{Integrator, Stream, StreamField, centres};
 use crate::kernels::support::{get_pixels4, put_pixels4};
 use crate::kernels::tensor_algebra::{anisotropy, tangent};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
@@ -59,7 +59,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let covered = Covered::new(&pass.inputs[0], band, reach(&params));
     let source = covered.view(&pass.inputs[0]);
-    let field = StreamField { tensors: pass.inputs[1], step: 1.0, midpoint: true };
+    let field = StreamField { tensors: pass.inputs[1], step: 1.0, integrator: Integrator::Midpoint };
     dispatch!(pass.level, simd => {
         let window = band.window;
         for y in window.y0..window.y1 {
@@ -101,9 +101,9 @@ fn brightest<S: Simd>(
     let mut active = [limit.simd_ge(1.0); 2];
     let mut u = 1.0;
     while (active[0] | active[1]).any_true() {
-        field.advance_both(simd, &mut lines, active);
+        field.advance(simd, &mut lines, active);
         for (side, line) in lines.iter().enumerate() {
-            active[side] &= field.inside(simd, line);
+            active[side] &= field.inside(line);
             let value = sample_linear4(simd, noise, line.x, line.y)[0];
             let better = active[side] & value.simd_gt(most[side]);
             most[side] = better.select(value, most[side]);

@@ -1,17 +1,18 @@
 //! Line integral convolution of a colour with a Gaussian along the stream lines of a tensor field
 //! (2.186, 2.187), with the length adapted to the anisotropy (§ 6.3.1) or to the curvature (§ 6.3.2).
 //!
-//! Cost: 4 sigma / h steps per pixel, each one bilinear colour sample and one (Euler) or two tensor
-//! samples with their tangents, about 130 operations.
+//! Cost: 4 sigma / h steps per pixel, each one bilinear colour sample and one (Euler, Adams-Bashforth) or two
+//! tensor samples with their tangents, about 90 or 130 operations.
 
-use crate::kernels::blocks::{BLOCK, TILE};
+use crate::kernels::blocks::{BLOCK, for_blocks_in_tiles};
 use crate::kernels::coverage::Covered;
-use crate::kernels::stream_line::{Stream, StreamField, acos, centres};
 use crate::kernels::lines::orientation_field;
+use crate::kernels::stream_line::{Integrator, NearField, Stream, StreamField, acos, centres, holds};
 use crate::kernels::support::{get_pixels4, put_pixels4};
+use crate::kernels::surroundings::{FOUR, Frame, Place, Surroundings, TWO};
 use crate::kernels::tensor_algebra::{anisotropy, tangent};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
-use isophote_engine::math::{Elementary, InnerPlace, load4, sample_linear4};
+use isophote_engine::math::{Elementary, load4, sample_linear4};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::params! {
@@ -23,8 +24,8 @@ crate::params! {
         pub step: f32,
         /// A side ends at a step that turns by more than the angle of this cosine.
         pub least_turn: f32,
-        /// 1: second-order Runge-Kutta; 0: Euler.
-        pub midpoint: u32,
+        /// 0: Euler; 1: second-order Runge-Kutta; 2: Adams-Bashforth.
+        pub integrator: u32,
         /// 0: none; 1: anisotropy; 2: angle.
         pub adapt: u32,
     }
@@ -35,7 +36,7 @@ crate::kernel!(line_integral_convolution {
     cost: |params| {
         let p: Params = bytemuck::pod_read_unaligned(params);
         let steps = 2.0 * f64::from(radius(p.sigma)) / f64::from(p.step);
-        steps * if p.midpoint != 0 { 130.0 } else { 80.0 }
+        steps * if p.integrator == Integrator::Midpoint as u32 { 130.0 } else { 80.0 }
     },
     tolerance: Tolerance {
         absolute: 2e-3,
@@ -65,8 +66,8 @@ pub struct Options {
     pub sigma: f32,
     /// Step size h, pixels.
     pub step: f32,
-    /// Second-order Runge-Kutta instead of Euler.
-    pub midpoint: bool,
+    /// How the lines are stepped.
+    pub integrator: Integrator,
     /// How the length is adapted.
     pub adapt: Adapt,
     /// A side ends at a step that turns by more, degrees; 0 for never.
@@ -75,7 +76,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { sigma: 6.0, step: 1.0, midpoint: true, adapt: Adapt::Anisotropy, max_angle: 0.0 }
+        Self { sigma: 6.0, step: 1.0, integrator: Integrator::AdamsBashforth, adapt: Adapt::Anisotropy, max_angle: 0.0 }
     }
 }
 
@@ -85,11 +86,11 @@ pub fn color(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: 
         sigma: options.sigma,
         step: options.step.max(MIN_STEP),
         least_turn: least_turn(options.max_angle),
-        midpoint: u32::from(options.midpoint),
+        integrator: options.integrator as u32,
         adapt: options.adapt as u32,
     };
     let field = orientation_field::of_tensor(plan, tensors);
-    plan.pass(&KERNEL, &[color, tensors, field], &params, Class::Colour, support(&params))
+    plan.pass(&KERNEL, &[color, tensors, field], &params, Class::Colour, Support::Pixels(reach(&params) as u32))
 }
 
 /// Cosine of the greatest turn that a line survives, `max_angle` degrees; 0 for any.
@@ -105,21 +106,30 @@ fn radius(sigma: f32) -> f32 {
     (2.0 * sigma + 1e-3).floor()
 }
 
-/// Adaptation only shortens lines; a bilinear sample at distance L reads one pixel further.
-fn support(params: &Params) -> Support {
-    Support::Pixels(radius(params.sigma) as u32 + 1)
+/// The most pixels that are read to any side.
+///
+/// Adaptation only shortens lines; a bilinear sample at distance L reads one pixel further. Steps of Adams and
+/// Bashforth, 3/2 of one tangent less 1/2 of the last, add up to the sum of the tangents and half the
+/// difference of the last one and the first: no more than half a step beyond L.
+fn reach(params: &Params) -> i32 {
+    let beyond = if params.integrator == Integrator::AdamsBashforth as u32 { params.step / 2.0 } else { 0.0 };
+    (radius(params.sigma) + beyond) as i32 + 1
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    let covered = Covered::new(&pass.inputs[0], band, radius(params.sigma) as i32 + 1);
-    let lines = Lines {
-        params,
-        source: covered.view(&pass.inputs[0]),
-        tensors: pass.inputs[1],
-        field: StreamField { tensors: pass.inputs[2], step: params.step, midpoint: params.midpoint != 0 },
-    };
-    dispatch!(pass.level, simd => lines.fill(simd, band));
+    let reach = reach(&params);
+    let covered = Covered::new(&pass.inputs[0], band, reach);
+    let lines = Lines { params, source: covered.view(&pass.inputs[0]), tensors: pass.inputs[1], field: pass.inputs[2] };
+    // Which of two ways is taken depends on the parameters alone, not on where a pixel's tile lies.
+    if Frame::suits(reach) {
+        let mut tile = Tile::default();
+        for frame in Frame::tiles(band.window, reach) {
+            dispatch!(pass.level, simd => lines.fill(simd, &frame, &mut tile, band));
+        }
+    } else {
+        dispatch!(pass.level, simd => lines.fill_far(simd, band));
+    }
 }
 
 /// What all blocks of a band share.
@@ -128,73 +138,61 @@ struct Lines<'a> {
     /// Colours times coverage.
     source: View<'a>,
     tensors: View<'a>,
-    field: StreamField<'a>,
+    field: View<'a>,
+}
+
+/// A tile and what lies around it.
+#[derive(Default)]
+struct Tile {
+    colors: Surroundings<FOUR>,
+    field: Surroundings<TWO>,
+    taps: Box<Taps>,
 }
 
 /// Steps between two visits to the colours: no more than the usual lines have.
 const RUN: usize = 12;
 
-/// Steps of four times eight lines, two blocks with two sides each, whose colours are not added up yet.
+/// By line, step and pixel, for both sides of two blocks.
+type PerTap<T> = [[[T; BLOCK]; RUN]; 4];
+
+/// Steps of four times eight lines whose colours are not added up yet.
 ///
 /// First to trace and then to add up keeps the long chains of the one, where everything waits, from the
 /// many independent loads of the other, and both in registers.
+#[derive(Default)]
 struct Taps {
-    /// Where the pixels around a tap begin in the colours: by line, step and pixel.
-    at: [[[i32; BLOCK]; RUN]; 4],
+    /// The pixels above and to the left of a tap.
+    at: PerTap<i32>,
     /// Weights of the row above the tap.
-    above: [[[f32; BLOCK]; RUN]; 4],
+    above: PerTap<f32>,
     /// Weights of the row below.
-    below: [[[f32; BLOCK]; RUN]; 4],
+    below: PerTap<f32>,
     /// Shares of the column to the right.
-    right: [[[f32; BLOCK]; RUN]; 4],
+    right: PerTap<f32>,
 }
 
 /// The lines of eight pixels: how long they are and how their weights fall off.
 #[derive(Clone, Copy)]
 struct Reach<S: Simd> {
     radius: f32x8<S>,
-    limit: f32x8<S>,
     falloff: f32x8<S>,
 }
 
 impl<S: Simd> Reach<S> {
+    /// The arc length that the last step does not exceed.
+    #[inline(always)]
+    fn limit(&self) -> f32x8<S> {
+        self.radius + 1e-3
+    }
+
     /// The weights at arc length `u`.
     #[inline(always)]
     fn weight(&self, u: f32x8<S>) -> f32x8<S> {
-        (self.falloff * u * u).exp2()
+        (self.falloff * u * u).exp2_falling()
     }
 }
 
 impl Lines<'_> {
-    /// Which of two ways a pixel takes depends on where it lies in the picture, not on its tile.
-    #[inline(always)]
-    fn fill<S: Simd>(&self, simd: S, band: &mut Band<'_>) {
-        let (window, inner) = (band.window, self.field.inner(radius(self.params.sigma) as i32));
-        let zeros = [[[0.0; BLOCK]; RUN]; 4];
-        let mut taps = Taps { at: [[[0; BLOCK]; RUN]; 4], above: zeros, below: zeros, right: zeros };
-        for start in (window.x0..window.x1).step_by(TILE as usize) {
-            let end = (start + TILE).min(window.x1);
-            for y in window.y0..window.y1 {
-                let row = &mut band.row_mut(0, y)[4 * (start - window.x0) as usize..4 * (end - window.x0) as usize];
-                let (mut from, mut to) = (inner.x0.clamp(start, end), inner.x1.clamp(start, end));
-                if y < inner.y0 || y >= inner.y1 || to <= from {
-                    (from, to) = (end, end);
-                }
-                let (left, rest) = row.split_at_mut(4 * (from - start) as usize);
-                let (middle, right) = rest.split_at_mut(4 * (to - from) as usize);
-                for (x, target) in (start..).step_by(BLOCK).zip(left.chunks_mut(4 * BLOCK)) {
-                    put_pixels4(self.clamped(simd, x, y, from - 1), target);
-                }
-                for (x, target) in (from..).step_by(2 * BLOCK).zip(middle.chunks_mut(8 * BLOCK)) {
-                    self.inner(simd, &mut taps, [x, y], to - 1, target);
-                }
-                for (x, target) in (to..).step_by(BLOCK).zip(right.chunks_mut(4 * BLOCK)) {
-                    put_pixels4(self.clamped(simd, x, y, end - 1), target);
-                }
-            }
-        }
-    }
-
     /// The lengths of lines through pixels with the tensors (e, f, g).
     #[inline(always)]
     fn reach<S: Simd>(&self, e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> Reach<S> {
@@ -205,7 +203,7 @@ impl Lines<'_> {
         }
         let radius = (sigma * 2.0 + 1e-3).floor();
         let falloff = f32x8::splat(e.simd, -0.721_347_52) / (sigma * sigma).max(f32x8::splat(e.simd, 1e-6));
-        Reach { radius, limit: radius + 1e-3, falloff }
+        Reach { radius, falloff }
     }
 
     /// Arc length of the last step of a line.
@@ -218,33 +216,60 @@ impl Lines<'_> {
         step
     }
 
-    /// Up to sixteen inner pixels from (x, y) on, none behind column `last`.
+    /// One tile.
     #[inline(always)]
-    fn inner<S: Simd>(&self, simd: S, taps: &mut Taps, [x, y]: [i32; 2], last: i32, target: &mut [f32]) {
-        let (params, field) = (&self.params, &self.field);
-        let (zero, step) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, params.step));
-        let least_turn = f32x8::splat(simd, params.least_turn);
-        let turns_count = params.adapt == Adapt::Angle as u32;
-        let begun = [self.begun(simd, x, y, last), self.begun(simd, x + BLOCK as i32, y, last)];
-        let [(near, [a, b]), (far, [c, d])] = begun;
+    fn fill<S: Simd>(&self, simd: S, frame: &Frame, tile: &mut Tile, band: &mut Band<'_>) {
+        let Tile { colors, field, taps } = tile;
+        colors.load(&self.source, frame);
+        field.load(&self.field, frame);
+        let near = NearField { frame, tensors: field, step: self.params.step, integrator: Integrator::of(self.params.integrator) };
+        let edges = frame.meets_edges(self.source.full());
+        let last = frame.tile.x1 - 1;
+        let (start, end) = ((frame.tile.x0 - band.window.x0) as usize, (frame.tile.x1 - band.window.x0) as usize);
+        for y in frame.tile.y0..frame.tile.y1 {
+            let row = &mut band.row_mut(0, y)[4 * start..4 * end];
+            for (i, target) in row.chunks_mut(8 * BLOCK).enumerate() {
+                let x = frame.tile.x0 + (2 * BLOCK * i) as i32;
+                let lines = [self.begun(simd, x, y, last), self.begun(simd, x + BLOCK as i32, y, last)];
+                let (sums, norms) = self.follow(simd, &near, lines, edges, colors, taps);
+                for (i, target) in target.chunks_mut(4 * BLOCK).enumerate() {
+                    let mut sum = load4(simd, &sums[i]);
+                    let centre = get_pixels4(simd, &self.source, x + (i * BLOCK) as i32, y, last);
+                    for c in 0..4 {
+                        sum[c] += centre[c];
+                    }
+                    put_pixels4(mean(sum, norms[i]), target);
+                }
+            }
+        }
+    }
+
+    /// Follows both sides of the lines through two blocks; the sums of their weighted colours without those of the
+    /// centres, and the sums of all weights.
+    #[inline(always)]
+    fn follow<S: Simd>(
+        &self,
+        simd: S,
+        field: &NearField<'_>,
+        [(near, [a, b]), (far, [c, d])]: [(Reach<S>, [Stream<S>; 2]); 2],
+        edges: bool,
+        colors: &Surroundings<FOUR>,
+        taps: &mut Taps,
+    ) -> ([[f32; 4 * BLOCK]; 2], [f32x8<S>; 2]) {
+        let (params, zero) = (&self.params, f32x8::splat(simd, 0.0));
+        let (step, least_turn) = (zero + params.step, zero + params.least_turn);
         let (reach, mut lines) = ([near, far], [a, b, c, d]);
-        let mut places = [InnerPlace::new(a.x, a.y); 4];
-        let mut here = [[zero; 2]; 4];
-        let mut active = [step.simd_le(near.limit), step.simd_le(near.limit), step.simd_le(far.limit), step.simd_le(far.limit)];
+        let turns_count = params.adapt == Adapt::Angle as u32;
+        let (near, far) = (step.simd_le(reach[0].limit()), step.simd_le(reach[1].limit()));
+        let mut active = [near, near, far, far];
+        let mut places = [Place::new(field.frame, lines[0].x, lines[0].y); 4];
         let mut u = [zero; 4];
         let mut norm = [zero + 1.0; 2];
-        let mut sums = [[zero; 2]; 2 * BLOCK];
-        let mut begins = true;
+        let mut totals = [[zero; 2]; 2 * BLOCK];
         while (active[0] | active[1] | active[2] | active[3]).any_true() {
             let mut counts = [i32x8::splat(simd, 0); 2];
             for k in 0..RUN {
-                if !begins {
-                    for i in 0..4 {
-                        here[i] = field.at_inner(simd, &places[i]);
-                    }
-                }
-                begins = false;
-                field.advance_inner(simd, &mut lines, &here);
+                field.advance(simd, &mut lines, &places);
                 let mut weights = [zero; 4];
                 for i in 0..4 {
                     // Both sides have come equally far unless turns count.
@@ -256,13 +281,15 @@ impl Lines<'_> {
                     weights[i] = reach[i / 2].weight(u[i]);
                 }
                 for i in 0..4 {
-                    // Lines that have ended go on, where there is no edge to stop them; they have no weight.
-                    active[i] &= u[i].simd_le(reach[i / 2].limit) & lines[i].turn.simd_ge(least_turn);
+                    active[i] &= u[i].simd_le(reach[i / 2].limit()) & lines[i].turn.simd_ge(least_turn);
+                    if edges {
+                        active[i] &= holds(self.source.full(), lines[i].x, lines[i].y);
+                    }
                     let weight = active[i].select(weights[i], zero);
                     norm[i / 2] += weight;
-                    places[i] = InnerPlace::new(lines[i].x, lines[i].y);
+                    places[i] = Place::new(field.frame, lines[i].x, lines[i].y);
                     let below = weight * places[i].below;
-                    taps.at[i][k] = places[i].offsets(&self.source);
+                    places[i].at.store_slice(&mut taps.at[i][k]);
                     (weight - below).store_slice(&mut taps.above[i][k]);
                     below.store_slice(&mut taps.below[i][k]);
                     places[i].right.store_slice(&mut taps.right[i][k]);
@@ -272,7 +299,7 @@ impl Lines<'_> {
                     counts[i] = either.select(i32x8::splat(simd, k as i32 + 1), counts[i]);
                 }
                 for i in 0..4 {
-                    active[i] &= (u[i] + step).simd_le(reach[i / 2].limit);
+                    active[i] &= (u[i] + step).simd_le(reach[i / 2].limit());
                 }
                 if !(active[0] | active[1] | active[2] | active[3]).any_true() {
                     break;
@@ -281,48 +308,16 @@ impl Lines<'_> {
             for i in 0..2 {
                 let counts = counts[i].to_array();
                 for lane in 0..BLOCK {
-                    self.add(simd, taps, 2 * i, lane, counts[lane] as usize, &mut sums[i * BLOCK + lane]);
+                    add(simd, taps, colors, [2 * i, lane], counts[lane] as usize, &mut totals[i * BLOCK + lane]);
                 }
             }
         }
-        for i in 0..2 {
-            if let Some(target) = target.get_mut(32 * i..) && !target.is_empty() {
-                let mut colors = [0.0; 4 * BLOCK];
-                for (color, [all, right]) in colors.chunks_exact_mut(4).zip(&sums[i * BLOCK..]) {
-                    let ((all, _), (left, right)) = (all.split(), right.split());
-                    (all - left + right).store_slice(color);
-                }
-                let mut sum = load4(simd, &colors);
-                let centre = get_pixels4(simd, &self.source, x + (i * BLOCK) as i32, y, last);
-                for c in 0..4 {
-                    sum[c] += centre[c];
-                }
-                let len = target.len().min(4 * BLOCK);
-                put_pixels4(mean(sum, norm[i]), &mut target[..len]);
-            }
+        let mut sums = [[0.0; 4 * BLOCK]; 2];
+        for i in 0..2 * BLOCK {
+            let ((all, _), (left, right)) = (totals[i][0].split(), totals[i][1].split());
+            (all - left + right).store_slice(&mut sums[i / BLOCK][4 * (i % BLOCK)..][..4]);
         }
-    }
-
-    /// Adds up `count` steps to both sides of one pixel: the sums of left and right pixels, and the same times
-    /// the shares of the right ones. The left ones' shares are what is missing to one.
-    #[inline(always)]
-    fn add<S: Simd>(&self, simd: S, taps: &Taps, first: usize, lane: usize, count: usize, sums: &mut [f32x8<S>; 2]) {
-        let (data, stride) = (self.source.data(), self.source.stride() as u32 as usize);
-        // Two slices of one length share the check of the range.
-        let (upper, lower) = (&data[..data.len() - stride], &data[stride..]);
-        let mut sides = [*sums, [f32x8::splat(simd, 0.0); 2]];
-        for k in 0..count.min(RUN) {
-            for (side, [all, right]) in sides.iter_mut().enumerate() {
-                let line = first + side;
-                let at = taps.at[line][k][lane] as u32 as usize;
-                let above = f32x8::from_slice(simd, &upper[at..at + 8]) * taps.above[line][k][lane];
-                let below = f32x8::splat(simd, taps.below[line][k][lane]);
-                let pair = f32x8::from_slice(simd, &lower[at..at + 8]).mul_add(below, above);
-                *all += pair;
-                *right = pair.mul_add(f32x8::splat(simd, taps.right[line][k][lane]), *right);
-            }
-        }
-        *sums = [sides[0][0] + sides[1][0], sides[0][1] + sides[1][1]];
+        (sums, norm)
     }
 
     /// Both sides of the lines through a block.
@@ -333,22 +328,30 @@ impl Lines<'_> {
         (self.reach(e, f, g), Stream::both_sides(px, py, tangent(e, f, g)))
     }
 
+    /// A band whose lines reach too far for copies of what is around tiles.
+    #[inline(always)]
+    fn fill_far<S: Simd>(&self, simd: S, band: &mut Band<'_>) {
+        let last = band.window.x1 - 1;
+        for_blocks_in_tiles::<4>(band, |block, target| put_pixels4(self.far(simd, block.x, block.y, last), target));
+    }
+
     /// Up to eight pixels anywhere.
     #[inline(always)]
-    fn clamped<S: Simd>(&self, simd: S, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
-        let (params, field) = (&self.params, &self.field);
-        let (zero, step) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, params.step));
+    fn far<S: Simd>(&self, simd: S, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
+        let (params, zero) = (&self.params, f32x8::splat(simd, 0.0));
+        let step = zero + params.step;
+        let field = StreamField { tensors: self.field, step: params.step, integrator: Integrator::of(params.integrator) };
         let (reach, mut lines) = self.begun(simd, x, y, last);
         let mut sum = get_pixels4(simd, &self.source, x, y, last);
         let mut norm = f32x8::splat(simd, 1.0);
         let mut u = [zero; 2];
-        let mut active = [step.simd_le(reach.limit); 2];
+        let mut active = [step.simd_le(reach.limit()); 2];
         while (active[0] | active[1]).any_true() {
-            field.advance_both(simd, &mut lines, active);
+            field.advance(simd, &mut lines, active);
             for side in 0..2 {
                 let line = &lines[side];
                 u[side] += self.arc(line, &reach);
-                active[side] &= u[side].simd_le(reach.limit) & field.inside(simd, line);
+                active[side] &= u[side].simd_le(reach.limit()) & field.inside(line);
                 active[side] &= line.turn.simd_ge(f32x8::splat(simd, params.least_turn));
                 let weight = active[side].select(reach.weight(u[side]), zero);
                 let [r, g, b, a] = sample_linear4(simd, &self.source, line.x, line.y);
@@ -359,11 +362,36 @@ impl Lines<'_> {
                     weight.mul_add(a, sum[3]),
                 ];
                 norm += weight;
-                active[side] &= (u[side] + step).simd_le(reach.limit);
+                active[side] &= (u[side] + step).simd_le(reach.limit());
             }
         }
         mean(sum, norm)
     }
+}
+
+/// Adds up `count` steps to both sides of one pixel: the sums of left and right pixels, and the same times
+/// the shares of the right ones. The left ones' shares are what is missing to one.
+#[inline(always)]
+fn add<S: Simd>(
+    simd: S,
+    taps: &Taps,
+    colors: &Surroundings<FOUR>,
+    [first, lane]: [usize; 2],
+    count: usize,
+    sums: &mut [f32x8<S>; 2],
+) {
+    let mut sides = [*sums, [f32x8::splat(simd, 0.0); 2]];
+    for k in 0..count.min(RUN) {
+        for (side, [all, right]) in sides.iter_mut().enumerate() {
+            let line = first + side;
+            let [above, below] = colors.both_rows(simd, taps.at[line][k][lane] as u16);
+            let above = above * taps.above[line][k][lane];
+            let pair = below.mul_add(f32x8::splat(simd, taps.below[line][k][lane]), above);
+            *all += pair;
+            *right = pair.mul_add(f32x8::splat(simd, taps.right[line][k][lane]), *right);
+        }
+    }
+    *sums = [sides[0][0] + sides[1][0], sides[0][1] + sides[1][1]];
 }
 
 /// The colour and coverage of weighted sums of covered colours and of coverage.

@@ -7,6 +7,7 @@ use crate::kernels::lines::flow_dog_two_dimensional::{self, Stepping};
 use crate::kernels::lines::{
     darken_by_lines, flow_dog_cabral_leedom, flow_dog_gradient, flow_dog_tangent, guide_lines, orientation_field,
 };
+use crate::kernels::stream_line::Integrator;
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::structure::structure_tensor::{Guides, TensorOptions, of_color_and_guides};
 use crate::ports;
@@ -82,11 +83,13 @@ pub(crate) const INTEGRATOR: Param = Param::choice(
         Choice { id: "euler", label: "Euler" },
         Choice { id: "rk2", label: "Runge-Kutta, second order" },
         Choice { id: "cabral_leedom", label: "Cabral-Leedom" },
+        Choice { id: "adams_bashforth", label: "Adams-Bashforth, second order" },
     ],
 )
 .doc(
-    "How stream lines are stepped: Euler (2.176), second order (2.182), or from pixel boundary to pixel \
-     boundary with the Gaussian integrated exactly (Cabral and Leedom, 2.193).",
+    "How stream lines are stepped: Euler (2.176), second order (2.182), from pixel boundary to pixel \
+     boundary with the Gaussian integrated exactly (Cabral and Leedom, 2.193), or by the two-step method of \
+     Adams and Bashforth, of second order as well, which samples the field once a step instead of twice.",
 );
 const KERNEL: Param = Param::choice(
     "kernel",
@@ -168,11 +171,10 @@ impl FlowDog {
 
     /// The second pass of the separable filter.
     fn along(&self, plan: &mut PlanBuilder, response: ImageId, field: ImageId, xdog: &Xdog) -> ImageId {
-        if self.stepping == Stepping::CabralLeedom {
+        let Stepping::Along(integrator) = self.stepping else {
             return flow_dog_cabral_leedom::edges(plan, response, field, self.sigma_m, xdog);
-        }
-        let midpoint = self.stepping == Stepping::Midpoint;
-        flow_dog_tangent::edges(plan, response, field, self.sigma_m, midpoint, xdog)
+        };
+        flow_dog_tangent::edges(plan, response, field, self.sigma_m, integrator, xdog)
     }
 }
 
@@ -203,9 +205,10 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         xdog: dog::xdog(scope),
         iterations: scope.int("iterations"),
         stepping: match scope.choice("integrator") {
-            "euler" => Stepping::Euler,
+            "euler" => Stepping::Along(Integrator::Euler),
             "cabral_leedom" => Stepping::CabralLeedom,
-            _ => Stepping::Midpoint,
+            "adams_bashforth" => Stepping::Along(Integrator::AdamsBashforth),
+            _ => Stepping::Along(Integrator::Midpoint),
         },
         two_dimensional: scope.choice("kernel") == "two_dimensional",
         guide_weight: scope.float("guide_weight"),

@@ -1,6 +1,7 @@
 //! Line integral convolution (§ 2.9): smoothing along stream lines of the structure tensor, which
 //! makes edges more coherent and gives pictures the look of brush strokes.
 
+use crate::kernels::stream_line::Integrator;
 use crate::kernels::smoothing::cabral_leedom;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
 use crate::nodes::structure::structure_tensor;
@@ -35,12 +36,14 @@ pub static NODE: NodeSpec = NodeSpec {
                 Choice { id: "euler", label: "Euler" },
                 Choice { id: "rk2", label: "Runge-Kutta 2" },
                 Choice { id: "cabral_leedom", label: "Cabral-Leedom" },
+                Choice { id: "adams_bashforth", label: "Adams-Bashforth 2" },
             ],
         )
         .doc(
-            "How lines are stepped: Euler's method (2.177), the second-order midpoint method (2.182), or \
+            "How lines are stepped: Euler's method (2.177), the second-order midpoint method (2.182), \
              from pixel boundary to pixel boundary with the Gaussian integrated exactly on the pixels \
-             (Cabral and Leedom, 2.193), where `step` has no part.",
+             (Cabral and Leedom, 2.193), where `step` has no part, or the two-step method of Adams and \
+             Bashforth, of second order as well, which samples the field once a step instead of twice.",
         ),
         Param::choice(
             "adapt",
@@ -71,7 +74,11 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let options = Options {
         sigma: scope.float("sigma"),
         step: scope.float("step"),
-        midpoint: scope.choice("integrator") == "rk2",
+        integrator: match scope.choice("integrator") {
+            "euler" => Integrator::Euler,
+            "adams_bashforth" => Integrator::AdamsBashforth,
+            _ => Integrator::Midpoint,
+        },
         adapt: match scope.choice("adapt") {
             "anisotropy" => Adapt::Anisotropy,
             "angle" => Adapt::Angle,

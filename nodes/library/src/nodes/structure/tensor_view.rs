@@ -1,6 +1,7 @@
 //! A tensor field made visible (§ 2.6.1, 2.9).
 
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
+use crate::kernels::stream_line::Integrator;
 use crate::kernels::structure::tensor_display::{self, Show};
 use crate::kernels::structure::{colour_restrict, contrast, noise, tensor_interpolate, tensor_logarithm};
 use crate::ports;
@@ -125,7 +126,13 @@ fn stream_lines(plan: &mut PlanBuilder, mut tensor: ImageId, sigma: f32, scale: 
     }
     let grains = grains.unwrap_or_else(|| noise::white(plan, scale, 0));
     let options =
-        Options { sigma: sigma * f32::from(1_u8 << finer), adapt: Adapt::None, ..Options::default() };
+        // Who looks at a field looks at the lines themselves.
+        Options {
+            sigma: sigma * f32::from(1_u8 << finer),
+            integrator: Integrator::Midpoint,
+            adapt: Adapt::None,
+            ..Options::default()
+        };
     let lines = line_integral_convolution::color(plan, grains, tensor, &options);
     // The contrast of the full-size picture, which a proxy shows less of.
     let mut shown = contrast::stretch(plan, lines, SPREAD / deviation(sigma / scale));

@@ -5,6 +5,7 @@ use crate::kernels::colour::{composite_lines, lab_to_rgb, lightness, rgb_to_lab,
 use crate::kernels::smoothing::bilateral::Options;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
+use crate::kernels::stream_line::Integrator;
 use crate::look::{self, ADVANCED, Lines};
 use crate::nodes::colour::quantize_luminance as quantization;
 use crate::nodes::lines::difference_of_gaussians as dog;
@@ -184,7 +185,7 @@ pub(crate) fn flow(scope: &Scope<'_>, guide_weight: f32) -> FlowDog {
         sigma_m: lines.sigma_m,
         xdog: lines.xdog(),
         iterations: scope.int("line_iterations"),
-        stepping: Stepping::Midpoint,
+        stepping: Stepping::Along(Integrator::AdamsBashforth),
         two_dimensional: false,
         guide_weight,
     }

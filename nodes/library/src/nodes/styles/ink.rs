@@ -4,6 +4,7 @@ use crate::kernels::colour::ink_sheet::{Sheet, draw};
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::edge_threshold::{Threshold, Xdog};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
+use crate::kernels::stream_line::Integrator;
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
 use crate::kernels::structure::{contrast, noise};
@@ -322,7 +323,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         sigma_m: drawing.sigma_m * scale,
         xdog: Xdog::sharpen(drawing.p, 0.0, 1.0, Threshold::None),
         iterations: 1,
-        stepping: Stepping::Midpoint,
+        stepping: Stepping::Along(Integrator::AdamsBashforth),
         two_dimensional: false,
         guide_weight,
     };
