@@ -62,10 +62,11 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     if let Some(task) = tasks.iter().find(|task| task.output.is_dir()) {
         return Err(Error::file(&task.output, "is a folder", "name a file"));
     }
-    if !sequence {
+    let opened = match read::open(&first.input, &selection) {
         // A picture that cannot be read is told of before a folder that cannot be written.
-        read::load(&first.input)?;
-    }
+        Err(error) if !sequence && !args.skip_existing => return Err(error),
+        opened => opened.ok(),
+    };
     crate::output::check_writable(&first.output)?;
     crate::output::sweep(&first.output);
     if args.threads > 0 {
@@ -74,7 +75,10 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     }
     let backend = if args.dry_run { crate::cli::Backend::Cpu } else { args.backend };
     let mut filter = Filter::new(library, style, backend, args.space, args.threads)?;
-    let needs = needs(&filter, first, &selection)?;
+    let needs = match &opened {
+        Some(opened) => needs(&filter, first, opened, &selection)?,
+        None => None,
+    };
     let most = args.memory.map_or(USUAL_MEMORY, |m| m.0);
     if let (Some(memory), Some(needs)) = (args.memory, needs)
         && needs.frame + needs.filter > memory.0
@@ -101,7 +105,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         report: &report,
         stop: &stop,
     };
-    let result = run.all(&mut filter);
+    let result = run.all(&mut filter, opened);
     let counts = report.end(result.is_ok() && !stop.load(Ordering::Relaxed));
     result?;
     if stop.load(Ordering::Relaxed) {
@@ -212,13 +216,17 @@ struct Needs {
     filter: u64,
 }
 
-/// What the first frame needs; nothing when it cannot be read, which is told when its turn comes.
-fn needs(filter: &Filter, first: &Task, selection: &Selection) -> Result<Option<Needs>> {
-    let Ok(bytes) = read::load(&first.input) else { return Ok(None) };
-    let frame = read::weight(&bytes, selection);
-    let Some(size) = read::size(&bytes, selection) else { return Ok(None) };
+/// What the first frame needs; nothing when it will be refused, which is told when its turn comes.
+fn needs(
+    filter: &Filter,
+    first: &Task,
+    opened: &read::Opened,
+    selection: &Selection,
+) -> Result<Option<Needs>> {
+    let Some(size) = opened.size() else { return Ok(None) };
     let name = first.input.display().to_string();
-    Ok(Some(Needs { frame, filter: filter.working_memory(&name, size, &selection.wanted)? }))
+    let filter = filter.working_memory(&name, size, &selection.wanted)?;
+    Ok(Some(Needs { frame: opened.weight(), filter }))
 }
 
 fn dry_run(args: &ApplyArgs, tasks: &[Task], missing: &[Task], needs: Option<Needs>, most: u64) {

@@ -41,38 +41,79 @@ pub struct Source {
 /// Reads a picture, of an EXR file what `selection` chooses.
 ///
 /// # Errors
-/// As [`load`] and [`decode`].
+/// As [`open`] and [`Opened::decode`].
 pub fn read(path: &Path, selection: &Selection) -> Result<Source> {
-    decode(path, load(path)?, selection)
+    open(path, selection)?.decode(path)
 }
 
-/// All bytes of a file.
+/// A file in memory, of which nothing is decoded yet.
+#[derive(Debug)]
+pub struct Opened(Kind);
+
+#[derive(Debug)]
+enum Kind {
+    Exr(exr::Opened),
+    /// The bytes of another file, and what was chosen as if it were an EXR file.
+    Other(Vec<u8>, Option<&'static str>),
+}
+
+/// Reads a file's bytes, and what an EXR file says of itself.
 ///
 /// # Errors
-/// [`Error::Input`] when it is missing or cannot be read.
-pub fn load(path: &Path) -> Result<Vec<u8>> {
-    fs::read(path).map_err(|e| Error::file(path, format!("cannot be read: {e}"), "name a picture"))
-}
-
-/// Bytes of memory that a picture takes from being decoded to being written, about. Files that will be refused
-/// weigh what they are.
-pub fn weight(bytes: &[u8], selection: &Selection) -> u64 {
-    let decoded = if bytes.starts_with(&EXR) {
-        exr::weight(bytes, selection).unwrap_or(0)
-    } else {
-        // Four channels as decoded, as result, and as floats between.
-        size(bytes, selection)
-            .map_or(0, |(width, height)| u64::from(width) * u64::from(height) * 4 * (2 + 2 + 8))
-    };
-    bytes.len() as u64 + decoded
-}
-
-/// Size of the largest picture in a file; nothing for files that will be refused.
-pub fn size(bytes: &[u8], selection: &Selection) -> Option<(u32, u32)> {
+/// [`Error::Input`] when it is missing or cannot be read; when it is a damaged EXR file or one that lacks what
+/// `selection` chooses.
+pub fn open(path: &Path, selection: &Selection) -> Result<Opened> {
+    let bytes =
+        fs::read(path).map_err(|e| Error::file(path, format!("cannot be read: {e}"), "name a picture"))?;
     if bytes.starts_with(&EXR) {
-        return exr::size(bytes, selection);
+        return exr::Opened::new(path, bytes, selection).map(Kind::Exr).map(Opened);
     }
-    image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().ok()?.into_dimensions().ok()
+    Ok(Opened(Kind::Other(bytes, selection.option())))
+}
+
+impl Opened {
+    /// Bytes of memory that a picture takes from being decoded to being written, about. Files that will be refused
+    /// weigh what they are.
+    pub fn weight(&self) -> u64 {
+        match &self.0 {
+            Kind::Exr(file) => file.weight(),
+            Kind::Other(bytes, _) => {
+                // Four channels as decoded, as result, and as floats between.
+                let pixels = self.size().map_or(0, |(width, height)| u64::from(width) * u64::from(height));
+                bytes.len() as u64 + pixels * 4 * (2 + 2 + 8)
+            }
+        }
+    }
+
+    /// Size of the largest picture in a file; nothing for files that will be refused.
+    pub fn size(&self) -> Option<(u32, u32)> {
+        match &self.0 {
+            Kind::Exr(file) => file.size(),
+            Kind::Other(bytes, _) => {
+                let reader = image::ImageReader::new(Cursor::new(bytes));
+                reader.with_guessed_format().ok()?.into_dimensions().ok()
+            }
+        }
+    }
+
+    /// Makes pictures of it.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the file is of another kind, truncated, malformed or too large, or cannot have what
+    /// was chosen.
+    pub fn decode(self, path: &Path) -> Result<Source> {
+        match self.0 {
+            Kind::Exr(file) => {
+                let exr = file.decode(path)?;
+                let pictures = exr.pictures(path)?;
+                Ok(Source { pictures, family: Family::Light, profile: None, exr: Some(exr) })
+            }
+            Kind::Other(_, Some(option)) => {
+                Err(Error::input(option, format!("'{}' is no EXR file", path.display()), "leave it out"))
+            }
+            Kind::Other(bytes, None) => decode(path, &bytes),
+        }
+    }
 }
 
 /// Whether a file is a whole picture, and no beginning of one.
@@ -81,47 +122,33 @@ pub fn is_whole(path: &Path) -> bool {
     if bytes.starts_with(&EXR) {
         return exr::is_whole(bytes);
     }
-    decode(path, bytes, &Selection::default()).is_ok()
+    decode(path, &bytes).is_ok()
 }
 
-/// Makes a picture of a file's bytes, of an EXR file what `selection` chooses.
-///
-/// # Errors
-/// [`Error::Input`] when the file is of another kind, truncated, malformed or too large, or lacks what was
-/// chosen.
-pub fn decode(path: &Path, bytes: Vec<u8>, selection: &Selection) -> Result<Source> {
-    if !bytes.starts_with(&EXR)
-        && let Some(option) = selection.option()
-    {
-        return Err(Error::input(option, format!("'{}' is no EXR file", path.display()), "leave it out"));
-    }
-    match bytes.as_slice() {
+/// Makes a picture of the bytes of any file but an EXR file.
+fn decode(path: &Path, bytes: &[u8]) -> Result<Source> {
+    match bytes {
         [0x89, b'P', b'N', b'G', ..] => {
-            let decoder = image::codecs::png::PngDecoder::new(Cursor::new(&bytes));
+            let decoder = image::codecs::png::PngDecoder::new(Cursor::new(bytes));
             picture(path, decoder.map_err(|e| malformed(path, "PNG", e))?, "PNG")
         }
         [0xff, 0xd8, 0xff, ..] => {
-            if !jpeg::is_whole(&bytes) {
+            if !jpeg::is_whole(bytes) {
                 return Err(malformed(path, "JPEG", "it ends before the picture does"));
             }
-            let decoder = image::codecs::jpeg::JpegDecoder::new(Cursor::new(&bytes));
+            let decoder = image::codecs::jpeg::JpegDecoder::new(Cursor::new(bytes));
             picture(path, decoder.map_err(|e| malformed(path, "JPEG", e))?, "JPEG")
         }
-        start if start.starts_with(&EXR) => {
-            let exr = ExrFile::new(path, bytes, selection)?;
-            let pictures = exr.pictures(path)?;
-            Ok(Source { pictures, family: Family::Light, profile: None, exr: Some(exr) })
-        }
         [b'I', b'I', 42, 0, ..] | [b'M', b'M', 0, 42, ..] => {
-            let decoder = image::codecs::tiff::TiffDecoder::new(Cursor::new(&bytes));
+            let decoder = image::codecs::tiff::TiffDecoder::new(Cursor::new(bytes));
             picture(path, decoder.map_err(|e| malformed(path, "TIFF", e))?, "TIFF")
         }
         [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => {
-            let decoder = image::codecs::webp::WebPDecoder::new(Cursor::new(&bytes));
+            let decoder = image::codecs::webp::WebPDecoder::new(Cursor::new(bytes));
             picture(path, decoder.map_err(|e| malformed(path, "WebP", e))?, "WebP")
         }
         [b'#', b'?', ..] => {
-            let decoder = image::codecs::hdr::HdrDecoder::new(Cursor::new(&bytes));
+            let decoder = image::codecs::hdr::HdrDecoder::new(Cursor::new(bytes));
             picture(path, decoder.map_err(|e| malformed(path, "HDR", e))?, "HDR")
         }
         [] => Err(Error::file(path, "is empty", "name a picture")),

@@ -11,7 +11,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use super::exr::Selection;
 use super::frame::{Filter, Filtered};
 use super::memory::{Budget, Share};
-use super::read::{self, Source};
+use super::read::{self, Opened, Source};
 use super::report::{Outcome, Report};
 use super::write::{self, Format};
 use crate::error::{Error, Result};
@@ -64,15 +64,15 @@ struct Done<'a> {
 
 impl Run<'_> {
     /// Does all frames. Frames that cannot be read or filtered are told of and left out; a run of one picture ends
-    /// with its error.
+    /// with its error. `first` is the first frame, where it was opened before.
     ///
     /// # Errors
     /// What kept a frame from being written, [`Error::Failure`] of the library or the device.
-    pub fn all(&self, filter: &mut Filter) -> Result<()> {
+    pub fn all(&self, filter: &mut Filter, first: Option<Opened>) -> Result<()> {
         std::thread::scope(|scope| {
             let (send, decoded) = sync_channel(1);
             let (finished, receive) = sync_channel(1);
-            let reader = scope.spawn(move || self.read(&send));
+            let reader = scope.spawn(move || self.read(first, &send));
             let writer = scope.spawn(move || self.write(&receive));
             let filtered = self.filter(filter, decoded, finished);
             let read = reader.join().unwrap_or_else(|_| Err(broken("reading")));
@@ -82,8 +82,9 @@ impl Run<'_> {
         })
     }
 
-    fn read<'a>(&'a self, send: &SyncSender<Ready<'a>>) -> Result<()> {
+    fn read<'a>(&'a self, mut first: Option<Opened>, send: &SyncSender<Ready<'a>>) -> Result<()> {
         for task in self.tasks {
+            let early = first.take();
             if self.stop.load(Ordering::Relaxed) {
                 break;
             }
@@ -92,9 +93,9 @@ impl Run<'_> {
                 continue;
             }
             let read = || {
-                let bytes = read::load(&task.input)?;
-                let share = self.budget.share(read::weight(&bytes, self.selection));
-                Ok(Ready { task, source: read::decode(&task.input, bytes, self.selection)?, share })
+                let opened = early.map_or_else(|| read::open(&task.input, self.selection), Ok)?;
+                let share = self.budget.share(opened.weight());
+                Ok(Ready { task, source: opened.decode(&task.input)?, share })
             };
             match read() {
                 Ok(ready) => {

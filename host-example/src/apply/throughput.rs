@@ -90,7 +90,7 @@ pub fn measure(
     };
     forget_peak();
     let started = Instant::now();
-    let result = run.all(&mut filter);
+    let result = run.all(&mut filter, None);
     let seconds = started.elapsed().as_secs_f64();
     let counts = report.end(false);
     result?;

@@ -62,35 +62,62 @@ pub fn is_whole(bytes: Vec<u8>) -> bool {
     Container::new(bytes).is_ok()
 }
 
-/// Size of the largest picture of a file; nothing for files that will be refused.
-pub fn size(bytes: &[u8], selection: &Selection) -> Option<(u32, u32)> {
-    let container = Container::new(bytes.to_vec()).ok()?;
-    let chosen = choose::choose(&container, selection).ok()?;
-    let windows = chosen.iter().map(|c| container.parts[c.group.part].window);
-    windows.map(|w| (w.width as u32, w.height as u32)).max_by_key(|(w, h)| u64::from(*w) * u64::from(*h))
+/// A file taken apart, of which nothing is decoded yet.
+#[derive(Debug)]
+pub struct Opened {
+    container: Container,
+    selection: Selection,
+    chosen: Vec<Chosen>,
 }
 
-/// Bytes of memory that the pictures of a file take from being decoded to being written, about; nothing for
-/// files that will be refused.
-pub fn weight(bytes: &[u8], selection: &Selection) -> Option<u64> {
-    let container = Container::new(bytes.to_vec()).ok()?;
-    let chosen = choose::choose(&container, selection).ok()?;
-    let mut parts: Vec<usize> = Vec::new();
-    let mut total = 0;
-    for picture in &chosen {
-        let part = &container.parts[picture.group.part];
-        let pixels = (part.window.width * part.window.height) as u64;
-        // As read, as result and as planes of floats; guides are floats.
-        total += pixels * 4 * (2 + 2 + 4 + 4) + pixels * 12 * picture.guides.len() as u64;
-        parts.extend(picture.guides.iter().map(|g| g.part).chain([picture.group.part]));
+impl Opened {
+    /// Takes a file apart.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for damaged files, and when there is no such layer, view, alpha or guide.
+    pub fn new(path: &Path, bytes: Vec<u8>, selection: &Selection) -> Result<Self> {
+        let open = || -> std::result::Result<Self, Fault> {
+            let container = Container::new(bytes)?;
+            let chosen = choose::choose(&container, selection)?;
+            Ok(Self { container, selection: selection.clone(), chosen })
+        };
+        open().map_err(|fault| fault.of(path))
     }
-    parts.sort_unstable();
-    parts.dedup();
-    for part in parts.iter().map(|p| &container.parts[*p]) {
-        // Decoded, and encoded again.
-        total += 2 * part.chunks.iter().map(|c| c.block.bytes(&part.channels) as u64).sum::<u64>();
+
+    /// Size of the largest picture.
+    pub fn size(&self) -> Option<(u32, u32)> {
+        let windows = self.chosen.iter().map(|c| self.container.parts[c.group.part].window);
+        let sizes = windows.map(|w| (w.width as u32, w.height as u32));
+        sizes.max_by_key(|(w, h)| u64::from(*w) * u64::from(*h))
     }
-    Some(total)
+
+    /// Bytes of memory that the file and its pictures take from being decoded to being written, about.
+    pub fn weight(&self) -> u64 {
+        let mut parts: Vec<usize> = Vec::new();
+        let mut total = self.container.bytes.len() as u64;
+        for picture in &self.chosen {
+            let part = &self.container.parts[picture.group.part];
+            let pixels = (part.window.width * part.window.height) as u64;
+            // As read, as result and as planes of floats; guides are floats.
+            total += pixels * 4 * (2 + 2 + 4 + 4) + pixels * 12 * picture.guides.len() as u64;
+            parts.extend(picture.guides.iter().map(|g| g.part).chain([picture.group.part]));
+        }
+        parts.sort_unstable();
+        parts.dedup();
+        for part in parts.iter().map(|p| &self.container.parts[*p]) {
+            // Decoded, and encoded again.
+            total += 2 * part.chunks.iter().map(|c| c.block.bytes(&part.channels) as u64).sum::<u64>();
+        }
+        total
+    }
+
+    /// Decodes the parts that are needed.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for damaged files and for kinds of files that cannot be written back.
+    pub fn decode(self, path: &Path) -> Result<ExrFile> {
+        ExrFile::of(self).map_err(|fault| fault.of(path))
+    }
 }
 
 /// A file with the pictures that were asked for.
@@ -105,18 +132,7 @@ pub struct ExrFile {
 }
 
 impl ExrFile {
-    /// Takes a file apart and decodes the parts that are needed.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for damaged files, kinds of files that cannot be written back, and when there is no such layer,
-    /// view, alpha or guide.
-    pub fn new(path: &Path, bytes: Vec<u8>, selection: &Selection) -> Result<Self> {
-        Self::open(bytes, selection).map_err(|fault| fault.of(path))
-    }
-
-    fn open(bytes: Vec<u8>, selection: &Selection) -> std::result::Result<Self, Fault> {
-        let container = Container::new(bytes)?;
-        let chosen = choose::choose(&container, selection)?;
+    fn of(Opened { container, selection, chosen }: Opened) -> std::result::Result<Self, Fault> {
         if let Some(layer) = &selection.into {
             for picture in &chosen {
                 let part = &container.parts[picture.group.part];
@@ -142,7 +158,7 @@ impl ExrFile {
             }
         }
         let changed = container.parts.iter().map(|_| None).collect();
-        Ok(Self { container, selection: selection.clone(), chosen, decoded, changed })
+        Ok(Self { container, selection, chosen, decoded, changed })
     }
 
     /// The pictures, one for each view that was asked for.
