@@ -16,8 +16,8 @@ use isophote_engine::{Rect, View};
 const WIDEST: i32 = u8::MAX as i32;
 /// Most pixels in a copy.
 const MOST: i32 = 1 << 16;
-/// Sides of a tile, unless far-reaching lines leave less room.
-pub const SIDE: i32 = 64;
+/// Columns and rows of a tile, unless far-reaching lines leave less room.
+const TILE: [i32; 2] = [128, 64];
 /// Smaller tiles are not worth their surroundings.
 const LEAST_SIDE: i32 = 8;
 
@@ -45,11 +45,12 @@ impl Frame {
 
     /// The tiles of `window`, with `reach` pixels around each; `reach` must be one that suits.
     pub fn tiles(window: Rect, reach: i32) -> impl Iterator<Item = Self> {
-        let side = SIDE.min(WIDEST - 2 * reach).max(1);
-        let rows = (window.y0..window.y1).step_by(side as usize);
-        rows.flat_map(move |y0| {
-            (window.x0..window.x1).step_by(side as usize).map(move |x0| {
-                let tile = Rect { x0, y0, x1: (x0 + side).min(window.x1), y1: (y0 + side).min(window.y1) };
+        let [width, height] = TILE.map(|side| side.min(WIDEST - 2 * reach).max(1));
+        // Rows as even as they can be: what lies around a thin tile is worth no less.
+        let height = window.height().div_ceil(window.height().div_ceil(height as u32).max(1)).max(1) as i32;
+        (window.y0..window.y1).step_by(height as usize).flat_map(move |y0| {
+            (window.x0..window.x1).step_by(width as usize).map(move |x0| {
+                let tile = Rect { x0, y0, x1: (x0 + width).min(window.x1), y1: (y0 + height).min(window.y1) };
                 let held = Rect { x0: x0 - reach, y0: y0 - reach, x1: tile.x1 + reach, y1: tile.y1 + reach };
                 debug_assert!(held.area() <= MOST as u64);
                 Self { tile, held }

@@ -96,13 +96,15 @@ pub fn tangent_along<S: Simd>(
     let x = (r - d).mul_add(px, -(f * py));
     let y = (r + d).mul_add(py, -(f * px));
     let size = x.mul_add(x, y * y);
+    let one = f32x8::splat(d.simd, 1.0);
     let inverse = size.max(f32x8::splat(d.simd, f32::MIN_POSITIVE)).inverse_sqrt();
-    let (x, y) = (x * inverse, y * inverse);
-    let cosine = px.mul_add(x, py * y);
+    let cosine = px.mul_add(x * inverse, py * (y * inverse));
     // False for what has overflowed too.
     let told = size.simd_gt(rr * 1e-8) & size.simd_le(f32x8::splat(d.simd, f32::MAX));
     let directed = rr.simd_gt(f32x8::splat(d.simd, FLAT));
-    ([told.select(x, px), told.select(y, py)], directed.select(cosine, f32x8::splat(d.simd, 1.0)))
+    // Chosen before the product: a choice that replaces `p` in memory would be a masked store, a very slow one.
+    let inverse = told.select(inverse, one);
+    ([told.select(x, px) * inverse, told.select(y, py) * inverse], directed.select(cosine, one))
 }
 
 /// (lambda1 - lambda2) / (lambda1 + lambda2), 0..=1 (2.137); zero tensor: 0.
