@@ -179,11 +179,25 @@ fn resampled(
     depth: bool,
     threads: &dyn Threads,
 ) -> Result<Image, Error> {
+    if !matches!(image.channels(), 1 | 4) {
+        return Err(Error::Input(format!("an image of {} channels is no picture", image.channels())));
+    }
     if !x.is_same() {
         let held = image.window();
         let columns = Rect { x0: window.x0, x1: window.x1, ..held };
+        // The same for every row.
+        let taps: Vec<Vec<Tap>> = (window.x0..window.x1).map(|column| x.taps(column).collect()).collect();
         image = by_rows(columns, image.channels(), threads, |row, target| {
-            along_row(&x, image.row(row), held.x0, columns, depth, target);
+            let row = image.row(row);
+            match image.channels() {
+                1 if depth => {
+                    for (column, target) in (window.x0..window.x1).zip(target) {
+                        *target = surface(&x, column, |x| row[(x - held.x0) as usize]);
+                    }
+                }
+                1 => along_row::<1>(&taps, row, held.x0, target),
+                _ => along_row::<4>(&taps, row, held.x0, target),
+            }
         })?;
     }
     if !y.is_same() {
@@ -218,22 +232,14 @@ fn by_rows(
 }
 
 /// One row of new pixels from the old ones of that row, which begins at column `x0`.
-fn along_row(axis: &Axis, row: &[f32], x0: i32, window: Rect, depth: bool, target: &mut [f32]) {
-    let channels = target.len() / window.width() as usize;
-    let pixel = |x: i32| {
-        let last = (row.len() / channels) as i32 - 1;
-        let at = (x - x0).clamp(0, last) as usize * channels;
-        &row[at..at + channels]
-    };
-    for (x, target) in (window.x0..window.x1).zip(target.chunks_exact_mut(channels)) {
-        if depth {
-            target[0] = surface(axis, x, |x| pixel(x)[0]);
-            continue;
-        }
-        target.copy_from_slice(pixel(axis.under(x)[0]));
-        let first = pixel(axis.under(x)[0]);
-        for tap in axis.taps(x) {
-            add(target, first, [-1, 0, 1].map(|beside| pixel(tap.at + beside)), &tap);
+fn along_row<const N: usize>(taps: &[Vec<Tap>], row: &[f32], x0: i32, target: &mut [f32]) {
+    let row = row.as_chunks::<N>().0;
+    let pixel = |x: i32| &row[(x - x0).clamp(0, row.len() as i32 - 1) as usize];
+    for (taps, target) in taps.iter().zip(target.as_chunks_mut::<N>().0) {
+        let Some(first) = taps.first().map(|tap| pixel(tap.at)) else { continue };
+        *target = *first;
+        for tap in taps {
+            add(target, first, [-1, 0, 1].map(|beside| &pixel(tap.at + beside)[..]), tap);
         }
     }
 }
