@@ -144,7 +144,9 @@ pub const ISOPHOTE_CHANGE_STRUCTURE: u32 = 1;
 
 /// Language of a shader. One of `ISOPHOTE_LANGUAGE_...`.
 pub type IsophoteLanguage = u32;
-/// WGSL, as the kernel was written.
+/// WGSL, as the kernel was written. Kernels that read windows of neighbours through workgroup memory declare
+/// `override shared_windows: bool = true`; without it they fetch each tap, which suits drivers that compute on
+/// the CPU. Other languages come with the default.
 pub const ISOPHOTE_LANGUAGE_WGSL: u32 = 0;
 /// SPIR-V 1.0 for Vulkan 1.0, in words of 32 bits.
 pub const ISOPHOTE_LANGUAGE_SPIRV: u32 = 1;

@@ -236,7 +236,6 @@ fn glsl(module: &Module, info: &ModuleInfo, made: &Made) -> Result<String, Strin
         writer_flags: glsl::WriterFlags::empty(),
         zero_initialize_workgroup_memory: CLEAR_WORKGROUP_MEMORY,
         binding_map: made.bindings.iter().map(|b| (b.resource(), b.slot as u8)).collect(),
-        ..glsl::Options::default()
     };
     let pipeline = glsl::PipelineOptions {
         shader_stage: ShaderStage::Compute,

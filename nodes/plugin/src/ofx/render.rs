@@ -193,7 +193,7 @@ impl Job<'_> {
                             multiply(&mut pixels);
                         }
                         pixels = squares
-                            .from_host(pixels, window, input, threads.threads())
+                            .to_squares(pixels, window, input, threads.threads())
                             .map_err(Error::from)?;
                     }
                     images.push((input, pixels));
@@ -210,7 +210,7 @@ impl Job<'_> {
                 executor = CpuExecutor::new();
             }
             if let Some(squares) = squares {
-                result = squares.to_host(result, band, threads.threads()).map_err(Error::from)?;
+                result = squares.to_pixels(result, band, threads.threads()).map_err(Error::from)?;
                 if !premultiplied && result.channels() == 4 {
                     divide(&mut result);
                 }

@@ -145,8 +145,8 @@ impl Squares {
     ///
     /// # Errors
     /// Memory.
-    pub fn from_host(
-        &self,
+    pub fn to_squares(
+        self,
         pixels: Image,
         window: Rect,
         input: GraphInput,
@@ -159,7 +159,7 @@ impl Squares {
     ///
     /// # Errors
     /// Memory.
-    pub fn to_host(&self, squares: Image, window: Rect, threads: &dyn Threads) -> Result<Image, Error> {
+    pub fn to_pixels(self, squares: Image, window: Rect, threads: &dyn Threads) -> Result<Image, Error> {
         resampled(self.axes.map(Axis::reversed), squares, window, false, threads)
     }
 }
@@ -347,8 +347,8 @@ mod tests {
             let back = |image: &Image| {
                 let window = Rect::of_size(squares.size()[0], squares.size()[1]);
                 let there =
-                    squares.from_host(image.clone(), window, GraphInput::Color, &CallingThread).unwrap();
-                squares.to_host(there, whole, &CallingThread).unwrap()
+                    squares.to_squares(image.clone(), window, GraphInput::Color, &CallingThread).unwrap();
+                squares.to_pixels(there, whole, &CallingThread).unwrap()
             };
             let noise = picture(size, noise);
             assert!(worst(&back(&noise), &noise) <= noisy, "{ratio:?}: {}", worst(&back(&noise), &noise));
@@ -372,7 +372,7 @@ mod tests {
             let all = Rect::of_size(width, height);
             let make = |window: Rect| {
                 let under = image.crop(squares.under(window)).unwrap();
-                squares.from_host(under, window, GraphInput::Color, &CallingThread).unwrap()
+                squares.to_squares(under, window, GraphInput::Color, &CallingThread).unwrap()
             };
             let full = make(all);
             assert!(full.data().iter().all(|v| (-1e-5..=60.0001).contains(v)));
@@ -380,7 +380,7 @@ mod tests {
             assert!(make(part) == full.crop(part).unwrap(), "{ratio:?}");
             let back = |window: Rect| {
                 let over = full.crop(squares.over(window)).unwrap();
-                squares.to_host(over, window, &CallingThread).unwrap()
+                squares.to_pixels(over, window, &CallingThread).unwrap()
             };
             let part = Rect { x0: 3, y0: 11, x1: 36, y1: 12 };
             assert!(back(part) == back(Rect::of_size(37, 29)).crop(part).unwrap(), "{ratio:?}");
@@ -393,7 +393,7 @@ mod tests {
         let depth = |x: i32| if x < 15 { 5.0 + 0.02 * x as f32 } else { f32::INFINITY };
         let image = Image::from_vec(30, 4, 1, (0..120).map(|i| depth(i % 30)).collect()).unwrap();
         let window = Rect::of_size(squares.size()[0], 4);
-        let made = squares.from_host(image, window, GraphInput::Depth, &CallingThread).unwrap();
+        let made = squares.to_squares(image, window, GraphInput::Depth, &CallingThread).unwrap();
         for (x, v) in made.row(2).iter().enumerate() {
             let place = (x as f32 + 0.5) / 1.0667 - 0.5;
             let (low, high) = (depth(place.floor().max(0.0) as i32), depth(place.ceil().min(29.0) as i32));
