@@ -174,7 +174,9 @@
 // Textures and passes are others now; every pointer handed out before is void.
 #define ISOPHOTE_CHANGE_STRUCTURE 1
 
-// WGSL, as the kernel was written.
+// WGSL, as the kernel was written. Kernels that read windows of neighbours through workgroup memory declare
+// `override shared_windows: bool = true`; without it they fetch each tap, which suits drivers that compute on
+// the CPU. Other languages come with the default.
 #define ISOPHOTE_LANGUAGE_WGSL 0
 
 // SPIR-V 1.0 for Vulkan 1.0, in words of 32 bits.
