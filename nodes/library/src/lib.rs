@@ -20,6 +20,7 @@ mod ports;
 pub mod registry;
 pub mod request;
 pub mod spec;
+pub mod tensor_options;
 pub mod values;
 
 pub use error::{Error, Result};

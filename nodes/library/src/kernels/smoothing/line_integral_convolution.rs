@@ -75,6 +75,7 @@ pub struct Options {
 }
 
 impl Default for Options {
+    /// What styles take: second order, which long lines need (§ 6.3), with one sample of the field a step.
     fn default() -> Self {
         Self { sigma: 6.0, step: 1.0, integrator: Integrator::AdamsBashforth, adapt: Adapt::Anisotropy, max_angle: 0.0 }
     }
