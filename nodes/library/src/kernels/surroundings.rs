@@ -46,7 +46,7 @@ impl Frame {
     /// The tiles of `window`, with `reach` pixels around each; `reach` must be one that suits.
     pub fn tiles(window: Rect, reach: i32) -> impl Iterator<Item = Self> {
         let [width, height] = TILE.map(|side| side.min(WIDEST - 2 * reach).max(1));
-        // Rows as even as they can be: what lies around a thin tile is worth no less.
+        // As even in height as they can be: around a low tile lies as much as around a high one.
         let height = window.height().div_ceil(window.height().div_ceil(height as u32).max(1)).max(1) as i32;
         (window.y0..window.y1).step_by(height as usize).flat_map(move |y0| {
             (window.x0..window.x1).step_by(width as usize).map(move |x0| {
@@ -56,12 +56,6 @@ impl Frame {
                 Self { tile, held }
             })
         })
-    }
-
-    /// Where the pixel (x, y) is.
-    #[inline(always)]
-    pub fn at(&self, x: i32, y: i32) -> u16 {
-        ((y - self.held.y0) * self.stride() + x - self.held.x0) as u16
     }
 
     /// True when some of what is held lies outside a picture of `full` pixels.
