@@ -23,6 +23,7 @@ pub struct LumaLines {
     y0: i32,
     width: usize,
     rows: usize,
+    radius: i32,
     opaque: bool,
     /// Where coverage begins, laid out as luma is, where not all is opaque.
     coverage: usize,
@@ -47,24 +48,32 @@ pub struct Line<S: Simd> {
     pub major_share: f32x8<S>,
     /// Index of the first centre, row by row.
     start: i32,
-    /// What one pixel along the nearer axis and one on the other add to it; nothing where the lines differ
-    /// in their nearer axis.
-    steps: Option<[i32; 2]>,
+    /// What one pixel along the nearer axis and one on the other add to it, where the lines share them.
+    steps: [i32; 2],
     /// Least and greatest slope.
     slopes: [f32; 2],
+    /// Rows that the lines' taps come to lie apart at most; 0 where they are more than [`MOST_ROWS`], or
+    /// lie on columns as well.
+    rows: usize,
 }
 
 /// Rows that are read as vectors at most, beside the first pair.
-const MOST_ROWS: i32 = 3;
+pub const MOST_ROWS: usize = 3;
 
 impl<S: Simd> Line<S> {
-    /// Least and greatest of floor(along slope + offset) over the lines.
+    /// How taps are best read: what [`LumaLines::pair`] wants to know beforehand. To find it out at every tap
+    /// would be a branch that nothing predicts.
     #[inline(always)]
-    fn span(&self, along: i32, offset: f32) -> [i32; 2] {
-        let [least, greatest] = self.slopes;
-        let (low, high) = if along < 0 { (greatest, least) } else { (least, greatest) };
-        let along = along as f32;
-        [(along * low + offset).floor() as i32, (along * high + offset).floor() as i32]
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// The lowest row of taps, floor(along slope + offset), that is read; `ROWS` more follow, the last one of
+    /// which lies no farther to the side than `along`.
+    #[inline(always)]
+    fn lowest<const ROWS: usize>(&self, along: i32, offset: f32) -> i32 {
+        let slope = self.slopes[usize::from(along < 0)];
+        ((along as f32 * slope + offset).floor() as i32).min(along.abs() - ROWS as i32)
     }
 }
 
@@ -76,7 +85,7 @@ impl LumaLines {
     #[inline(always)]
     pub fn load<S: Simd>(&mut self, simd: S, view: &View<'_>, strip: Rect, radius: i32, weighted: bool) {
         let margin = radius + 1;
-        (self.x0, self.y0) = (strip.x0 - margin, strip.y0 - margin);
+        (self.x0, self.y0, self.radius) = (strip.x0 - margin, strip.y0 - margin, radius);
         // Lines of the last block read as if it were full.
         self.width = (strip.width() as usize).next_multiple_of(8) + (2 * margin as usize).next_multiple_of(8);
         self.rows = strip.height() as usize + 2 * margin as usize;
@@ -169,13 +178,9 @@ impl LumaLines {
         for slope in slope.to_array() {
             slopes = [slopes[0].min(slope), slopes[1].max(slope)];
         }
-        let steps = if along_x.all_true() {
-            Some([1, width])
-        } else if along_x.any_true() {
-            None
-        } else {
-            Some([width, 1])
-        };
+        let (all, any) = (along_x.all_true(), along_x.any_true());
+        let apart = (self.radius as f32 * (slopes[1] - slopes[0]) + 1e-3).ceil() as usize;
+        let rows = if all == any && apart <= MOST_ROWS { apart } else { 0 };
         Line {
             at: along_x.select(column + column + (self.width * (self.rows + 1)) as i32, column),
             major: along_x.select(i32x8::splat(simd, 2), i32x8::splat(simd, width)),
@@ -184,15 +189,16 @@ impl LumaLines {
             slope,
             major_share: major.abs(),
             start,
-            steps,
+            steps: if all { [1, width] } else { [width, 1] },
             slopes,
+            rows,
         }
     }
 
     /// The two pixels `along` steps on at `across` = floor(along slope + `offset`) and `across` + 1 to
-    /// the side.
+    /// the side; `ROWS` is what the line says ([`Line::rows`]).
     #[inline(always)]
-    pub fn pair<S: Simd>(
+    pub fn pair<S: Simd, const ROWS: usize>(
         &self,
         simd: S,
         line: &Line<S>,
@@ -200,12 +206,12 @@ impl LumaLines {
         across: i32x8<S>,
         offset: f32,
     ) -> [f32x8<S>; 2] {
-        pair(simd, &self.data, line, along, across, offset)
+        pair::<_, ROWS>(simd, &self.data, line, along, across, offset)
     }
 
     /// Coverage of what [`LumaLines::pair`] gives; only where not all is opaque.
     #[inline(always)]
-    pub fn pair_coverage<S: Simd>(
+    pub fn pair_coverage<S: Simd, const ROWS: usize>(
         &self,
         simd: S,
         line: &Line<S>,
@@ -213,12 +219,37 @@ impl LumaLines {
         across: i32x8<S>,
         offset: f32,
     ) -> [f32x8<S>; 2] {
-        pair(simd, &self.data[self.coverage..], line, along, across, offset)
+        pair::<_, ROWS>(simd, &self.data[self.coverage..], line, along, across, offset)
+    }
+
+    /// What [`LumaLines::pair`] gives with no offset, plus the pixels opposite to them, `along` > 0 steps
+    /// back.
+    #[inline(always)]
+    pub fn opposite_pairs<S: Simd, const ROWS: usize>(
+        &self,
+        simd: S,
+        line: &Line<S>,
+        along: i32,
+        across: i32x8<S>,
+    ) -> [f32x8<S>; 2] {
+        opposite_pairs::<_, ROWS>(simd, &self.data, line, along, across)
+    }
+
+    /// Coverage of what [`LumaLines::opposite_pairs`] gives; only where not all is opaque.
+    #[inline(always)]
+    pub fn opposite_coverage<S: Simd, const ROWS: usize>(
+        &self,
+        simd: S,
+        line: &Line<S>,
+        along: i32,
+        across: i32x8<S>,
+    ) -> [f32x8<S>; 2] {
+        opposite_pairs::<_, ROWS>(simd, &self.data[self.coverage..], line, along, across)
     }
 }
 
 #[inline(always)]
-fn pair<S: Simd>(
+fn pair<S: Simd, const ROWS: usize>(
     simd: S,
     data: &[f32],
     line: &Line<S>,
@@ -226,22 +257,55 @@ fn pair<S: Simd>(
     across: i32x8<S>,
     offset: f32,
 ) -> [f32x8<S>; 2] {
-    let [low, high] = line.span(along, offset);
-    if let Some([major, minor]) = line.steps
-        && high - low <= MOST_ROWS
-    {
-        let at = line.start + along * major;
-        let (mut first, mut second) =
-            (row(simd, data, at + low * minor), row(simd, data, at + (low + 1) * minor));
-        for i in low + 1..=high {
-            let beyond = across.simd_ge(i);
-            let next = row(simd, data, at + (i + 1) * minor);
-            first = beyond.select(row(simd, data, at + i * minor), first);
-            second = beyond.select(next, second);
-        }
-        return [first, second];
+    if ROWS == 0 {
+        return gathered(simd, data, line.at + line.major * along + line.minor * across);
     }
-    let at = line.at + line.major * along + line.minor * across;
+    let [major, minor] = line.steps;
+    let low = line.lowest::<ROWS>(along, offset);
+    let at = line.start + along * major + low * minor;
+    let (mut first, mut second) = (row(simd, data, at), row(simd, data, at + minor));
+    for i in 1..=ROWS as i32 {
+        let beyond = across.simd_ge(low + i);
+        let next = row(simd, data, at + (i + 1) * minor);
+        first = beyond.select(row(simd, data, at + i * minor), first);
+        second = beyond.select(next, second);
+    }
+    [first, second]
+}
+
+#[inline(always)]
+fn opposite_pairs<S: Simd, const ROWS: usize>(
+    simd: S,
+    data: &[f32],
+    line: &Line<S>,
+    along: i32,
+    across: i32x8<S>,
+) -> [f32x8<S>; 2] {
+    if ROWS == 0 {
+        let way = line.major * along + line.minor * across;
+        let [first, second] = gathered(simd, data, line.at + way);
+        // The left one of two opposite neighbours lies across from the right one.
+        let [right, left] = gathered(simd, data, line.at - way - line.minor);
+        return [first + left, second + right];
+    }
+    let [major, minor] = line.steps;
+    let low = line.lowest::<ROWS>(along, 0.0);
+    let way = along * major + low * minor;
+    let (on, back) = (line.start + way, line.start - way);
+    let mut next = row(simd, data, on + minor) + row(simd, data, back - minor);
+    let (mut first, mut second) = (row(simd, data, on) + row(simd, data, back), next);
+    for i in 1..=ROWS as i32 {
+        let beyond = across.simd_ge(low + i);
+        first = beyond.select(next, first);
+        next = row(simd, data, on + (i + 1) * minor) + row(simd, data, back - (i + 1) * minor);
+        second = beyond.select(next, second);
+    }
+    [first, second]
+}
+
+/// Values at eight places and the ones after them.
+#[inline(always)]
+fn gathered<S: Simd>(simd: S, data: &[f32], at: i32x8<S>) -> [f32x8<S>; 2] {
     let at = at.to_array();
     let low = [two(data, at[0]), two(data, at[1]), two(data, at[2]), two(data, at[3])];
     let high = [two(data, at[4]), two(data, at[5]), two(data, at[6]), two(data, at[7])];

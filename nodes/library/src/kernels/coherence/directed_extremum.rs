@@ -88,10 +88,12 @@ fn strips<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                     target.copy_from_slice(&pass.inputs[0].data()[at..at + target.len()]);
                     continue;
                 }
-                let colors = if lumas.is_opaque() {
-                    extreme::<_, true>(simd, pass, params, radius, &lumas, block, active, z)
-                } else {
-                    extreme::<_, false>(simd, pass, params, radius, &lumas, block, active, z)
+                let [e, f, g, _] = block.read4(simd, &pass.inputs[1]);
+                let line = lumas.line(simd, block.x, block.y, axis((e - g) * 0.5, f).1);
+                let colors = match (lumas.is_opaque(), line.rows()) {
+                    (true, 1) => extreme::<_, true, 1>(simd, pass, params, radius, &lumas, &line, block, active, z),
+                    (true, _) => extreme::<_, true, 0>(simd, pass, params, radius, &lumas, &line, block, active, z),
+                    (false, _) => extreme::<_, false, 0>(simd, pass, params, radius, &lumas, &line, block, active, z),
                 };
                 write4(colors, target);
             }
@@ -111,20 +113,18 @@ struct Best<S: Simd> {
 
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "the inner function of one loop")]
-fn extreme<S: Simd, const OPAQUE: bool>(
+fn extreme<S: Simd, const OPAQUE: bool, const ROWS: usize>(
     simd: S,
     pass: &CpuPass<'_>,
     params: &Params,
     radius: i32,
     lumas: &LumaLines,
+    line: &Line<S>,
     block: Block,
     active: mask32x8<S>,
     z: f32x8<S>,
 ) -> [f32x8<S>; 4] {
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-    let [e, f, g, _] = block.read4(simd, &pass.inputs[1]);
-    let (_, n) = axis((e - g) * 0.5, f);
-    let line = lumas.line(simd, block.x, block.y, n);
     let steps = (line.major_share * (params.radius + 1e-3)).floor() * params.scale;
     let last = steps.ceil();
     // Above the threshold lies the zone of a minimum: erode. Below its opposite: dilate.
@@ -149,14 +149,14 @@ fn extreme<S: Simd, const OPAQUE: bool>(
             let first: i32x8<S> = (across + 0.001).floor().to_int();
             let second: i32x8<S> = (across + 0.999).floor().to_int();
             let apart = second.simd_gt(first);
-            let [a, b] = lumas.pair(simd, &line, along, first, 0.001);
+            let [a, b] = lumas.pair::<_, ROWS>(simd, line, along, first, 0.001);
             let mut coverage = [one; 2];
             if !OPAQUE {
-                coverage = lumas.pair_coverage(simd, &line, along, first, 0.001);
+                coverage = lumas.pair_coverage::<_, ROWS>(simd, line, along, first, 0.001);
             }
             let far = [apart.select(b, a), apart.select(coverage[1], coverage[0])];
-            best.compare::<OPAQUE>(&line, active, sign, far, along, second);
-            best.compare::<OPAQUE>(&line, active, sign, [a, coverage[0]], along, first);
+            best.compare::<OPAQUE>(line, active, sign, far, along, second);
+            best.compare::<OPAQUE>(line, active, sign, [a, coverage[0]], along, first);
         }
         if params.scale != 1.0 {
             let inside = steps.simd_ge(f32x8::splat(simd, k as f32));

@@ -9,7 +9,7 @@
 //! Cost: 5 sigma steps, each two linear interpolations and about 25 operations.
 
 use crate::kernels::blocks::{Block, write1};
-use crate::kernels::luma_lines::{LumaLines, STRIP};
+use crate::kernels::luma_lines::{Line, LumaLines, STRIP};
 use crate::kernels::tensor_algebra::axis;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
@@ -110,32 +110,63 @@ fn along<S: Simd, const OPAQUE: bool>(
     let variance = params.sigma * params.sigma;
     // exp(-d^2 / 2 sigma^2) at d = k step, from one step to the next.
     let falloff = (step * step * (-0.721_347_52 / variance)).exp2();
-    let (mut gaussian, mut ratio) = (falloff, falloff * falloff * falloff);
-    let mut sum = f32x8::splat(simd, 0.0);
-    for k in 1..=radius {
-        let active = steps.simd_ge(f32x8::splat(simd, k as f32));
-        if !active.any_true() {
-            break;
-        }
-        let d = step * k as f32;
-        let across = line.slope * k as f32;
-        let mut both = f32x8::splat(simd, 0.0);
-        for (along, across) in [(k, across), (-k, -across)] {
+    let taps = Taps { lumas, line, step, steps, centre, variance, falloff, radius };
+    let sum = match line.rows() {
+        1 => taps.sum::<OPAQUE, 1>(simd),
+        2 => taps.sum::<OPAQUE, 2>(simd),
+        3 => taps.sum::<OPAQUE, 3>(simd),
+        _ => taps.sum::<OPAQUE, 0>(simd),
+    };
+    sum * step / (2.506_628_3 * variance * params.sigma)
+}
+
+/// What the taps of eight pixels are.
+struct Taps<'a, S: Simd> {
+    lumas: &'a LumaLines,
+    line: Line<S>,
+    /// Pixels from tap to tap.
+    step: f32x8<S>,
+    /// Taps to a side.
+    steps: f32x8<S>,
+    centre: f32x8<S>,
+    variance: f32,
+    /// exp(-step^2 / 2 sigma^2).
+    falloff: f32x8<S>,
+    /// Most taps to a side.
+    radius: i32,
+}
+
+impl<S: Simd> Taps<'_, S> {
+    /// Their weighted sum; `ROWS` is how the line is read.
+    #[inline(always)]
+    fn sum<const OPAQUE: bool, const ROWS: usize>(&self, simd: S) -> f32x8<S> {
+        let Self { lumas, ref line, step, steps, centre, variance, falloff, radius } = *self;
+        // The Gaussian is carried from one step to the next.
+        let (mut gaussian, mut ratio) = (falloff, falloff * falloff * falloff);
+        let mut sum = f32x8::splat(simd, 0.0);
+        for k in 1..=radius {
+            let active = steps.simd_ge(f32x8::splat(simd, k as f32));
+            if !active.any_true() {
+                break;
+            }
+            let d = step * k as f32;
+            let across = line.slope * k as f32;
+            // Opposite taps lie alike between their neighbours.
             let i = across.floor();
             let share = across - i;
-            let [a, b] = lumas.pair(simd, &line, along, i.to_int(), 0.0);
-            let tap = (b - a).mul_add(share, a);
-            if OPAQUE {
-                both += tap - centre;
-            } else {
-                let [a, b] = lumas.pair_coverage(simd, &line, along, i.to_int(), 0.0);
-                both += tap - (b - a).mul_add(share, a) * centre;
+            let [a, b] = lumas.opposite_pairs::<_, ROWS>(simd, line, k, i.to_int());
+            let taps = (b - a).mul_add(share, a);
+            let mut coverage = f32x8::splat(simd, 2.0);
+            if !OPAQUE {
+                let [a, b] = lumas.opposite_coverage::<_, ROWS>(simd, line, k, i.to_int());
+                coverage = (b - a).mul_add(share, a);
             }
+            let both = taps - coverage * centre;
+            let weight = active.select((d * d - variance) * gaussian, f32x8::splat(simd, 0.0));
+            sum = weight.mul_add(both, sum);
+            gaussian *= ratio;
+            ratio *= falloff * falloff;
         }
-        let weight = active.select((d * d - variance) * gaussian, f32x8::splat(simd, 0.0));
-        sum = weight.mul_add(both, sum);
-        gaussian *= ratio;
-        ratio *= falloff * falloff;
+        sum
     }
-    sum * step / (2.506_628_3 * variance * params.sigma)
 }
