@@ -1,14 +1,14 @@
 // Second pass of the separable flow-based difference of Gaussians: a Gaussian of the response along
 // the stream line of the tensor field, then the threshold (section 4.5, 4.8).
-// Cost: per step one bilinear sample of the response and one (Euler, Adams-Bashforth) or two
-// tensor samples.
+// Cost: per step one bilinear sample of the response and one (Euler, two-step) or two tensor
+// samples.
 #import stream
 #import edge_threshold
 
 struct Params {
     // Standard deviation along the line, pixels.
     sigma: f32,
-    // 0: Euler; 1: second-order Runge-Kutta; 2: Adams-Bashforth.
+    // 0: Euler; 1: second-order Runge-Kutta; 2: two-step.
     integrator: u32,
     // How the response becomes an edge image, see edge_threshold.
     threshold: u32,

@@ -18,7 +18,7 @@ struct Params {
     edge: f32,
     // Standard deviation along the line, pixels.
     sigma: f32,
-    // 0: Euler; 1: second-order Runge-Kutta; 2: Adams-Bashforth; 3: Cabral-Leedom.
+    // 0: Euler; 1: second-order Runge-Kutta; 2: two-step; 3: Cabral-Leedom.
     stepping: u32,
     // How the response becomes an edge image, see edge_threshold.
     threshold: u32,

@@ -14,8 +14,7 @@
 //       ...
 //   }
 //
-// Every tensor is then read within `radius` of the centre, or h / 2 further by Adams' and Bashforth's method: a
-// kernel's support is floor(radius) + 1 for steps of one pixel.
+// Every tensor is then read within `radius` of the centre: a kernel's support is floor(radius) + 1 for steps of one pixel.
 
 struct Stream {
     // Where the line has come to, absolute.
@@ -24,6 +23,8 @@ struct Stream {
     direction: vec2f,
     // Cosine of the angle between the last two steps, 0..1 up to rounding.
     turn: f32,
+    // The tangent at the end of the last step, foreseen by the two-step method.
+    ahead: vec2f,
     // True until the first step, whose tangent is already known.
     begins: bool,
 }
@@ -35,7 +36,7 @@ fn stream_tangent(field: texture_2d<f32>, slot: u32, p: vec2f) -> vec2f {
 
 // A line that starts at p towards the unit vector `direction`, which is the tangent at p or its opposite.
 fn stream_begin(p: vec2f, direction: vec2f) -> Stream {
-    return Stream(p, direction, 1.0, true);
+    return Stream(p, direction, 1.0, direction, true);
 }
 
 // The same on the side of the unit vector `direction`.
@@ -48,30 +49,38 @@ fn stream_tangent_along(field: texture_2d<f32>, slot: u32, p: vec2f, direction: 
 const STREAM_EULER = 0u;
 // The midpoint method, a second-order Runge-Kutta method (2.182).
 const STREAM_MIDPOINT = 1u;
-// The two-step method of Adams and Bashforth, of second order as well; its first step is the midpoint
-// method's.
-const STREAM_ADAMS_BASHFORTH = 2u;
+// The midpoint method with the tangent here foreseen from those halfway through the last two steps; of second
+// order too.
+const STREAM_TWO_STEP = 2u;
 
 // Moves by `h` pixels.
 fn stream_step(line: ptr<function, Stream>, field: texture_2d<f32>, slot: u32, h: f32, integrator: u32) {
     let from_here = (*line).position;
     let last = (*line).direction;
     let begins = (*line).begins;
-    var next = Along(last, 1.0);
-    if !begins {
+    var next = Along(select(last, (*line).ahead, integrator == STREAM_TWO_STEP), 1.0);
+    if !begins && integrator != STREAM_TWO_STEP {
         next = stream_tangent_along(field, slot, from_here, last);
-    }
-    if integrator == STREAM_ADAMS_BASHFORTH && !begins {
-        let there = (1.5 * h) * next.tangent + ((-0.5 * h) * last + from_here);
-        *line = Stream(there, next.tangent, next.cosine, false);
-        return;
     }
     if integrator != STREAM_EULER {
         next = stream_tangent_along(field, slot, from_here + (0.5 * h) * next.tangent, last);
     }
-    // After its first step the two-step method still asks for the tangent at the beginning.
-    let direction = select(next.tangent, last, integrator == STREAM_ADAMS_BASHFORTH);
-    *line = Stream(from_here + h * next.tangent, direction, next.cosine, false);
+    let ahead = next.tangent + select(0.5, 1.0, begins) * (next.tangent - last);
+    *line = Stream(from_here + h * next.tangent, next.tangent, next.cosine, ahead, false);
+}
+
+// Lines of no more steps to a side keep theirs.
+const STREAM_FEW = 3.0;
+
+// The number of steps, stretched by up to `stretch`, that take the place of `steps`.
+fn stream_few_steps(steps: f32, stretch: f32) -> f32 {
+    return max(ceil(steps / stretch - 1e-3), min(steps, STREAM_FEW));
+}
+
+// By how much steps are longer when `few` of them take the place of `steps`: their rectangles fill the same
+// length (2.187).
+fn stream_stretched(steps: f32, few: f32) -> f32 {
+    return (2.0 * steps + 1.0) / (2.0 * few + 1.0);
 }
 
 // True when p has left the picture of input `slot`.

@@ -1,7 +1,7 @@
 // Line integral convolution of a colour with a Gaussian (2.186) along the stream lines of a tensor
 // field, with the length adapted to the anisotropy (§ 6.3.1) or to the curvature (§ 6.3.2).
-// Cost: per step one bilinear colour sample and one (Euler, Adams-Bashforth) or two tensor samples with
-// their tangents.
+// Cost: per step one bilinear colour sample and one (Euler, two-step) or two tensor samples with their
+// tangents.
 #import coverage
 #import stream
 
@@ -10,9 +10,11 @@ struct Params {
     sigma: f32,
     // Step size h, pixels.
     step: f32,
+    // Most by which steps may be stretched, at least 1.
+    stretch: f32,
     // A side ends at a step that turns by more than the angle of this cosine.
     least_turn: f32,
-    // 0: Euler; 1: second-order Runge-Kutta; 2: Adams-Bashforth.
+    // 0: Euler; 1: second-order Runge-Kutta; 2: two-step.
     integrator: u32,
     // 0: none; 1: anisotropy; 2: angle.
     adapt: u32,
@@ -46,20 +48,27 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     // exp(-u^2 / 2 sigma^2) as a power of two.
     let falloff = -0.72134752 / max(sigma * sigma, 1e-6);
 
+    let steps = floor((radius + 1e-3) / params.step);
+    let stretch = stream_stretched(steps, stream_few_steps(steps, params.stretch));
+    let step = stretch * params.step;
+    // The cosine of so many times the angle whose cosine is c, exact for one and two times.
+    let c = params.least_turn;
+    let least_turn = 1.0 - stretch * ((1.0 - c) * (1.0 - c) + stretch * c * (1.0 - c));
+
     let tangent = tensor_tangent(tensor);
     var sum = fetch_covered(source, 0u, pixel(id));
     var norm = 1.0;
     for (var side = -1.0; side <= 1.0; side += 2.0) {
         var line = stream_begin(origin, side * tangent);
         var u = 0.0;
-        while u + params.step <= limit {
-            stream_step(&line, field, INPUT_FIELD, params.step, params.integrator);
-            var du = params.step;
+        while u + step <= limit {
+            stream_step(&line, field, INPUT_FIELD, step, params.integrator);
+            var du = step;
             if params.adapt == 2u {
                 du = max(du, acos(min(line.turn, 1.0)) * radius / 3.14159265);
             }
             u += du;
-            if u > limit || line.turn < params.least_turn || stream_outside(0u, line.position) {
+            if u > limit || line.turn < least_turn || stream_outside(0u, line.position) {
                 break;
             }
             let weight = exp2(falloff * u * u);

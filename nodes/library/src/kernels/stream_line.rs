@@ -5,8 +5,8 @@
 //! cancel. A line is traced from its centre in one direction and then in the other. Lanes whose line
 //! has ended stay where they are while the others go on.
 //!
-//! Cost: a step samples one tensor (Euler, Adams-Bashforth) or two (midpoint), bilinearly, and finds their
-//! axes; the first step saves one of two or adds one of one.
+//! Cost: a step samples one tensor (Euler, two-step) or two (midpoint), bilinearly, and finds their axes; the
+//! first step of Euler's method and of the midpoint method saves one.
 
 use crate::kernels::surroundings::{Frame, Place, Surroundings, TWO};
 use crate::kernels::tensor_algebra::{tangent, tangent_along};
@@ -21,10 +21,10 @@ pub enum Integrator {
     Euler = 0,
     /// The midpoint method, a second-order Runge-Kutta method (2.182).
     Midpoint = 1,
-    /// The two-step method of Adams and Bashforth, x + h (3 t - t') / 2 with the tangents t here and t' one step
-    /// before: second order as well, and one sample of the field a step instead of two. Its first step is
-    /// the midpoint method's.
-    AdamsBashforth = 2,
+    /// The midpoint method with the tangent here foreseen from those halfway through the last two steps: only
+    /// where the next one is taken depends on it, so that the method is of second order too, with one sample of
+    /// the field a step instead of two. Its first step is the midpoint method's.
+    TwoStep = 2,
 }
 
 impl Integrator {
@@ -33,16 +33,48 @@ impl Integrator {
         match number {
             0 => Self::Euler,
             1 => Self::Midpoint,
-            _ => Self::AdamsBashforth,
+            _ => Self::TwoStep,
         }
     }
+
+    /// Whether a step depends on the field where it starts; the tangent at a line's beginning is known.
+    fn asks_here(self, begins: bool) -> bool {
+        !begins && self != Self::TwoStep
+    }
+}
+
+/// What styles let [`few_steps`] stretch the steps of their lines by.
+pub const STRETCH: f32 = 2.5;
+
+/// Lines of no more steps to a side keep theirs.
+const FEW: f32 = 3.0;
+
+/// The number of steps, stretched by up to `stretch`, that take the place of `steps` steps to one side of a
+/// line; no fewer for `stretch` 1.
+///
+/// A line of n steps of length h to both sides stands for 2n + 1 rectangles of width h (2.187): as many as there
+/// are now fill the same length, and steps are longer by [`stretched`]. Along their own lines pictures change
+/// so little that wide rectangles do as well, as long as a method of second order steps them. After five rounds
+/// of the coherence-enhancing filter by the two-step method a photograph of fur is 50.1 dB from one with steps
+/// of a quarter of a pixel, and a portrait 42.1 dB; by the midpoint method in steps of one pixel they are 51.5
+/// and 42.8 dB from it, by Euler's 43.1 and 35.1; noise is smoothed no worse. Responses that are sharpened by a
+/// threshold want all steps: left out, some of the dots that noise gives are not joined to lines.
+#[inline(always)]
+pub fn few_steps<S: Simd>(steps: f32x8<S>, stretch: f32) -> f32x8<S> {
+    // A last bit must not add a step.
+    (steps / stretch - 1e-3).ceil().max(steps.min(f32x8::splat(steps.simd, FEW)))
+}
+
+/// By how much steps are longer when `few` of them take the place of `steps`.
+#[inline(always)]
+pub fn stretched<S: Simd>(steps: f32x8<S>, few: f32x8<S>) -> f32x8<S> {
+    (steps + steps + 1.0) / (few + few + 1.0)
 }
 
 /// A tensor field and how its stream lines are stepped.
 ///
 /// As long as steps are only taken up to an arc length of `radius`, every tensor is read within
-/// floor(radius) + 1 pixels of the centre in x and in y; by Adams' and Bashforth's method, which goes up to half
-/// a step further, within floor(radius + h / 2) + 1.
+/// floor(radius) + 1 pixels of the centre in x and in y.
 #[derive(Clone, Copy, Debug)]
 pub struct StreamField<'a> {
     /// Tensors (E, F, G, w), or as much of them as orientation needs, (E - G, F).
@@ -64,6 +96,8 @@ pub struct Stream<S: Simd> {
     pub direction: [f32x8<S>; 2],
     /// Cosine of the angle between the last two steps, 0..=1 up to rounding.
     pub turn: f32x8<S>,
+    /// The tangent at the end of the last step, foreseen by the two-step method.
+    ahead: [f32x8<S>; 2],
     begins: bool,
 }
 
@@ -72,7 +106,7 @@ impl<S: Simd> Stream<S> {
     /// its opposite.
     #[inline(always)]
     pub fn begin(x: f32x8<S>, y: f32x8<S>, direction: [f32x8<S>; 2]) -> Self {
-        Self { x, y, direction, turn: f32x8::splat(x.simd, 1.0), begins: true }
+        Self { x, y, direction, turn: f32x8::splat(x.simd, 1.0), ahead: direction, begins: true }
     }
 
     /// Both sides of lines through (x, y), where the tangent is `tangent`.
@@ -81,12 +115,9 @@ impl<S: Simd> Stream<S> {
         [Self::begin(x, y, [-tx, -ty]), Self::begin(x, y, [tx, ty])]
     }
 
-    /// Half a step of Euler's method, where the field is `here`.
+    /// Half a step of length `h` in the direction (kx, ky).
     #[inline(always)]
-    fn halfway(&self, here: [f32x8<S>; 2], h: f32x8<S>) -> [f32x8<S>; 2] {
-        // The first direction is the tangent already.
-        let [kx, ky] =
-            if self.begins { self.direction } else { tangent_along(here[0], here[1], self.direction).0 };
+    fn halfway(&self, [kx, ky]: [f32x8<S>; 2], h: f32x8<S>) -> [f32x8<S>; 2] {
         let half = h * 0.5;
         [half.mul_add(kx, self.x), half.mul_add(ky, self.y)]
     }
@@ -100,24 +131,13 @@ impl<S: Simd> Stream<S> {
         self.straight(h);
     }
 
-    /// A step of the method of Adams and Bashforth, where the field is `here`.
+    /// Foresees the tangent at the end of a step before which `last` was the direction: the tangent of the
+    /// beginning for the first step, and of halfway through the step before for others.
     #[inline(always)]
-    fn extrapolate(&mut self, [difference, f]: [f32x8<S>; 2], h: f32x8<S>) {
-        let ([tx, ty], turn) = tangent_along(difference, f, self.direction);
-        let (h, back) = (h * 1.5, h * -0.5);
-        self.x = h.mul_add(tx, back.mul_add(self.direction[0], self.x));
-        self.y = h.mul_add(ty, back.mul_add(self.direction[1], self.y));
-        self.direction = [tx, ty];
-        self.turn = turn;
-    }
-
-    /// A first step of length `h` along the tangent of the field halfway, after which the tangent at its
-    /// beginning is still the last one.
-    #[inline(always)]
-    fn set_out(&mut self, halfway: [f32x8<S>; 2], h: f32x8<S>) {
-        let first = self.direction;
-        self.follow(halfway, h);
-        self.direction = first;
+    fn foresee(&mut self, last: [f32x8<S>; 2], first: bool) {
+        let share = if first { 1.0 } else { 0.5 };
+        let [x, y] = self.direction;
+        self.ahead = [(x - last[0]).mul_add(share, x), (y - last[1]).mul_add(share, y)];
     }
 
     /// A step of length `h` in the direction of the last one.
@@ -163,11 +183,23 @@ impl StreamField<'_> {
         active: [mask32x8<S>; N],
     ) {
         let zero = f32x8::splat(simd, 0.0);
-        let (mut h, mut here) = ([zero; N], [[zero; 2]; N]);
+        let mut lengths = [zero; N];
         for i in 0..N {
-            h[i] = active[i].select(f32x8::splat(simd, self.step), zero);
+            lengths[i] = active[i].select(f32x8::splat(simd, self.step), zero);
         }
-        if !lines[0].begins {
+        self.advance_by(simd, lines, lengths);
+    }
+
+    /// Moves `N` times eight lines by one step of `lengths` pixels; lines that have ended take steps of none.
+    #[inline(always)]
+    pub fn advance_by<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        lines: &mut [Stream<S>; N],
+        lengths: [f32x8<S>; N],
+    ) {
+        let mut here = [[f32x8::splat(simd, 0.0); 2]; N];
+        if self.integrator.asks_here(lines[0].begins) {
             for i in 0..N {
                 here[i] = self.at(simd, lines[i].x, lines[i].y);
             }
@@ -175,7 +207,7 @@ impl StreamField<'_> {
         step(
             self.integrator,
             lines,
-            h,
+            lengths,
             here,
             #[inline(always)]
             |x, y| self.at(simd, x, y),
@@ -200,37 +232,39 @@ fn step<S: Simd, const N: usize>(
     at: impl Fn(f32x8<S>, f32x8<S>) -> [f32x8<S>; 2],
 ) {
     let begins = lines[0].begins;
-    let mut field = here;
-    // In stages: what waits in one line is filled by the same of the others.
-    if integrator == Integrator::Midpoint || (begins && integrator == Integrator::AdamsBashforth) {
+    let (mut tangents, mut field) = ([[h[0]; 2]; N], here);
+    // In stages, and in loops short enough to be unrolled: what waits in one line is filled by the same of the
+    // others.
+    if integrator != Integrator::Euler {
+        if integrator.asks_here(begins) {
+            for i in 0..N {
+                tangents[i] = tangent_along(here[i][0], here[i][1], lines[i].direction).0;
+            }
+        } else {
+            for i in 0..N {
+                tangents[i] = lines[i].ahead;
+            }
+        }
         for i in 0..N {
-            field[i] = lines[i].halfway(here[i], h[i]);
+            field[i] = lines[i].halfway(tangents[i], h[i]);
         }
         for i in 0..N {
             field[i] = at(field[i][0], field[i][1]);
         }
     }
-    // One loop for each method, short enough to be unrolled: the chains of all lines then run side by side.
-    match integrator {
-        Integrator::Euler if begins => {
-            for i in 0..N {
-                lines[i].straight(h[i]);
-            }
+    if begins && integrator == Integrator::Euler {
+        for i in 0..N {
+            lines[i].straight(h[i]);
         }
-        Integrator::Euler | Integrator::Midpoint => {
-            for i in 0..N {
-                lines[i].follow(field[i], h[i]);
-            }
+    } else if integrator == Integrator::TwoStep {
+        for i in 0..N {
+            let last = lines[i].direction;
+            lines[i].follow(field[i], h[i]);
+            lines[i].foresee(last, begins);
         }
-        Integrator::AdamsBashforth if begins => {
-            for i in 0..N {
-                lines[i].set_out(field[i], h[i]);
-            }
-        }
-        Integrator::AdamsBashforth => {
-            for i in 0..N {
-                lines[i].extrapolate(field[i], h[i]);
-            }
+    } else {
+        for i in 0..N {
+            lines[i].follow(field[i], h[i]);
         }
     }
 }
@@ -251,27 +285,25 @@ pub struct NearField<'a> {
     pub frame: &'a Frame,
     /// (E - G, F).
     pub tensors: &'a Surroundings<TWO>,
-    /// Step size h in pixels.
-    pub step: f32,
     /// How lines are stepped.
     pub integrator: Integrator,
 }
 
 impl NearField<'_> {
-    /// Moves all lanes of `N` times eight lines by one step from the places where they are.
+    /// Moves `N` times eight lines by one step of `lengths` pixels from the places where they are, by the
+    /// arithmetic of [`StreamField::advance_by`].
     ///
-    /// The arithmetic is that of [`StreamField::advance`], but that no lane stays where it is: lines that
-    /// have ended go on within what is held.
+    /// Lines that have ended may go on: they stay within what is held.
     #[inline(always)]
     pub fn advance<S: Simd, const N: usize>(
         &self,
         simd: S,
         lines: &mut [Stream<S>; N],
         places: &[Place<S>; N],
+        lengths: [f32x8<S>; N],
     ) {
-        let h = [f32x8::splat(simd, self.step); N];
         let mut here = [[f32x8::splat(simd, 0.0); 2]; N];
-        if !lines[0].begins {
+        if self.integrator.asks_here(lines[0].begins) {
             for i in 0..N {
                 here[i] = self.at(simd, &places[i]);
             }
@@ -279,7 +311,7 @@ impl NearField<'_> {
         step(
             self.integrator,
             lines,
-            h,
+            lengths,
             here,
             #[inline(always)]
             |x, y| self.at(simd, &Place::new(self.frame, x, y)),
@@ -353,11 +385,28 @@ mod tests {
     #[test]
     fn euler_drifts_outwards_and_methods_of_second_order_ten_times_less() {
         let [euler, midpoint, two_step] =
-            [Integrator::Euler, Integrator::Midpoint, Integrator::AdamsBashforth].map(|i| drift(i, 30));
+            [Integrator::Euler, Integrator::Midpoint, Integrator::TwoStep].map(|i| drift(i, 30));
         assert!(euler > 2.0, "Euler drifts by {euler}");
-        for (method, drift) in [("midpoint", midpoint), ("Adams-Bashforth", two_step)] {
-            assert!(drift.abs() * 10.0 < euler, "{method} drifts by {drift}, Euler by {euler}");
+        for (method, drift) in [("midpoint", midpoint), ("two-step", two_step)] {
+            assert!(drift.abs() * 10.0 < euler, "the {method} method drifts by {drift}, Euler by {euler}");
         }
+    }
+
+    #[test]
+    fn few_stretched_steps_fill_the_length_of_many() {
+        dispatch!(Level::new(), simd => {
+            for steps in 0..200 {
+                let all = f32x8::splat(simd, steps as f32);
+                assert_eq!(few_steps(all, 1.0)[0], steps as f32, "unstretched");
+                assert_eq!(stretched(all, all)[0], 1.0);
+                let few = few_steps(all, STRETCH);
+                let (n, h) = (few[0], stretched(all, few)[0]);
+                assert!((1.0..=STRETCH).contains(&h), "{steps} steps become {n} that are {h} times as long");
+                assert!(n * h <= steps as f32 + 1e-4, "{n} steps of {h} lead beyond {steps}");
+                assert!(steps == 0 || (n + 1.0) * h > steps as f32 + 1e-2);
+                assert!((steps <= 3) == (h == 1.0));
+            }
+        });
     }
 
     #[test]

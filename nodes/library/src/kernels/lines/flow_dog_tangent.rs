@@ -1,8 +1,8 @@
 //! Second pass of the separable flow-based difference of Gaussians: a Gaussian of the response along
 //! the stream line of the tensor field (§ 2.9, 4.5), then the threshold (4.8).
 //!
-//! Cost: 4 sigma_m steps per pixel, each one bilinear sample of two values and one (Euler,
-//! Adams-Bashforth) or two samples of orientation with their tangents, about 70 or 110 operations.
+//! Cost: 4 sigma_m steps per pixel, each one bilinear sample of two values and one (Euler, two-step) or two
+//! samples of orientation with their tangents, about 70 or 110 operations.
 
 use crate::kernels::blocks::{BLOCK, Block, for_blocks_in_tiles, write1};
 use crate::kernels::edge_threshold::{LEAST_COVERAGE, Xdog, edge_threshold, edge_uncovered};
@@ -18,7 +18,7 @@ crate::params! {
     pub struct Params for flow_dog_tangent {
         /// Standard deviation along the line, pixels.
         pub sigma: f32,
-        /// 0: Euler; 1: second-order Runge-Kutta; 2: Adams-Bashforth.
+        /// 0: Euler; 1: second-order Runge-Kutta; 2: two-step.
         pub integrator: u32,
         /// [`Threshold`](crate::kernels::edge_threshold::Threshold) as a number.
         pub threshold: u32,
@@ -66,7 +66,7 @@ pub fn edges(
         epsilon: xdog.epsilon,
         phi: xdog.phi,
     };
-    // A bilinear sample at distance L reads one pixel further, and so does one half a step beyond.
+    // A bilinear sample at distance L reads one pixel further.
     let support = Support::Pixels(radius(sigma) as u32 + 1);
     plan.pass(&KERNEL, &[response, field], &params, Class::Field, support)
 }
@@ -97,7 +97,7 @@ fn smooth<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
     for frame in Frame::tiles(window, reach) {
         responses.load(response, &frame);
         field.load(tensors, &frame);
-        let near = NearField { frame: &frame, tensors: &field, step: 1.0, integrator };
+        let near = NearField { frame: &frame, tensors: &field, integrator };
         let edges = frame.meets_edges(tensors.full()).then_some(tensors.full());
         let columns = (frame.tile.x0 - window.x0) as usize..(frame.tile.x1 - window.x0) as usize;
         for y in frame.tile.y0..frame.tile.y1 {
@@ -135,14 +135,14 @@ fn sums<S: Simd>(
     weights: &[f32],
     blocks: &[Block; 2],
 ) -> [[f32x8<S>; 2]; 2] {
-    let zero = f32x8::splat(simd, 0.0);
+    let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     let ([a, b], [c, d]) = (begun(simd, tensors, &blocks[0]), begun(simd, tensors, &blocks[1]));
     let mut lines = [a, b, c, d];
     let mut active = [mask32x8::splat(simd, true); 4];
     let mut sums = [blocks[0].read2(simd, response), blocks[1].read2(simd, response)];
     let mut places = [Place::new(field.frame, lines[0].x, lines[0].y); 4];
     for weight in weights {
-        field.advance(simd, &mut lines, &places);
+        field.advance(simd, &mut lines, &places, [one; 4]);
         for i in 0..4 {
             places[i] = Place::new(field.frame, lines[i].x, lines[i].y);
             let mut weight = f32x8::splat(simd, *weight);

@@ -1,13 +1,15 @@
 //! Line integral convolution of a colour with a Gaussian along the stream lines of a tensor field
 //! (2.186, 2.187), with the length adapted to the anisotropy (§ 6.3.1) or to the curvature (§ 6.3.2).
 //!
-//! Cost: 4 sigma / h steps per pixel, each one bilinear colour sample and one (Euler, Adams-Bashforth) or two
-//! tensor samples with their tangents, about 90 or 130 operations.
+//! Cost: 4 sigma / h steps per pixel, a third of it where steps are stretched, each one bilinear colour sample
+//! and one (Euler, two-step) or two tensor samples with their tangents, about 90 or 130 operations.
 
 use crate::kernels::blocks::{BLOCK, for_blocks_in_tiles};
 use crate::kernels::coverage::Covered;
 use crate::kernels::lines::orientation_field;
-use crate::kernels::stream_line::{Integrator, NearField, Stream, StreamField, acos, centres, holds};
+use crate::kernels::stream_line::{
+    Integrator, NearField, STRETCH, Stream, StreamField, acos, centres, few_steps, holds, stretched,
+};
 use crate::kernels::support::{get_pixels4, put_pixels4};
 use crate::kernels::surroundings::{FOUR, Frame, Place, Surroundings, TWO};
 use crate::kernels::tensor_algebra::{anisotropy, tangent};
@@ -22,9 +24,11 @@ crate::params! {
         pub sigma: f32,
         /// Step size h, pixels.
         pub step: f32,
+        /// Most by which steps may be stretched, at least 1.
+        pub stretch: f32,
         /// A side ends at a step that turns by more than the angle of this cosine.
         pub least_turn: f32,
-        /// 0: Euler; 1: second-order Runge-Kutta; 2: Adams-Bashforth.
+        /// 0: Euler; 1: second-order Runge-Kutta; 2: two-step.
         pub integrator: u32,
         /// 0: none; 1: anisotropy; 2: angle.
         pub adapt: u32,
@@ -35,7 +39,7 @@ crate::kernel!(line_integral_convolution {
     cpu: run,
     cost: |params| {
         let p: Params = bytemuck::pod_read_unaligned(params);
-        let steps = 2.0 * f64::from(radius(p.sigma)) / f64::from(p.step);
+        let steps = 2.0 * f64::from(radius(p.sigma)) / f64::from(p.step * p.stretch);
         steps * if p.integrator == Integrator::Midpoint as u32 { 130.0 } else { 80.0 }
     },
     tolerance: Tolerance {
@@ -66,6 +70,8 @@ pub struct Options {
     pub sigma: f32,
     /// Step size h, pixels.
     pub step: f32,
+    /// Most by which steps may be stretched ([`few_steps`]), at least 1.
+    pub stretch: f32,
     /// How the lines are stepped.
     pub integrator: Integrator,
     /// How the length is adapted.
@@ -75,9 +81,16 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// What styles take: second order, which long lines need (§ 6.3), with one sample of the field a step.
+    /// What styles take: second order, which long lines need (§ 6.3), in steps that are stretched.
     fn default() -> Self {
-        Self { sigma: 6.0, step: 1.0, integrator: Integrator::AdamsBashforth, adapt: Adapt::Anisotropy, max_angle: 0.0 }
+        Self {
+            sigma: 6.0,
+            step: 1.0,
+            stretch: STRETCH,
+            integrator: Integrator::TwoStep,
+            adapt: Adapt::Anisotropy,
+            max_angle: 0.0,
+        }
     }
 }
 
@@ -86,6 +99,7 @@ pub fn color(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: 
     let params = Params {
         sigma: options.sigma,
         step: options.step.max(MIN_STEP),
+        stretch: options.stretch,
         least_turn: least_turn(options.max_angle),
         integrator: options.integrator as u32,
         adapt: options.adapt as u32,
@@ -109,12 +123,9 @@ fn radius(sigma: f32) -> f32 {
 
 /// The most pixels that are read to any side.
 ///
-/// Adaptation only shortens lines; a bilinear sample at distance L reads one pixel further. Steps of Adams and
-/// Bashforth, 3/2 of one tangent less 1/2 of the last, add up to the sum of the tangents and half the
-/// difference of the last one and the first: no more than half a step beyond L.
+/// Adaptation only shortens lines; a bilinear sample at distance L reads one pixel further.
 fn reach(params: &Params) -> i32 {
-    let beyond = if params.integrator == Integrator::AdamsBashforth as u32 { params.step / 2.0 } else { 0.0 };
-    (radius(params.sigma) + beyond) as i32 + 1
+    radius(params.sigma) as i32 + 1
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
@@ -177,6 +188,10 @@ struct Taps {
 struct Reach<S: Simd> {
     radius: f32x8<S>,
     falloff: f32x8<S>,
+    /// Length of their steps.
+    step: f32x8<S>,
+    /// Cosine of the most that they may turn in one of them.
+    least_turn: f32x8<S>,
 }
 
 impl<S: Simd> Reach<S> {
@@ -204,17 +219,22 @@ impl Lines<'_> {
         }
         let radius = (sigma * 2.0 + 1e-3).floor();
         let falloff = f32x8::splat(e.simd, -0.721_347_52) / (sigma * sigma).max(f32x8::splat(e.simd, 1e-6));
-        Reach { radius, falloff }
+        let one = f32x8::splat(e.simd, 1.0);
+        let steps = ((radius + 1e-3) / self.params.step).floor();
+        let stretch = stretched(steps, few_steps(steps, self.params.stretch));
+        // The cosine of so many times the angle whose cosine is c, exact for one and two times.
+        let c = one * self.params.least_turn;
+        let least_turn = one - stretch * ((one - c) * (one - c) + stretch * c * (one - c));
+        Reach { radius, falloff, step: stretch * self.params.step, least_turn }
     }
 
     /// Arc length of the last step of a line.
     #[inline(always)]
     fn arc<S: Simd>(&self, line: &Stream<S>, reach: &Reach<S>) -> f32x8<S> {
-        let step = f32x8::splat(line.x.simd, self.params.step);
         if self.params.adapt == Adapt::Angle as u32 {
-            return step.max(acos(line.turn) * reach.radius / std::f32::consts::PI);
+            return reach.step.max(acos(line.turn) * reach.radius / std::f32::consts::PI);
         }
-        step
+        reach.step
     }
 
     /// One tile.
@@ -223,7 +243,7 @@ impl Lines<'_> {
         let Tile { colors, field, taps } = tile;
         colors.load(&self.source, frame);
         field.load(&self.field, frame);
-        let near = NearField { frame, tensors: field, step: self.params.step, integrator: Integrator::of(self.params.integrator) };
+        let near = NearField { frame, tensors: field, integrator: Integrator::of(self.params.integrator) };
         let edges = frame.meets_edges(self.source.full());
         let last = frame.tile.x1 - 1;
         let (start, end) = ((frame.tile.x0 - band.window.x0) as usize, (frame.tile.x1 - band.window.x0) as usize);
@@ -258,10 +278,9 @@ impl Lines<'_> {
         taps: &mut Taps,
     ) -> ([[f32; 4 * BLOCK]; 2], [f32x8<S>; 2]) {
         let (params, zero) = (&self.params, f32x8::splat(simd, 0.0));
-        let (step, least_turn) = (zero + params.step, zero + params.least_turn);
         let (reach, mut lines) = ([near, far], [a, b, c, d]);
         let turns_count = params.adapt == Adapt::Angle as u32;
-        let (near, far) = (step.simd_le(reach[0].limit()), step.simd_le(reach[1].limit()));
+        let (near, far) = (reach[0].step.simd_le(reach[0].limit()), reach[1].step.simd_le(reach[1].limit()));
         let mut active = [near, near, far, far];
         let mut places = [Place::new(field.frame, lines[0].x, lines[0].y); 4];
         let mut u = [zero; 4];
@@ -270,7 +289,7 @@ impl Lines<'_> {
         while (active[0] | active[1] | active[2] | active[3]).any_true() {
             let mut counts = [i32x8::splat(simd, 0); 2];
             for k in 0..RUN {
-                field.advance(simd, &mut lines, &places);
+                field.advance(simd, &mut lines, &places, [reach[0].step, reach[0].step, reach[1].step, reach[1].step]);
                 let mut weights = [zero; 4];
                 for i in 0..4 {
                     // Both sides have come equally far unless turns count.
@@ -282,7 +301,7 @@ impl Lines<'_> {
                     weights[i] = reach[i / 2].weight(u[i]);
                 }
                 for i in 0..4 {
-                    active[i] &= u[i].simd_le(reach[i / 2].limit()) & lines[i].turn.simd_ge(least_turn);
+                    active[i] &= u[i].simd_le(reach[i / 2].limit()) & lines[i].turn.simd_ge(reach[i / 2].least_turn);
                     if edges {
                         active[i] &= holds(self.source.full(), lines[i].x, lines[i].y);
                     }
@@ -300,7 +319,7 @@ impl Lines<'_> {
                     counts[i] = either.select(i32x8::splat(simd, k as i32 + 1), counts[i]);
                 }
                 for i in 0..4 {
-                    active[i] &= (u[i] + step).simd_le(reach[i / 2].limit());
+                    active[i] &= (u[i] + reach[i / 2].step).simd_le(reach[i / 2].limit());
                 }
                 if !(active[0] | active[1] | active[2] | active[3]).any_true() {
                     break;
@@ -340,20 +359,19 @@ impl Lines<'_> {
     #[inline(always)]
     fn far<S: Simd>(&self, simd: S, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
         let (params, zero) = (&self.params, f32x8::splat(simd, 0.0));
-        let step = zero + params.step;
         let field = StreamField { tensors: self.field, step: params.step, integrator: Integrator::of(params.integrator) };
         let (reach, mut lines) = self.begun(simd, x, y, last);
         let mut sum = get_pixels4(simd, &self.source, x, y, last);
         let mut norm = f32x8::splat(simd, 1.0);
         let mut u = [zero; 2];
-        let mut active = [step.simd_le(reach.limit()); 2];
+        let mut active = [reach.step.simd_le(reach.limit()); 2];
         while (active[0] | active[1]).any_true() {
-            field.advance(simd, &mut lines, active);
+            field.advance_by(simd, &mut lines, [active[0].select(reach.step, zero), active[1].select(reach.step, zero)]);
             for side in 0..2 {
                 let line = &lines[side];
                 u[side] += self.arc(line, &reach);
                 active[side] &= u[side].simd_le(reach.limit()) & field.inside(line);
-                active[side] &= line.turn.simd_ge(f32x8::splat(simd, params.least_turn));
+                active[side] &= line.turn.simd_ge(reach.least_turn);
                 let weight = active[side].select(reach.weight(u[side]), zero);
                 let [r, g, b, a] = sample_linear4(simd, &self.source, line.x, line.y);
                 sum = [
@@ -363,7 +381,7 @@ impl Lines<'_> {
                     weight.mul_add(a, sum[3]),
                 ];
                 norm += weight;
-                active[side] &= (u[side] + step).simd_le(reach.limit());
+                active[side] &= (u[side] + reach.step).simd_le(reach.limit());
             }
         }
         mean(sum, norm)

@@ -83,13 +83,13 @@ pub(crate) const INTEGRATOR: Param = Param::choice(
         Choice { id: "euler", label: "Euler" },
         Choice { id: "rk2", label: "Runge-Kutta, second order" },
         Choice { id: "cabral_leedom", label: "Cabral-Leedom" },
-        Choice { id: "adams_bashforth", label: "Adams-Bashforth, second order" },
+        Choice { id: "two_step", label: "Two-step midpoint, second order" },
     ],
 )
 .doc(
     "How stream lines are stepped: Euler (2.176), second order (2.182), from pixel boundary to pixel \
-     boundary with the Gaussian integrated exactly (Cabral and Leedom, 2.193), or by the two-step method of \
-     Adams and Bashforth, of second order as well, which samples the field once a step instead of twice.",
+     boundary with the Gaussian integrated exactly (Cabral and Leedom, 2.193), or second order with the tangent \
+     here foreseen from the last steps, which takes less time.",
 );
 const KERNEL: Param = Param::choice(
     "kernel",
@@ -207,7 +207,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         stepping: match scope.choice("integrator") {
             "euler" => Stepping::Along(Integrator::Euler),
             "cabral_leedom" => Stepping::CabralLeedom,
-            "adams_bashforth" => Stepping::Along(Integrator::AdamsBashforth),
+            "two_step" => Stepping::Along(Integrator::TwoStep),
             _ => Stepping::Along(Integrator::Midpoint),
         },
         two_dimensional: scope.choice("kernel") == "two_dimensional",

@@ -36,14 +36,14 @@ pub static NODE: NodeSpec = NodeSpec {
                 Choice { id: "euler", label: "Euler" },
                 Choice { id: "rk2", label: "Runge-Kutta 2" },
                 Choice { id: "cabral_leedom", label: "Cabral-Leedom" },
-                Choice { id: "adams_bashforth", label: "Adams-Bashforth 2" },
+                Choice { id: "two_step", label: "Two-step midpoint" },
             ],
         )
         .doc(
             "How lines are stepped: Euler's method (2.177), the second-order midpoint method (2.182), \
              from pixel boundary to pixel boundary with the Gaussian integrated exactly on the pixels \
-             (Cabral and Leedom, 2.193), where `step` has no part, or the two-step method of Adams and \
-             Bashforth, of second order as well, which samples the field once a step instead of twice.",
+             (Cabral and Leedom, 2.193), where `step` has no part, or the midpoint method with the tangent here \
+             foreseen from the last steps, of second order too, which takes less time.",
         ),
         Param::choice(
             "adapt",
@@ -74,9 +74,10 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let options = Options {
         sigma: scope.float("sigma"),
         step: scope.float("step"),
+        stretch: 1.0,
         integrator: match scope.choice("integrator") {
             "euler" => Integrator::Euler,
-            "adams_bashforth" => Integrator::AdamsBashforth,
+            "two_step" => Integrator::TwoStep,
             _ => Integrator::Midpoint,
         },
         adapt: match scope.choice("adapt") {

@@ -129,6 +129,7 @@ fn stream_lines(plan: &mut PlanBuilder, mut tensor: ImageId, sigma: f32, scale: 
         // Who looks at a field looks at the lines themselves.
         Options {
             sigma: sigma * f32::from(1_u8 << finer),
+            stretch: 1.0,
             integrator: Integrator::Midpoint,
             adapt: Adapt::None,
             ..Options::default()

@@ -185,7 +185,7 @@ pub(crate) fn flow(scope: &Scope<'_>, guide_weight: f32) -> FlowDog {
         sigma_m: lines.sigma_m,
         xdog: lines.xdog(),
         iterations: scope.int("line_iterations"),
-        stepping: Stepping::Along(Integrator::AdamsBashforth),
+        stepping: Stepping::Along(Integrator::TwoStep),
         two_dimensional: false,
         guide_weight,
     }

@@ -293,7 +293,8 @@ impl Preset {
 fn strokes(plan: &mut PlanBuilder, tensor: ImageId, [width, length]: [f32; 2], scale: f32) -> ImageId {
     let white = noise::white(plan, scale, 19);
     let soft = gaussian_blur::smooth(plan, white, width * scale, Class::Colour);
-    let options = Lic { sigma: length * scale, adapt: Adapt::None, ..Lic::default() };
+    // Noise is about as fine as pixels: none may be left out.
+    let options = Lic { sigma: length * scale, adapt: Adapt::None, stretch: 1.0, ..Lic::default() };
     let long = line_integral_convolution::color(plan, soft, tensor, &options);
     // Averages of noise are faint: a Gaussian of this width leaves 1 / (2 sqrt(pi) width) of its deviation.
     contrast::stretch(plan, long, 7.0 * width)
@@ -323,7 +324,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         sigma_m: drawing.sigma_m * scale,
         xdog: Xdog::sharpen(drawing.p, 0.0, 1.0, Threshold::None),
         iterations: 1,
-        stepping: Stepping::Along(Integrator::AdamsBashforth),
+        stepping: Stepping::Along(Integrator::TwoStep),
         two_dimensional: false,
         guide_weight,
     };

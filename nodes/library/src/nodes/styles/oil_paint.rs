@@ -120,7 +120,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let flat = abstraction.apply(scope.plan, lab, tensors, n_a);
     let dilation_length = scope.float("dilation_length") * length;
     let strokes = flow_dilation::strokes(scope.plan, flat, tensors, grains, dilation_length);
-    let along = |sigma: f32, adapt: Adapt| Lic { sigma, adapt, ..Lic::default() };
+    // Grains are about as fine as pixels: none may be left out.
+    let along = |sigma: f32, adapt: Adapt| Lic { sigma, adapt, stretch: 1.0, ..Lic::default() };
     let sigma_t = scope.float("sigma_t") * length;
     let mut painted =
         line_integral_convolution::color(scope.plan, strokes, tensors, &along(sigma_t, Adapt::Anisotropy));
