@@ -51,9 +51,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let steps = floor((radius + 1e-3) / params.step);
     let stretch = stream_stretched(steps, stream_few_steps(steps, params.stretch));
     let step = stretch * params.step;
-    // The cosine of so many times the angle whose cosine is c, exact for one and two times.
+    // The cosine of so many times the angle whose cosine is c, exact for one and two times; no more than c,
+    // since -1 stands for any turn.
     let c = params.least_turn;
-    let least_turn = 1.0 - stretch * ((1.0 - c) * (1.0 - c) + stretch * c * (1.0 - c));
+    let least_turn = min(c, 1.0 - stretch * ((1.0 - c) * (1.0 - c) + stretch * c * (1.0 - c)));
 
     let tangent = tensor_tangent(tensor);
     var sum = fetch_covered(source, 0u, pixel(id));

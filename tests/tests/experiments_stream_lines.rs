@@ -3,7 +3,9 @@
 
 use isophote::kernels::smoothing::cabral_leedom;
 use isophote::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
+use isophote::kernels::stream_line::Integrator;
 use isophote_engine::{Class, Image, PlanBuilder};
+use isophote_tests::compare::psnr;
 use isophote_tests::pictures::{self, Kind, from_fn};
 use isophote_tests::run;
 use isophote_tests::table::Table;
@@ -54,6 +56,43 @@ fn euler_drifts_outwards_and_runge_kutta_does_not() {
         assert!(rk2.abs() < 0.1 * euler, "the second order drifts ten times less: {rk2} to {euler}");
         assert!(two_step.abs() < 0.1 * euler, "and so does the two-step method: {two_step} to {euler}");
         assert!(cabral.abs() < euler, "directions of the pixels themselves do not lead outwards: {cabral}");
+    }
+    table.print();
+}
+
+#[test]
+fn stretched_steps_are_better_than_short_ones_of_first_order() {
+    let picture = pictures::scenery(240, 160);
+    let tensors = run::node("structure_tensor", &[("rho", "1")], &picture);
+    let filtered = |options: &Options| {
+        let mut plan = PlanBuilder::new(240, 160).unwrap();
+        let color = plan.input("color", 4, Class::Colour);
+        let tensor = plan.input("tensor", 4, Class::Field);
+        let out = line_integral_convolution::color(&mut plan, color, tensor, options);
+        plan.output("output", out);
+        let inputs = [("color", picture.clone()), ("tensor", tensors.clone())];
+        run::whole(&plan.finish().unwrap(), &inputs)
+    };
+    let mut table = Table::new(
+        7,
+        "§ 6.3",
+        "Distance from steps of a quarter of a pixel, dB, sigma 6",
+        &["largest turn", "not filtered", "Euler", "Runge-Kutta", "two-step, stretched"],
+    );
+    for max_angle in [0.0, 90.0] {
+        let styles = Options { max_angle, ..Options::default() };
+        let short = |integrator: Integrator, step: f32| Options { integrator, step, stretch: 1.0, ..styles };
+        let exact = filtered(&short(Integrator::Midpoint, 0.25));
+        let none = psnr(&picture, &exact);
+        let [euler, rk2, stretched] =
+            [short(Integrator::Euler, 1.0), short(Integrator::Midpoint, 1.0), styles]
+                .map(|options| psnr(&filtered(&options), &exact));
+        let turn = if max_angle > 0.0 { format!("{max_angle} degrees") } else { "any".into() };
+        let distances = [none, euler, rk2, stretched].map(|distance| format!("{distance:.1}"));
+        table.row(&[&[turn], &distances[..]].concat());
+        assert!(stretched > euler + 4.0, "Euler {euler}, stretched {stretched}");
+        // Lines that end at once leave the picture as it is.
+        assert!(stretched > none + 4.0, "not filtered {none}, stretched {stretched}");
     }
     table.print();
 }

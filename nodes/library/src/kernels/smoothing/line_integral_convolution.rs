@@ -222,9 +222,10 @@ impl Lines<'_> {
         let one = f32x8::splat(e.simd, 1.0);
         let steps = ((radius + 1e-3) / self.params.step).floor();
         let stretch = stretched(steps, few_steps(steps, self.params.stretch));
-        // The cosine of so many times the angle whose cosine is c, exact for one and two times.
+        // The cosine of so many times the angle whose cosine is c, exact for one and two times; no more than c,
+        // since -1 stands for any turn.
         let c = one * self.params.least_turn;
-        let least_turn = one - stretch * ((one - c) * (one - c) + stretch * c * (one - c));
+        let least_turn = c.min(one - stretch * ((one - c) * (one - c) + stretch * c * (one - c)));
         Reach { radius, falloff, step: stretch * self.params.step, least_turn }
     }
 
