@@ -11,10 +11,6 @@ use isophote_engine::fearless_simd::{Simd, f32x16, prelude::*};
 /// Values that are summed at once.
 pub const RUN: usize = 64;
 
-/// Values of a row that columns are summed over before the next row: with the rows of usual windows they stay
-/// in the first-level cache.
-pub const STRIP: usize = 8 * RUN;
-
 /// Vectors of a run.
 const VECTORS: usize = RUN / 16;
 

@@ -9,7 +9,7 @@ use crate::kernels::blocks::{BLOCK, write1};
 use crate::kernels::edge_threshold::{LEAST_COVERAGE, Xdog, dog_response, edge_threshold, edge_uncovered};
 use crate::kernels::lines::dog_rows;
 use crate::kernels::support::GaussianTable;
-use crate::kernels::symmetric::{RUN, STRIP, flat, sum};
+use crate::kernels::symmetric::{RUN, flat, sum};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, f32x16, prelude::*};
 use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -88,11 +88,8 @@ fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
         let at = view.offset(window.x0, y);
         rows.push(&data[at..at + len]);
     }
-    for start in (0..len).step_by(STRIP) {
-        let end = len.min(start + STRIP);
-        for (y, rows) in (window.y0..window.y1).zip(rows.windows(2 * r as usize + 1)) {
-            for (n, target) in band.row_mut(0, y)[start / 4..end / 4].chunks_mut(RUN / 4).enumerate() {
-                let from = start + RUN * n;
+    for (y, rows) in (window.y0..window.y1).zip(rows.windows(2 * r as usize + 1)) {
+        for (n, target) in band.row_mut(0, y).chunks_mut(RUN / 4).enumerate() {
             // Lanes past the end of a row go through the same arithmetic and are not kept.
             let mut sums = [0.0; RUN];
             sum(
@@ -104,7 +101,7 @@ fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
                     f32x16::simd_from(simd, [n, n, w, w, n, n, w, w, n, n, w, w, n, n, w, w])
                 },
                 #[inline(always)]
-                |i| &rows[i][from..],
+                |i| &rows[i][RUN * n..],
                 &mut sums[..4 * target.len()],
             );
             let mut at = 0;
@@ -113,7 +110,6 @@ fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
                 let pixels = load4(simd, &sums[4 * at..4 * (at + BLOCK)]);
                 write1(edge(simd, params, pixels), &mut target[at..at + len]);
                 at += BLOCK;
-            }
             }
         }
     }

@@ -6,7 +6,7 @@
 
 use crate::kernels::coverage::is_opaque;
 use crate::kernels::support::{GAUSSIAN_TAPS, GaussianTable, gaussian_radius, gaussian_table};
-use crate::kernels::symmetric::{RUN, STRIP, flat, sum};
+use crate::kernels::symmetric::{RUN, flat, sum};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, f32x16, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -106,13 +106,9 @@ fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
             *row = covered;
         }
     }
-    for start in (0..len).step_by(STRIP) {
-        let end = len.min(start + STRIP);
-        for (y, rows) in (window.y0..window.y1).zip(rows.windows(2 * r as usize + 1)) {
-            for (n, target) in band.row_mut(0, y)[start..end].chunks_mut(RUN).enumerate() {
-                let from = start + RUN * n;
-                smoothed(simd, params, &weights, #[inline(always)] |i| &rows[i][from..], target);
-            }
+    for (y, rows) in (window.y0..window.y1).zip(rows.windows(2 * r as usize + 1)) {
+        for (n, target) in band.row_mut(0, y).chunks_mut(RUN).enumerate() {
+            smoothed(simd, params, &weights, #[inline(always)] |i| &rows[i][RUN * n..], target);
         }
     }
 }
