@@ -56,16 +56,22 @@ pub fn edge_threshold<S: Simd>(u: f32x8<S>, kind: u32, epsilon: f32, phi: f32) -
     if kind == Threshold::None as u32 {
         return u;
     }
-    let x = ((u - epsilon) * phi).max(-20.0);
+    let paper = u.simd_ge(epsilon);
+    if paper.all_true() {
+        return one;
+    }
+    let x = ((u - epsilon) * phi).max(-20.0).min(zero);
     let below = if kind == Threshold::Binary as u32 {
         zero
     } else if kind == Threshold::Tanh as u32 {
-        x.tanh() + 1.0
+        // 1 + tanh(x), whose absolute error is what shows.
+        let e = (x * (2.0 * std::f32::consts::LOG2_E)).exp2_falling();
+        (e + e) / (e + 1.0)
     } else {
         let t = (x * 0.25 + 0.5).max(0.0);
         t * 2.0 * t * (t * -2.0 + 3.0)
     };
-    u.simd_ge(epsilon).select(one, below)
+    paper.select(one, below)
 }
 
 /// The edge image where no covered pixel contributes: paper.
