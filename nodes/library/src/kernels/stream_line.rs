@@ -47,7 +47,7 @@ impl Integrator {
 pub const STRETCH: f32 = 2.5;
 
 /// Lines of no more steps to a side keep theirs.
-const FEW: f32 = 3.0;
+pub const FEW_STEPS: f32 = 3.0;
 
 /// The number of steps, stretched by up to `stretch`, that take the place of `steps` steps to one side of a
 /// line; no fewer for `stretch` 1.
@@ -62,7 +62,7 @@ const FEW: f32 = 3.0;
 #[inline(always)]
 pub fn few_steps<S: Simd>(steps: f32x8<S>, stretch: f32) -> f32x8<S> {
     // A last bit must not add a step.
-    (steps / stretch - 1e-3).ceil().max(steps.min(f32x8::splat(steps.simd, FEW)))
+    (steps / stretch - 1e-3).ceil().max(steps.min(f32x8::splat(steps.simd, FEW_STEPS)))
 }
 
 /// By how much steps are longer when `few` of them take the place of `steps`.

@@ -8,7 +8,7 @@ use crate::kernels::blocks::{BLOCK, for_blocks_in_tiles};
 use crate::kernels::coverage::Covered;
 use crate::kernels::lines::orientation_field;
 use crate::kernels::stream_line::{
-    Integrator, NearField, STRETCH, Stream, StreamField, acos, centres, few_steps, holds, stretched,
+    FEW_STEPS, Integrator, NearField, STRETCH, Stream, StreamField, acos, centres, few_steps, holds, stretched,
 };
 use crate::kernels::support::{get_pixels4, put_pixels4};
 use crate::kernels::surroundings::{FOUR, Frame, Place, Surroundings, TWO};
@@ -99,7 +99,8 @@ pub fn color(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: 
     let params = Params {
         sigma: options.sigma,
         step: options.step.max(MIN_STEP),
-        stretch: options.stretch,
+        // What has few steps at most need not work out how many they are.
+        stretch: if radius(options.sigma) > FEW_STEPS * options.step { options.stretch } else { 1.0 },
         least_turn: least_turn(options.max_angle),
         integrator: options.integrator as u32,
         adapt: options.adapt as u32,
@@ -220,6 +221,10 @@ impl Lines<'_> {
         let radius = (sigma * 2.0 + 1e-3).floor();
         let falloff = f32x8::splat(e.simd, -0.721_347_52) / (sigma * sigma).max(f32x8::splat(e.simd, 1e-6));
         let one = f32x8::splat(e.simd, 1.0);
+        if self.params.stretch <= 1.0 {
+            let (step, least_turn) = (one * self.params.step, one * self.params.least_turn);
+            return Reach { radius, falloff, step, least_turn };
+        }
         let steps = ((radius + 1e-3) / self.params.step).floor();
         let stretch = stretched(steps, few_steps(steps, self.params.stretch));
         // The cosine of so many times the angle whose cosine is c, exact for one and two times; no more than c,
