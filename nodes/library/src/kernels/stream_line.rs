@@ -293,7 +293,7 @@ impl NearField<'_> {
     /// Moves `N` times eight lines by one step of `lengths` pixels from the places where they are, by the
     /// arithmetic of [`StreamField::advance_by`].
     ///
-    /// Lines that have ended may go on: they stay within what is held.
+    /// Lines that have ended may go on: every place can be read, and what they come to does not count.
     #[inline(always)]
     pub fn advance<S: Simd, const N: usize>(
         &self,

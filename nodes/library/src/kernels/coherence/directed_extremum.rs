@@ -90,6 +90,7 @@ fn strips<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                 }
                 let [e, f, g, _] = block.read4(simd, &pass.inputs[1]);
                 let line = lumas.line(simd, block.x, block.y, axis((e - g) * 0.5, f).1);
+                // Over so short a reach neighbours seldom come to lie farther apart.
                 let colors = match (lumas.is_opaque(), line.rows()) {
                     (true, 1) => extreme::<_, true, 1>(simd, pass, params, radius, &lumas, &line, block, active, z),
                     (true, _) => extreme::<_, true, 0>(simd, pass, params, radius, &lumas, &line, block, active, z),
