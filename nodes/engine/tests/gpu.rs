@@ -466,10 +466,10 @@ fn several_threads_share_a_device() {
     let whole = Rect::of_size(64, 48);
     let expected = on_gpu(&mut Executor::new(Arc::clone(&device)), &plan(64, 48, 1.0), &source, whole);
     std::thread::scope(|scope| {
-        for _ in 0..3 {
+        for _ in 0..4 {
             scope.spawn(|| {
                 let mut executor = Executor::new(Arc::clone(&device));
-                for _ in 0..3 {
+                for _ in 0..20 {
                     let plan = plan(64, 48, 1.0);
                     assert_eq!(on_gpu(&mut executor, &plan, &source, whole), expected);
                 }

@@ -7,6 +7,9 @@ use std::time::Duration;
 
 const BYTES: u64 = wgpu::QUERY_SIZE as u64;
 
+/// How long a thread that took a callback may be held up before it calls it.
+const LATEST: Duration = Duration::from_secs(10);
+
 /// Two timestamps a dispatch, and the way back to the CPU.
 #[derive(Debug)]
 pub(super) struct Timer {
@@ -107,7 +110,8 @@ pub(super) fn read_buffer<T>(
     })?;
     device.wait(submission)?;
     let failed = |e: String| Error::Device(format!("cannot read back from '{}': {e}", device.name()));
-    match receiver.try_recv() {
+    // Of several threads that wait at once another one may have taken the callback, and be about to call it.
+    match receiver.recv_timeout(LATEST) {
         Ok(Ok(())) => {}
         Ok(Err(e)) => return Err(failed(e.to_string())),
         Err(e) => return Err(failed(e.to_string())),
