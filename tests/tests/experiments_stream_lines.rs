@@ -148,7 +148,13 @@ fn cabral_leedom_integrates_the_gaussian_exactly_on_pixels() {
         let angle = degrees.to_radians();
         let (sin, cos) = angle.sin_cos();
         let tensors = from_fn(SIDE, SIDE, |_, _| [sin * sin, -sin * cos, cos * cos, 1.0].map(|v| v as f32));
-        let options = Options { sigma: 5.0, stretch: 1.0, adapt: Adapt::None, ..Options::default() };
+        let options = Options {
+            sigma: 5.0,
+            stretch: 1.0,
+            integrator: Integrator::Midpoint,
+            adapt: Adapt::None,
+            ..Options::default()
+        };
         let filtered = |exactly: bool| {
             let mut plan = PlanBuilder::new(SIDE, SIDE).unwrap();
             let color = plan.input("color", 4, Class::Colour);

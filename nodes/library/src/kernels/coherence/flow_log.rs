@@ -6,7 +6,7 @@
 //! The weights sum to zero, as those of a derivative should: taps count as differences to the centre.
 //! As far as a tap is transparent it stands for the centre.
 //!
-//! Cost: 5 sigma steps, each two linear interpolations and about 25 operations.
+//! Cost: 5 sigma steps, each one linear interpolation between sums of opposite pixels and about 20 operations.
 
 use crate::kernels::blocks::{Block, write1};
 use crate::kernels::luma_lines::{Line, LumaLines, STRIP};

@@ -1,7 +1,7 @@
 //! Line integral convolution of a colour with a Gaussian along the stream lines of a tensor field
 //! (2.186, 2.187), with the length adapted to the anisotropy (§ 6.3.1) or to the curvature (§ 6.3.2).
 //!
-//! Cost: 4 sigma / h steps per pixel, a third of it where steps are stretched, each one bilinear colour sample
+//! Cost: 4 sigma / h steps per pixel, two fifths of it where steps are stretched, each one bilinear colour sample
 //! and one (Euler, two-step) or two tensor samples with their tangents, about 90 or 130 operations.
 
 use crate::kernels::blocks::{BLOCK, for_blocks_in_tiles};
