@@ -23,10 +23,11 @@ impl Drop for Running {
     }
 }
 
-/// Xvfb on a display that it chooses itself.
+/// Xvfb on a display that it chooses itself. It does not reset: it would whenever its only client
+/// leaves, as each call of xdotool does, and turn down whoever connects in that moment.
 fn display() -> Option<(Running, String)> {
     let mut server = Command::new("Xvfb")
-        .args(["-displayfd", "1", "-screen", "0", "800x600x24", "-nolisten", "tcp"])
+        .args(["-displayfd", "1", "-screen", "0", "800x600x24", "-nolisten", "tcp", "-noreset"])
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()
