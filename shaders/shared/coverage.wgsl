@@ -23,3 +23,8 @@ fn sample_covered(image: texture_2d<f32>, slot: u32, p: vec2f) -> vec4f {
     let bottom = c + (d - c) * f.x;
     return top + (bottom - top) * f.y;
 }
+
+// Mean coverage, exactly 1 where only rounding can have kept it from that.
+fn full_or(coverage: f32) -> f32 {
+    return select(coverage, 1.0, coverage > 0.999998);
+}

@@ -1,5 +1,6 @@
 // One axis of a separable Gaussian on four channels (2.21).
 // Cost: radius + 1 multiply-adds on vec4, 2 radius reads of workgroup memory, radius / 4 + 3 loads.
+#import coverage
 #import window
 
 struct Params {
@@ -38,7 +39,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
     }
     if (params.coverage & 2u) != 0u {
-        sum = vec4f(select(vec3f(0.0), sum.rgb / sum.a, sum.a > 1e-6), sum.a);
+        sum = vec4f(select(vec3f(0.0), sum.rgb / sum.a, sum.a > 1e-6), full_or(sum.a));
     }
     if !outside(id) {
         textureStore(target_image, vec2i(id.xy), sum);

@@ -1,6 +1,7 @@
 //! Colours multiplied by their coverage, for kernels that mix pixels at arbitrary positions; the twin
 //! of `shaders/shared/coverage.wgsl`.
 
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Image, Rect, View};
 
 /// A colour image whose colours are multiplied by their alpha, around one band.
@@ -22,8 +23,10 @@ impl Covered {
             return Self(None);
         }
         let image = Image::with_window(rows, 4).ok().map(|mut image| {
-            for (s, t) in source.chunks_exact(4).zip(image.data_mut().chunks_exact_mut(4)) {
-                t.copy_from_slice(&[s[0] * s[3], s[1] * s[3], s[2] * s[3], s[3]]);
+            let (source, target) = (source.as_chunks::<4>().0, image.data_mut().as_chunks_mut::<4>().0);
+            for i in 0..source.len().min(target.len()) {
+                let [r, g, b, a] = source[i];
+                target[i] = [r * a, g * a, b * a, a];
             }
             image
         });
@@ -39,6 +42,16 @@ impl Covered {
     pub fn view<'a>(&'a self, view: &View<'a>) -> View<'a> {
         self.0.as_ref().map_or(*view, |image| View::new(image, view.full()))
     }
+}
+
+/// Greater mean coverages are rounding away from 1.
+pub const FULL: f32 = 0.999_998;
+
+/// Mean coverages, exactly 1 where only rounding can have kept them from it: what is opaque stays opaque, for
+/// whoever looks at the result and for kernels that have less to do there.
+#[inline(always)]
+pub fn full_or<S: Simd>(coverage: f32x8<S>) -> f32x8<S> {
+    coverage.simd_gt(FULL).select(f32x8::splat(coverage.simd, 1.0), coverage)
 }
 
 /// True when the alpha of all pixels is 1.

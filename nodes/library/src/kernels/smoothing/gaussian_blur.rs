@@ -4,7 +4,7 @@
 //! interleaved values, sixteen pixels at a time. The shader reads its windows through workgroup memory,
 //! radius / 4 + 3 loads a pixel.
 
-use crate::kernels::coverage::is_opaque;
+use crate::kernels::coverage::{FULL, is_opaque};
 use crate::kernels::support::{GAUSSIAN_TAPS, GaussianTable, gaussian_radius, gaussian_table};
 use crate::kernels::symmetric::{RUN, flat, sum};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, f32x16, prelude::*};
@@ -129,7 +129,7 @@ fn smoothed<'s, S: Simd>(
             let seen = f32x4::from_slice(simd, pixel) / alpha.max(LEAST_COVERAGE);
             let seen = if alpha > LEAST_COVERAGE { seen } else { f32x4::splat(simd, 0.0) };
             seen.store_slice(pixel);
-            pixel[3] = alpha;
+            pixel[3] = if alpha > FULL { 1.0 } else { alpha };
         }
     }
 }

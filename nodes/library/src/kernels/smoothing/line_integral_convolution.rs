@@ -5,7 +5,7 @@
 //! and one (Euler, two-step) or two tensor samples with their tangents, about 90 or 130 operations.
 
 use crate::kernels::blocks::{BLOCK, for_blocks_in_tiles};
-use crate::kernels::coverage::Covered;
+use crate::kernels::coverage::{Covered, full_or};
 use crate::kernels::lines::orientation_field;
 use crate::kernels::stream_line::{
     FEW_STEPS, Integrator, NearField, STRETCH, Stream, StreamField, acos, centres, few_steps, holds, stretched,
@@ -424,5 +424,5 @@ fn add<S: Simd>(
 fn mean<S: Simd>([r, g, b, alpha]: [f32x8<S>; 4], norm: f32x8<S>) -> [f32x8<S>; 4] {
     let zero = f32x8::splat(norm.simd, 0.0);
     let seen = alpha.simd_gt(f32x8::splat(norm.simd, 1e-6));
-    [seen.select(r / alpha, zero), seen.select(g / alpha, zero), seen.select(b / alpha, zero), alpha / norm]
+    [seen.select(r / alpha, zero), seen.select(g / alpha, zero), seen.select(b / alpha, zero), full_or(alpha / norm)]
 }
