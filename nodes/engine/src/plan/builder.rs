@@ -81,6 +81,11 @@ impl PlanBuilder {
         self.plan.images.get(image.index()).copied().unwrap_or(nothing)
     }
 
+    /// The pass that writes an image described so far; none for one that enters.
+    pub fn made_by(&self, image: ImageId) -> Option<&Pass> {
+        self.plan.passes.iter().find(|pass| pass.outputs.contains(&image))
+    }
+
     /// Declares an image that enters; the same name twice is the same image.
     pub fn input(&mut self, name: &str, channels: u32, class: Class) -> ImageId {
         if let Some(port) = self.plan.inputs.iter().find(|p| p.name == name) {

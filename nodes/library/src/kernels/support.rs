@@ -49,6 +49,39 @@ pub fn gaussian_table(sigma: f32, radius: u32) -> GaussianTable {
     table
 }
 
+/// Pixels that [`map_pixels`] gives at a time.
+pub const PAIR: usize = 16;
+
+/// Runs `f` on [`PAIR`] pixels at a time: a pass from each pixel of input 0, of `I` channels, to the same pixel of output 0,
+/// of `O`.
+#[inline(always)]
+pub fn map_pixels<const I: usize, const O: usize>(
+    pass: &CpuPass<'_>,
+    band: &mut Band<'_>,
+    mut f: impl FnMut(&[f32], &mut [f32]),
+) {
+    let window = band.window;
+    let view = &pass.inputs[0];
+    let width = window.width() as usize;
+    for y in window.y0..window.y1 {
+        let at = view.offset(window.x0, y);
+        let target = &mut band.row_mut(0, y)[..O * width];
+        let source = &view.data()[at..at + I * width];
+        let mut x = 0;
+        while x + PAIR <= width {
+            f(&source[I * x..I * (x + PAIR)], &mut target[O * x..O * (x + PAIR)]);
+            x += PAIR;
+        }
+        if x < width {
+            // The last pixels of a row go through the same arithmetic, padded with zeros.
+            let (mut from, mut to) = ([0.0; 4 * PAIR], [0.0; 4 * PAIR]);
+            from[..I * (width - x)].copy_from_slice(&source[I * x..]);
+            f(&from[..I * PAIR], &mut to[..O * PAIR]);
+            target[O * x..].copy_from_slice(&to[..O * (width - x)]);
+        }
+    }
+}
+
 /// Runs `f` on eight four-channel pixels at a time, one vector per channel, over a whole band; a pass
 /// from each pixel to the same pixel.
 #[inline(always)]

@@ -38,21 +38,19 @@ pub fn import(plan: &mut PlanBuilder, image: ImageId, space: ColourSpace, premul
     plan.pass(&KERNEL, &[image], &params, Class::Colour, Support::Pixels(0))
 }
 
+/// The host's image that `color` was made from by [`import`], and how; none for any other image. What it
+/// is for: a kernel that needs other values of the host's colour than the working ones takes them from
+/// there, and the pass is left out if nobody else reads it.
+pub fn imported(plan: &PlanBuilder, color: ImageId) -> Option<(ImageId, Params)> {
+    let pass = plan.made_by(color).filter(|pass| std::ptr::eq(pass.kernel, &KERNEL))?;
+    Some((*pass.inputs.first()?, bytemuck::pod_read_unaligned(&pass.params)))
+}
+
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, #[inline(always)] |[r, g, b, a]| {
-        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        let a = finite(a).min(one).max(zero);
-        let mut rgb = [finite(r), finite(g), finite(b)];
-        if params.premultiplied != 0 {
-            let covered = a.simd_gt(1e-6);
-            // Where all is opaque the division by 1 can be left out.
-            if !a.simd_ge(one).all_true() {
-                for v in &mut rgb {
-                    *v = covered.select(*v / a, zero);
-                }
-            }
-        }
+    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, #[inline(always)] |pixels| {
+        let [r, g, b, a] = plain(pixels, params.premultiplied != 0);
+        let mut rgb = [r, g, b];
         if params.space == ColourSpace::AcesCg as u32 {
             rgb = transform(&ACESCG_TO_LINEAR, rgb);
         }
@@ -63,8 +61,22 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     }));
 }
 
+/// The host's pixels in its own space, finite and not premultiplied.
+#[inline(always)]
+pub fn plain<S: Simd>([r, g, b, a]: [f32x8<S>; 4], premultiplied: bool) -> [f32x8<S>; 4] {
+    let (zero, one) = (f32x8::splat(r.simd, 0.0), f32x8::splat(r.simd, 1.0));
+    let (mut r, mut g, mut b) = (finite(r), finite(g), finite(b));
+    let a = finite(a).min(one).max(zero);
+    // Where all is opaque the division by 1 can be left out.
+    if premultiplied && !a.simd_ge(one).all_true() {
+        let covered = a.simd_gt(1e-6);
+        (r, g, b) =
+            (covered.select(r / a, zero), covered.select(g / a, zero), covered.select(b / a, zero));
+    }
+    [r, g, b, a]
+}
+
 /// Values cut to the largest half, 0 for what is not a number.
-// A function, since closures given to arrays stay calls, and every operation in them one.
 #[inline(always)]
 fn finite<S: Simd>(v: f32x8<S>) -> f32x8<S> {
     let largest = f32x8::splat(v.simd, LARGEST_HALF);

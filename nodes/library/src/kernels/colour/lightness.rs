@@ -1,20 +1,35 @@
 //! Lightness L (0..100) and coverage of a colour, as (L alpha, alpha): what the line filters work on
 //! (§ 4.6). Both are linear, so that smoothing and interpolation weight by coverage of themselves.
 //!
-//! Cost: four powers per pixel; none when the source is Lab already.
+//! Where the working colour comes from the host unchanged, the host's own is read: the working colour
+//! need not exist then, and linear light is not encoded to be decoded again.
+//!
+//! Cost: four powers per pixel; one for a host's linear light, none when the source is Lab already.
 
-use crate::kernels::blocks::{for_blocks, write2};
-use crate::kernels::colour_space::{LUMINANCE, lab_curve, srgb_decode};
-use isophote_engine::fearless_simd::dispatch;
+use crate::kernels::blocks::write2;
+use crate::kernels::colour::colour_import;
+use crate::kernels::colour_space::{ACESCG_TO_LINEAR, LUMINANCE, lab_curve, srgb_decode, transform};
+use crate::kernels::support::map_pixels;
+use crate::request::ColourSpace;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
+use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::params! {
     /// Uniform block.
     pub struct Params for lightness {
-        /// 0 working colour, 1 Lab.
+        /// 0 working colour, 1 Lab, 2 the host's colour.
         pub source_space: u32,
+        /// The host's colour space: 0 sRGB, 1 linear Rec. 709, 2 ACEScg.
+        pub space: u32,
+        /// Nonzero when the host's colour comes multiplied by alpha.
+        pub premultiplied: u32,
     }
 }
+
+const WORKING: u32 = 0;
+const LAB: u32 = 1;
+const HOST: u32 = 2;
 
 crate::kernel!(lightness {
     cpu: run,
@@ -29,25 +44,47 @@ crate::kernel!(lightness {
 
 /// (L alpha, alpha) of a working colour.
 pub fn of_color(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
-    plan.pass(&KERNEL, &[color], &Params { source_space: 0 }, Class::Field, Support::Pixels(0))
+    let (image, params) = match colour_import::imported(plan, color) {
+        Some((image, colour_import::Params { space, premultiplied })) => {
+            (image, Params { source_space: HOST, space, premultiplied })
+        }
+        None => (color, Params { source_space: WORKING, space: 0, premultiplied: 0 }),
+    };
+    plan.pass(&KERNEL, &[image], &params, Class::Field, Support::Pixels(0))
 }
 
 /// (L alpha, alpha) of a Lab image.
 pub fn of_lab(plan: &mut PlanBuilder, lab: ImageId) -> ImageId {
-    plan.pass(&KERNEL, &[lab], &Params { source_space: 1 }, Class::Field, Support::Pixels(0))
+    let params = Params { source_space: LAB, space: 0, premultiplied: 0 };
+    plan.pass(&KERNEL, &[lab], &params, Class::Field, Support::Pixels(0))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    let view = &pass.inputs[0];
-    dispatch!(pass.level, simd => for_blocks::<2>(band, #[inline(always)] |block, target| {
-        let [r, g, b, alpha] = block.read4(simd, view);
-        let mut lightness = r;
-        if params.source_space == 0 {
-            let [r, g, b] = srgb_decode([r, g, b]);
-            let y = r * LUMINANCE[0] + g * LUMINANCE[1] + b * LUMINANCE[2];
-            lightness = lab_curve(y) * 116.0 - 16.0;
+    dispatch!(pass.level, simd => map_pixels::<4, 2>(pass, band, #[inline(always)] |source, target| {
+        let (mut v, mut w) = (load4(simd, &source[..32]), load4(simd, &source[32..]));
+        if params.source_space != LAB {
+            // Two blocks side by side: their operations need not wait for each other.
+            (v, w) = (luminance(&params, v), luminance(&params, w));
+            (v[0], w[0]) = (lab_curve(v[0]) * 116.0 - 16.0, lab_curve(w[0]) * 116.0 - 16.0);
         }
-        write2([lightness * alpha, alpha], target);
+        write2([v[0] * v[3], v[3]], &mut target[..16]);
+        write2([w[0] * w[3], w[3]], &mut target[16..]);
     }));
+}
+
+/// Pixels with their luminance in the first channel.
+#[inline(always)]
+fn luminance<S: Simd>(params: &Params, mut pixels: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
+    let host = params.source_space == HOST;
+    if host {
+        pixels = colour_import::plain(pixels, params.premultiplied != 0);
+    }
+    let [mut r, mut g, mut b, a] = pixels;
+    if !host || params.space == ColourSpace::Srgb as u32 {
+        [r, g, b] = srgb_decode([r, g, b]);
+    } else if params.space == ColourSpace::AcesCg as u32 {
+        [r, g, b] = transform(&ACESCG_TO_LINEAR, [r, g, b]);
+    }
+    [r * LUMINANCE[0] + g * LUMINANCE[1] + b * LUMINANCE[2], g, b, a]
 }

@@ -1,0 +1,16 @@
+// The host's pixels in its own space, finite and not premultiplied. Twin of plain() in
+// kernels/colour/colour_import.rs.
+fn plain(pixel: vec4f, premultiplied: bool) -> vec4f {
+    var v = pixel;
+    // Compared by bits: shader compilers may assume that NaN does not exist.
+    let bits = bitcast<vec4u>(v);
+    let special = (bits & vec4u(0x7f800000u)) == vec4u(0x7f800000u);
+    let nan = special & ((bits & vec4u(0x007fffffu)) != vec4u(0u));
+    let largest = select(vec4f(65504.0), vec4f(-65504.0), (bits >> vec4u(31u)) == vec4u(1u));
+    v = select(select(v, largest, special), vec4f(0.0), nan);
+    v = clamp(v, vec4f(vec3f(-65504.0), 0.0), vec4f(vec3f(65504.0), 1.0));
+    if premultiplied {
+        v = vec4f(select(vec3f(0.0), v.rgb / v.a, v.a > 1e-6), v.a);
+    }
+    return v;
+}
