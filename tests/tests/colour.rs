@@ -1,10 +1,11 @@
 //! Colour, alpha and bad pixels, for every node: what enters in a space leaves in it, nothing that is
 //! not finite spreads, flat pictures stay flat, transparent pixels lend no colour.
 
+use isophote::kernels::colour::{colour_import, lightness};
 use isophote::request::ColourSpace;
 use isophote::spec::{ImageKind, NodeSpec};
 use isophote::{Graph, Request};
-use isophote_engine::Image;
+use isophote_engine::{Class, Image, PlanBuilder, Rect};
 use isophote_tests::cases;
 use isophote_tests::compare::distance;
 use isophote_tests::pictures::{self, Kind, from_fn};
@@ -208,6 +209,56 @@ fn a_cut_out_has_no_fringe() {
         }
     }
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn what_is_opaque_stays_opaque() {
+    let picture = pictures::color(Kind::Noise, 31, 23);
+    assert!(picture.data().chunks_exact(4).all(|p| p[3] == 1.0));
+    let mut wrong = Vec::new();
+    for spec in filters() {
+        for setting in cases::settings(spec, 4) {
+            let mut setup = cases::setup(spec, false);
+            setting.apply(&mut setup.graph, setup.node);
+            let out = run::graph(&setup.graph, Request::new(31, 23), &picture);
+            if let Some(p) = out.data().chunks_exact(4).find(|p| p[3] != 1.0) {
+                wrong.push(format!("{} ({}): {}", spec.id, setting.label, p[3]));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn lightness_comes_straight_from_the_hosts_colour() {
+    let all = Rect::of_size(48, 32);
+    for kind in [Kind::Noise, Kind::Hdr, Kind::Broken, Kind::CutOut] {
+        let picture = pictures::color(kind, 48, 32);
+        for (space, premultiplied) in ColourSpace::ALL.into_iter().flat_map(|s| [(s, false), (s, true)]) {
+            let mut plan = PlanBuilder::new(48, 32).unwrap();
+            let host = plan.input("color", 4, Class::Colour);
+            let working = colour_import::import(&mut plan, host, space, premultiplied);
+            let direct = lightness::of_color(&mut plan, working);
+            plan.output("output", direct);
+            let plan = plan.finish().unwrap();
+            assert!(plan.windows(all)[working.index()].is_empty(), "the working colour is computed too");
+            let direct = run::whole(&plan, &[("color", picture.clone())]);
+
+            let mut plan = PlanBuilder::new(48, 32).unwrap();
+            let host = plan.input("color", 4, Class::Colour);
+            let working = colour_import::import(&mut plan, host, space, premultiplied);
+            plan.output("output", working);
+            let working = run::whole(&plan.finish().unwrap(), &[("color", picture.clone())]);
+            let mut plan = PlanBuilder::new(48, 32).unwrap();
+            let color = plan.input("color", 4, Class::Colour);
+            let around = lightness::of_color(&mut plan, color);
+            plan.output("output", around);
+            let around = run::whole(&plan.finish().unwrap(), &[("color", working)]);
+            for (a, b) in direct.data().iter().zip(around.data()) {
+                assert!((a - b).abs() < 1e-3 + 1e-5 * b.abs(), "{kind:?} {space:?}: {a} for {b}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@
 //! filled, so that no pixel depends on where its tile ends.
 
 use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, prelude::*};
-use isophote_engine::math::{load4, store4};
+use isophote_engine::math::{load_pixels, load4, store4, transposed};
 use isophote_engine::{Band, View};
 
 /// Pixels in a block.
@@ -160,11 +160,11 @@ pub fn fetch1<S: Simd>(simd: S, view: &View<'_>, at: i32x8<S>) -> f32x8<S> {
 /// Eight pixels of a four-channel image, one vector per channel.
 #[inline(always)]
 pub fn fetch4<S: Simd>(simd: S, view: &View<'_>, at: i32x8<S>) -> [f32x8<S>; 4] {
-    let data = view.data();
-    let mut pixels = [0.0f32; 4 * BLOCK];
-    for (lane, pixel) in pixels.chunks_exact_mut(4).enumerate() {
-        let start = at[lane] as usize;
-        pixel.copy_from_slice(&data[start..start + 4]);
+    let (data, at) = (view.data(), at.to_array());
+    let mut pixels = [f32x8::splat(simd, 0.0); 4];
+    for i in 0..4 {
+        let (low, high) = (at[i] as u32 as usize, at[i + 4] as u32 as usize);
+        pixels[i] = load_pixels(simd, &data[low..low + 4], &data[high..high + 4]);
     }
-    load4(simd, &pixels)
+    transposed(pixels)
 }

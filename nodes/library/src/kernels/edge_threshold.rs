@@ -75,6 +75,7 @@ pub fn edge_threshold<S: Simd>(u: f32x8<S>, kind: u32, epsilon: f32, phi: f32) -
 }
 
 /// The edge image where no covered pixel contributes: paper.
+#[inline(always)]
 pub fn edge_uncovered(kind: u32) -> f32 {
     if kind == Threshold::None as u32 { 0.0 } else { 1.0 }
 }

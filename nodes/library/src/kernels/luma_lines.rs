@@ -128,20 +128,25 @@ impl LumaLines {
     ) {
         let (held, width) = (view.window(), self.width);
         let (rows, pairs) = self.data[start..start + self.coverage].split_at_mut(width * (self.rows + 1));
-        for (i, row) in rows.chunks_exact_mut(width).enumerate() {
+        // Plain loops: adapters of iterators stay calls in code for wide vectors.
+        for i in 0..=self.rows {
+            let row = &mut rows[i * width..(i + 1) * width];
             let y = (self.y0 + i as i32).clamp(held.y0, held.y1 - 1);
             let source = view.padded_row(y, self.x0, self.x0 + width as i32, &mut self.scratch);
-            for (pixels, target) in source.chunks_exact(32).zip(row.chunks_exact_mut(8)) {
-                value(load4(simd, pixels)).store_slice(target);
+            let source = &source[..4 * width];
+            for x in (0..width).step_by(8) {
+                value(load4(simd, &source[4 * x..4 * x + 32])).store_slice(&mut row[x..x + 8]);
             }
         }
-        for (i, target) in pairs.chunks_exact_mut(2 * width).take(self.rows).enumerate() {
+        for i in 0..self.rows {
             let (above, below) = rows[i * width..(i + 2) * width].split_at(width);
-            let both = above.chunks_exact(8).zip(below.chunks_exact(8));
-            for ((above, below), target) in both.zip(target.chunks_exact_mut(16)) {
-                let (low, high) = f32x8::from_slice(simd, above).interleave(f32x8::from_slice(simd, below));
-                low.store_slice(&mut target[..8]);
-                high.store_slice(&mut target[8..]);
+            let target = &mut pairs[2 * i * width..2 * (i + 1) * width];
+            for x in (0..width).step_by(8) {
+                let (above, below) =
+                    (f32x8::from_slice(simd, &above[x..x + 8]), f32x8::from_slice(simd, &below[x..x + 8]));
+                let (low, high) = above.interleave(below);
+                low.store_slice(&mut target[2 * x..2 * x + 8]);
+                high.store_slice(&mut target[2 * x + 8..2 * x + 16]);
             }
         }
     }

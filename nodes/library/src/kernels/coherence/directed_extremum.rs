@@ -10,7 +10,7 @@
 //!
 //! Cost: four comparisons per step, and nothing at all where the threshold is not reached.
 
-use crate::kernels::blocks::{Block, fetch4, offsets, write4};
+use crate::kernels::blocks::{BLOCK, Block, fetch4, offsets, write4};
 use crate::kernels::luma_lines::{Line, LumaLines, STRIP};
 use crate::kernels::tensor_algebra::axis;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
@@ -78,14 +78,15 @@ fn strips<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
         let strip = Rect { x0, x1: (x0 + STRIP).min(window.x1), ..window };
         lumas.load(simd, &pass.inputs[0], strip, radius, false);
         for y in window.y0..window.y1 {
-            let (start, end) = (4 * (x0 - window.x0) as usize, 4 * (strip.x1 - window.x0) as usize);
-            for (i, target) in band.row_mut(0, y)[start..end].chunks_mut(32).enumerate() {
-                let block = Block { x: x0 + 8 * i as i32, y, len: target.len() / 4 };
+            let (start, end) = ((x0 - window.x0) as usize, (strip.x1 - window.x0) as usize);
+            let row = &mut band.row_mut(0, y)[4 * start..4 * end];
+            for i in (0..end - start).step_by(BLOCK) {
+                let block = Block { x: x0 + i as i32, y, len: BLOCK.min(end - start - i) };
+                let target = &mut row[4 * i..4 * (i + block.len)];
                 let z = block.read1(simd, &pass.inputs[2]);
                 let active = z.abs().simd_gt(f32x8::splat(simd, params.threshold));
                 if !active.any_true() {
-                    let at = pass.inputs[0].offset(block.x, y);
-                    target.copy_from_slice(&pass.inputs[0].data()[at..at + target.len()]);
+                    write4(block.read4(simd, &pass.inputs[0]), target);
                     continue;
                 }
                 let [e, f, g, _] = block.read4(simd, &pass.inputs[1]);

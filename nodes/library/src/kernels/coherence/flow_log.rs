@@ -8,7 +8,7 @@
 //!
 //! Cost: 5 sigma steps, each one linear interpolation between sums of opposite pixels and about 20 operations.
 
-use crate::kernels::blocks::{Block, write1};
+use crate::kernels::blocks::{BLOCK, Block, write1};
 use crate::kernels::luma_lines::{Line, LumaLines, STRIP};
 use crate::kernels::tensor_algebra::axis;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
@@ -73,15 +73,16 @@ fn strips<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, ba
         let strip = Rect { x0, x1: (x0 + STRIP).min(window.x1), ..window };
         lumas.load(simd, &pass.inputs[0], strip, radius, true);
         for y in window.y0..window.y1 {
-            let row = &mut band.row_mut(0, y)[(x0 - window.x0) as usize..(strip.x1 - window.x0) as usize];
-            for (i, target) in row.chunks_mut(8).enumerate() {
-                let block = Block { x: x0 + 8 * i as i32, y, len: target.len() };
+            let (start, end) = ((x0 - window.x0) as usize, (strip.x1 - window.x0) as usize);
+            let row = &mut band.row_mut(0, y)[start..end];
+            for i in (0..end - start).step_by(BLOCK) {
+                let block = Block { x: x0 + i as i32, y, len: BLOCK.min(end - start - i) };
                 let response = if lumas.is_opaque() {
                     along::<_, true>(simd, pass, params, radius, &lumas, block)
                 } else {
                     along::<_, false>(simd, pass, params, radius, &lumas, block)
                 };
-                write1(response, target);
+                write1(response, &mut row[i..i + block.len]);
             }
         }
     }

@@ -83,6 +83,12 @@ fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
     let (data, len) = (view.data(), 4 * window.width() as usize);
     let (narrow, wide) = (flat(&params.narrow), flat(&params.wide));
     let r = params.radius;
+    let mut weights: Vec<[f32; 16]> = Vec::with_capacity(r as usize + 1);
+    for i in 0..=r as usize {
+        let (n, w) = (narrow[i], wide[i]);
+        weights.push([n, n, w, w, n, n, w, w, n, n, w, w, n, n, w, w]);
+    }
+    let uncovered = edge_uncovered(params.threshold);
     let mut rows: Vec<&[f32]> = Vec::with_capacity((window.height() as i32 + 2 * r) as usize);
     for y in window.y0 - r..window.y1 + r {
         let at = view.offset(window.x0, y);
@@ -96,10 +102,7 @@ fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
                 simd,
                 r as usize,
                 #[inline(always)]
-                |i| {
-                    let (n, w) = (narrow[i], wide[i]);
-                    f32x16::simd_from(simd, [n, n, w, w, n, n, w, w, n, n, w, w, n, n, w, w])
-                },
+                |i| f32x16::from_slice(simd, &weights[i]),
                 #[inline(always)]
                 |i| &rows[i][RUN * n..],
                 &mut sums[..4 * target.len()],
@@ -108,20 +111,20 @@ fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
             while at < target.len() {
                 let len = BLOCK.min(target.len() - at);
                 let pixels = load4(simd, &sums[4 * at..4 * (at + BLOCK)]);
-                write1(edge(simd, params, pixels), &mut target[at..at + len]);
+                write1(edge(simd, params, uncovered, pixels), &mut target[at..at + len]);
                 at += BLOCK;
             }
         }
     }
 }
 
-/// The edge image of (narrow L, narrow alpha, wide L, wide alpha).
+/// The edge image of (narrow L, narrow alpha, wide L, wide alpha), `uncovered` where nothing is.
 #[inline(always)]
-fn edge<S: Simd>(simd: S, params: &Params, [nl, na, wl, wa]: [f32x8<S>; 4]) -> f32x8<S> {
+fn edge<S: Simd>(simd: S, params: &Params, uncovered: f32, [nl, na, wl, wa]: [f32x8<S>; 4]) -> f32x8<S> {
     let one = f32x8::splat(simd, 1.0);
     let covered = na.min(wa).simd_gt(LEAST_COVERAGE);
     let (na, wa) = (covered.select(na, one), covered.select(wa, one));
     let u = dog_response(nl / na, wl / wa, params.base, params.edge);
     let line = edge_threshold(u, params.threshold, params.epsilon, params.phi);
-    covered.select(line, f32x8::splat(simd, edge_uncovered(params.threshold)))
+    covered.select(line, f32x8::splat(simd, uncovered))
 }

@@ -95,6 +95,7 @@ fn smooth<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
 /// Pixels (narrow L, narrow alpha, wide L, wide alpha) from (L, alpha) of them and of the taps to both sides.
 #[inline(always)]
 fn sum<S: Simd>(simd: S, source: &[f32], [narrow, wide]: [&[f32]; 2], target: &mut [f32]) {
+    let wide = &wide[..narrow.len()];
     let first = source.len() - RUN;
     let mut sums = [[f32x16::splat(simd, 0.0); 2]; 2];
     let middle = &source[first / 2..first / 2 + RUN];
@@ -102,8 +103,9 @@ fn sum<S: Simd>(simd: S, source: &[f32], [narrow, wide]: [&[f32]; 2], target: &m
         let value = f32x16::from_slice(simd, &middle[16 * k..16 * k + 16]);
         sums[k] = [value * narrow[0], value * wide[0]];
     }
-    for (i, (n, w)) in narrow.iter().zip(wide).enumerate().skip(1) {
-        let (n, w) = (f32x16::splat(simd, *n), f32x16::splat(simd, *w));
+    // A plain loop: adapters of iterators stay calls in code for wide vectors.
+    for i in 1..narrow.len() {
+        let (n, w) = (f32x16::splat(simd, narrow[i]), f32x16::splat(simd, wide[i]));
         let (before, after) =
             (&source[first / 2 - 2 * i..][..RUN], &source[first / 2 + 2 * i..][..RUN]);
         for k in 0..2 {
