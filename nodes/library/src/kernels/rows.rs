@@ -1,13 +1,13 @@
 //! Rings of rows for kernels that look at a small neighbourhood: each row is clamped to the edge,
 //! mapped once and kept channel by channel, ready for vectors that start at any column.
 
+use crate::kernels::support::row_pixels4;
 use isophote_engine::View;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
-use isophote_engine::math::load4;
 
 /// Columns of a strip. Bands are worked through in strips so that their rows stay in the first-level
 /// cache.
-pub const STRIP: i32 = 256;
+pub const STRIP: i32 = 640;
 
 /// Rows y - radius ..= y + radius of a strip of columns, by channel.
 #[derive(Debug, Default)]
@@ -58,21 +58,16 @@ impl Rows {
         simd: S,
         view: &View<'_>,
         y: i32,
-        map: impl Fn([f32x8<S>; 4]) -> [f32x8<S>; 4],
+        mut map: impl FnMut([f32x8<S>; 4]) -> [f32x8<S>; 4],
     ) {
         let at = y.rem_euclid(self.count as i32) as usize * self.channels * self.len;
         let last = self.first + self.columns as i32;
         let source = view.padded_row(y, self.first, last, &mut self.scratch);
         let target = &mut self.data[at..at + 4 * self.len];
-        for (i, block) in source.chunks(32).enumerate() {
-            let values = if block.len() == 32 {
-                load4(simd, block)
-            } else {
-                let mut padded = [0.0; 32];
-                padded[..block.len()].copy_from_slice(block);
-                load4(simd, &padded)
-            };
-            let values = map(values);
+        // A plain loop: adapters of iterators stay calls in code for wide vectors.
+        for i in 0..source.len().div_ceil(32) {
+            let rest = &source[32 * i..];
+            let values = map(row_pixels4(simd, rest, 0));
             for channel in 0..4 {
                 values[channel].store_slice(&mut target[channel * self.len + 8 * i..][..8]);
             }

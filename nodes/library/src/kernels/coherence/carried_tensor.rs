@@ -117,15 +117,15 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, r: usize, band
             for c in 0..3 {
                 let source = &strip.tensors[c * wide..(c + 1) * wide];
                 let target = &mut strip.ring[slot + c * narrow..slot + (c + 1) * narrow];
-                for (i, target) in target.chunks_exact_mut(8).enumerate() {
-                    let at = 8 * i + r;
-                    let mut sum = f32x8::from_slice(simd, &source[at..at + 8]) * weights[0];
+                for at in (0..narrow).step_by(8) {
+                    // One slice for all taps, whose places in it the compiler knows.
+                    let taps = &source[at..at + 2 * r + 8];
+                    let mut sum = eight(simd, taps, r) * weights[0];
                     for k in 1..=r {
-                        let before = f32x8::from_slice(simd, &source[at - k..at - k + 8]);
-                        let after = f32x8::from_slice(simd, &source[at + k..at + k + 8]);
-                        sum = (before + after).mul_add(f32x8::splat(simd, weights[k]), sum);
+                        let both = eight(simd, taps, r - k) + eight(simd, taps, r + k);
+                        sum = both.mul_add(f32x8::splat(simd, weights[k]), sum);
                     }
-                    sum.store_slice(target);
+                    sum.store_slice(&mut target[at..at + 8]);
                 }
             }
             let done = y - reach;
@@ -149,11 +149,20 @@ impl Strip {
         [x0, x1]: [i32; 2],
         y: i32,
     ) {
-        let held = (x1 - x0 + 2) as usize;
+        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
         while self.next <= y + 1 {
-            self.colors.load4(simd, &pass.inputs[0], self.next, #[inline(always)] |[r, g, b, a]| [r * a, g * a, b * a, a]);
-            let alphas = &self.colors.row(self.next, 3)[..held];
-            self.opaque[self.next.rem_euclid(3) as usize] = alphas.iter().fold(true, |all, a| all & (*a == 1.0));
+            let mut least = one;
+            self.colors.load4(
+                simd,
+                &pass.inputs[0],
+                self.next,
+                #[inline(always)]
+                |[r, g, b, a]| {
+                    least = least.min(a);
+                    [r * a, g * a, b * a, a]
+                },
+            );
+            self.opaque[self.next.rem_euclid(3) as usize] = least.simd_ge(one).all_true();
             self.next += 1;
         }
         // The coverage of opaque rows has no gradient: its products are exact, and left out.
@@ -161,29 +170,36 @@ impl Strip {
         let channels = if opaque { 3 } else { 4 };
         let len = self.colors.stride();
         for c in 0..channels {
-            let (above, here, below) =
-                (self.colors.row(y - 1, c), self.colors.row(y, c), self.colors.row(y + 1, c));
+            let (above, _) = self.colors.row(y - 1, c).as_chunks::<8>();
+            let blocks = above.len();
+            let here = &self.colors.row(y, c).as_chunks::<8>().0[..blocks];
+            let below = &self.colors.row(y + 1, c).as_chunks::<8>().0[..blocks];
             let (smoothed, derived) = self.columns[2 * c * len..2 * (c + 1) * len].split_at_mut(len);
-            for i in (0..len).step_by(8) {
-                let (above, here, below) = (
-                    f32x8::from_slice(simd, &above[i..i + 8]),
-                    f32x8::from_slice(simd, &here[i..i + 8]),
-                    f32x8::from_slice(simd, &below[i..i + 8]),
-                );
+            let smoothed = &mut smoothed.as_chunks_mut::<8>().0[..blocks];
+            let derived = &mut derived.as_chunks_mut::<8>().0[..blocks];
+            for i in 0..blocks {
+                let (above, here, below) =
+                    (eight(simd, &above[i], 0), eight(simd, &here[i], 0), eight(simd, &below[i], 0));
                 let across = f32x8::splat(simd, params.smoothing[1]);
-                (above + below).mul_add(across, here * params.smoothing[0]).store_slice(&mut smoothed[i..i + 8]);
-                ((below - above) * 0.5).store_slice(&mut derived[i..i + 8]);
+                (above + below).mul_add(across, here * params.smoothing[0]).store_slice(&mut smoothed[i]);
+                ((below - above) * 0.5).store_slice(&mut derived[i]);
             }
         }
-        let zero = f32x8::splat(simd, 0.0);
+        let earlier = &pass.inputs[1];
+        let held = earlier.window();
+        let row = earlier.offset(held.x0, y);
+        let row = &earlier.data()[row..row + earlier.stride()];
         let (mut dx, mut dy) = ([zero; 4], [zero; 4]);
         for i in (0..(x1 - x0) as usize).step_by(8) {
             for c in 0..channels {
-                let smoothed = &self.columns[2 * c * len..(2 * c + 1) * len];
-                let derived = &self.columns[(2 * c + 1) * len..2 * (c + 1) * len];
-                dx[c] = (eight(simd, smoothed, i + 2) - eight(simd, smoothed, i)) * 0.5;
-                let sides = eight(simd, derived, i) + eight(simd, derived, i + 2);
-                dy[c] = sides.mul_add(f32x8::splat(simd, params.smoothing[1]), eight(simd, derived, i + 1) * params.smoothing[0]);
+                let columns = &self.columns[2 * c * len..2 * (c + 1) * len];
+                let (smoothed, derived) = (&columns[i..i + 10], &columns[len + i..len + i + 10]);
+                dx[c] = (eight(simd, smoothed, 2) - eight(simd, smoothed, 0)) * 0.5;
+                let sides = eight(simd, derived, 0) + eight(simd, derived, 2);
+                dy[c] = sides.mul_add(
+                    f32x8::splat(simd, params.smoothing[1]),
+                    eight(simd, derived, 1) * params.smoothing[0],
+                );
             }
             if !opaque {
                 let alpha = eight(simd, self.colors.row(y, 3), i + 1);
@@ -202,15 +218,16 @@ impl Strip {
             let valid = lambda1.simd_gt(f32x8::splat(simd, params.threshold));
             let mut tensor = [e, f, g];
             if !valid.all_true() {
-                let earlier = pass.inputs[1].padded_row(y, x0 + i as i32, (x0 + i as i32 + 8).min(x1), &mut self.scratch);
-                let [e, f, g, _] = read4(simd, earlier);
-                let earlier = [e, f, g];
-                for c in 0..3 {
-                    tensor[c] = valid.select(tensor[c], earlier[c]);
-                }
+                let x = x0 + i as i32;
+                let [e, f, g, _] = if x >= held.x0 && x + 8 <= held.x1 {
+                    load4(simd, &row[4 * (x - held.x0) as usize..][..32])
+                } else {
+                    read4(simd, earlier.padded_row(y, x, (x + 8).min(x1), &mut self.scratch))
+                };
+                tensor = [valid.select(tensor[0], e), valid.select(tensor[1], f), valid.select(tensor[2], g)];
             }
-            for (c, value) in tensor.iter().enumerate() {
-                value.store_slice(&mut self.tensors[c * len + i..c * len + i + 8]);
+            for c in 0..3 {
+                tensor[c].store_slice(&mut self.tensors[c * len + i..c * len + i + 8]);
             }
         }
     }
@@ -244,25 +261,24 @@ impl Strip {
         target: &mut [f32],
     ) {
         let one = f32x8::splat(simd, 1.0);
-        let slot = |k: i32| (y + k).rem_euclid(2 * r as i32 + 1) as usize * 3 * narrow;
-        let mut rows: [&[f32]; 2 * MAX_RADIUS as usize + 1] = [&[]; 2 * MAX_RADIUS as usize + 1];
-        for (k, row) in rows[..=2 * r].iter_mut().enumerate() {
-            let at = slot(k as i32 - r as i32);
-            *row = &self.ring[at..at + 3 * narrow];
+        let (count, mut rows) = (2 * r as i32 + 1, [&self.ring[..0]; 2 * MAX_RADIUS as usize + 1]);
+        for k in 0..=2 * r {
+            let at = (y + k as i32 - r as i32).rem_euclid(count) as usize * 3 * narrow;
+            rows[k] = &self.ring[at..at + 3 * narrow];
         }
-        for (i, pixels) in target.chunks_mut(32).enumerate() {
+        for i in 0..target.len().div_ceil(32) {
             let mut tensor = [one; 4];
-            for (c, value) in tensor.iter_mut().take(3).enumerate() {
+            for c in 0..3 {
                 let at = c * narrow + 8 * i;
-                let mut sum = f32x8::from_slice(simd, &rows[r][at..at + 8]) * weights[0];
+                let mut sum = eight(simd, rows[r], at) * weights[0];
                 for k in 1..=r {
-                    let above = f32x8::from_slice(simd, &rows[r - k][at..at + 8]);
-                    let below = f32x8::from_slice(simd, &rows[r + k][at..at + 8]);
-                    sum = (above + below).mul_add(f32x8::splat(simd, weights[k]), sum);
+                    let both = eight(simd, rows[r - k], at) + eight(simd, rows[r + k], at);
+                    sum = both.mul_add(f32x8::splat(simd, weights[k]), sum);
                 }
-                *value = sum;
+                tensor[c] = sum;
             }
-            put_pixels4(tensor, pixels);
+            let end = target.len().min(32 * i + 32);
+            put_pixels4(tensor, &mut target[32 * i..end]);
         }
     }
 }
