@@ -69,10 +69,9 @@ macro_rules! elementary {
                 let r = x - (shifted - shift);
                 // In pairs, so that no more than four operations wait for each other.
                 let rr = r * r;
-                let a = r.mul_add($float::splat(simd, 6.931_472e-1), $float::splat(simd, 1.0));
-                let b = r.mul_add($float::splat(simd, 5.550_332_5e-2), $float::splat(simd, 2.402_264_8e-1));
-                let c = r.mul_add($float::splat(simd, 1.339_887_4e-3), $float::splat(simd, 9.618_437e-3));
-                let c = rr.mul_add($float::splat(simd, 1.535_336_2e-4), c);
+                let a = r.mul_add($float::splat(simd, 6.931_469_8e-1), $float::splat(simd, 1.0));
+                let b = r.mul_add($float::splat(simd, 5.550_733_7e-2), $float::splat(simd, 2.402_224_2e-1));
+                let c = r.mul_add($float::splat(simd, 1.326_472_7e-3), $float::splat(simd, 9.671_513e-3));
                 let p = rr.mul_add(c, b).mul_add(rr, a);
                 // The whole part goes to the exponent: p is at least 0.7, so that it does not run over.
                 let n = shifted.bitcast::<$int<S>>() << 23;

@@ -166,16 +166,20 @@ impl ColourLines {
             let target = row * self.width..(row + 1) * self.width;
             let (r, g) = (&mut r[target.clone()], &mut g[target.clone()]);
             let (b, a) = (&mut b[target.clone()], &mut a[target]);
-            for (i, pixels) in source.chunks_exact(32).enumerate() {
-                let two = |i: usize| load_pixels(simd, &pixels[4 * i..], &pixels[4 * i + 16..]);
-                let [red, green, blue, alpha] = transposed([two(0), two(1), two(2), two(3)]);
+            for i in (0..self.width).step_by(8) {
+                let pixels = &source[4 * i..4 * i + 32];
+                let [red, green, blue, alpha] = transposed([
+                    load_pixels(simd, &pixels[..4], &pixels[16..20]),
+                    load_pixels(simd, &pixels[4..8], &pixels[20..24]),
+                    load_pixels(simd, &pixels[8..12], &pixels[24..28]),
+                    load_pixels(simd, &pixels[12..16], &pixels[28..32]),
+                ]);
                 opaque &= alpha.simd_eq(one).all_true();
                 let factor = if weighted { alpha } else { one };
-                let at = 8 * i..8 * i + 8;
-                (red * factor).store_slice(&mut r[at.clone()]);
-                (green * factor).store_slice(&mut g[at.clone()]);
-                (blue * factor).store_slice(&mut b[at.clone()]);
-                alpha.store_slice(&mut a[at]);
+                (red * factor).store_slice(&mut r[i..i + 8]);
+                (green * factor).store_slice(&mut g[i..i + 8]);
+                (blue * factor).store_slice(&mut b[i..i + 8]);
+                alpha.store_slice(&mut a[i..i + 8]);
             }
         }
         self.opaque = opaque;
@@ -193,13 +197,14 @@ impl ColourLines {
             let source = view.padded_row(y, self.x0, self.x0 + self.width as i32, &mut self.scratch);
             let target = row * self.width..(row + 1) * self.width;
             let (values, coverage) = (&mut values[target.clone()], &mut coverage[target]);
-            for (i, pixels) in source.chunks_exact(16).enumerate() {
+            for i in (0..self.width).step_by(8) {
+                let pixels = &source[2 * i..2 * i + 16];
                 let (low, high) =
                     (f32x8::from_slice(simd, &pixels[..8]), f32x8::from_slice(simd, &pixels[8..]));
                 let (value, alpha) = low.deinterleave(high);
                 opaque &= alpha.simd_eq(one).all_true();
-                value.store_slice(&mut values[8 * i..8 * i + 8]);
-                alpha.store_slice(&mut coverage[8 * i..8 * i + 8]);
+                value.store_slice(&mut values[i..i + 8]);
+                alpha.store_slice(&mut coverage[i..i + 8]);
             }
         }
         self.opaque = opaque;
@@ -228,8 +233,10 @@ impl ColourLines {
     pub fn centres<S: Simd, const N: usize>(&self, simd: S, [x, y]: [i32; 2]) -> [f32x8<S>; N] {
         let at = (y - self.y0) * self.width as i32 + x - self.x0;
         let mut centres = [f32x8::splat(simd, 0.0); N];
-        for (centre, values) in centres.iter_mut().zip(&self.channels()) {
-            *centre = eight(simd, values, at);
+        let channels = self.channels();
+        // A plain loop: adapters of iterators stay calls in code for wide vectors.
+        for c in 0..N {
+            centres[c] = eight(simd, channels[c], at);
         }
         centres
     }
@@ -294,9 +301,11 @@ impl ColourLines {
         let place = f32x8::splat(simd, step.row);
         let shares = [step.share(place), step.share(place + 1.0), step.share(place + 2.0)];
         let mut taps = [[f32x8::splat(simd, 0.0); N]; 2];
-        for (channel, values) in self.channels()[..N].iter().enumerate() {
-            taps[0][channel] = few(&values[ahead..ahead + 2 * minor + 8], [0, minor, 2 * minor], shares);
-            taps[1][channel] = few(&values[behind..behind + 2 * minor + 8], [2 * minor, minor, 0], shares);
+        let channels = self.channels();
+        for c in 0..N {
+            let values = channels[c];
+            taps[0][c] = few(&values[ahead..ahead + 2 * minor + 8], [0, minor, 2 * minor], shares);
+            taps[1][c] = few(&values[behind..behind + 2 * minor + 8], [2 * minor, minor, 0], shares);
         }
         self.rows_from::<S, N>(
             step,
