@@ -38,6 +38,7 @@ impl Integrator {
     }
 
     /// Whether a step depends on the field where it starts; the tangent at a line's beginning is known.
+    #[inline(always)]
     fn asks_here(self, begins: bool) -> bool {
         !begins && self != Self::TwoStep
     }

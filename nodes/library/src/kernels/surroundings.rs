@@ -8,6 +8,7 @@
 //!
 //! Cost: one copy of (tile + 2 reach)^2 pixels for each tile.
 
+use crate::kernels::coverage::is_opaque;
 use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, prelude::*};
 use isophote_engine::math::{load_pixels, spread, transposed};
 use isophote_engine::{Rect, View};
@@ -131,6 +132,20 @@ impl<const VALUES: usize> Surroundings<VALUES> {
             f32x8::from_slice(simd, &self.data[upper..upper + 8]),
             f32x8::from_slice(simd, &self.data[lower..lower + 8]),
         ]
+    }
+}
+
+impl Surroundings<FOUR> {
+    /// Copies what `frame` holds of a colour image and multiplies the colours by their alpha.
+    pub fn load_covered(&mut self, view: &View<'_>, frame: &Frame) {
+        self.load(view, frame);
+        let held = &mut self.data[..4 * frame.held.area() as usize];
+        // The product with 1 is exact: whether it is left out never shows.
+        if !is_opaque(held) {
+            for [r, g, b, alpha] in held.as_chunks_mut::<4>().0 {
+                (*r, *g, *b) = (*r * *alpha, *g * *alpha, *b * *alpha);
+            }
+        }
     }
 }
 

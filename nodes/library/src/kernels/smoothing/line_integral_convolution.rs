@@ -132,23 +132,28 @@ fn reach(params: &Params) -> i32 {
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let reach = reach(&params);
-    let covered = Covered::new(&pass.inputs[0], band, reach);
-    let lines = Lines { params, source: covered.view(&pass.inputs[0]), tensors: pass.inputs[1], field: pass.inputs[2] };
+    let lines = Lines { params, source: pass.inputs[0], tensors: pass.inputs[1], field: pass.inputs[2] };
     // Which of two ways is taken depends on the parameters alone, not on where a pixel's tile lies.
     if Frame::suits(reach) {
         let mut tile = Tile::default();
         for frame in Frame::tiles(band.window, reach) {
-            dispatch!(pass.level, simd => lines.fill(simd, &frame, &mut tile, band));
+            match Integrator::of(params.integrator) {
+                // Known to the compiler, the usual one has no part in its loops for what others need.
+                Integrator::TwoStep => {
+                    dispatch!(pass.level, simd => lines.fill(simd, Integrator::TwoStep, &frame, &mut tile, band));
+                }
+                other => dispatch!(pass.level, simd => lines.fill(simd, other, &frame, &mut tile, band)),
+            }
         }
     } else {
-        dispatch!(pass.level, simd => lines.fill_far(simd, band));
+        let covered = Covered::new(&lines.source, band, reach);
+        dispatch!(pass.level, simd => lines.fill_far(simd, covered.view(&lines.source), band));
     }
 }
 
 /// What all blocks of a band share.
 struct Lines<'a> {
     params: Params,
-    /// Colours times coverage.
     source: View<'a>,
     tensors: View<'a>,
     field: View<'a>,
@@ -245,11 +250,18 @@ impl Lines<'_> {
 
     /// One tile.
     #[inline(always)]
-    fn fill<S: Simd>(&self, simd: S, frame: &Frame, tile: &mut Tile, band: &mut Band<'_>) {
+    fn fill<S: Simd>(
+        &self,
+        simd: S,
+        integrator: Integrator,
+        frame: &Frame,
+        tile: &mut Tile,
+        band: &mut Band<'_>,
+    ) {
         let Tile { colors, field, taps } = tile;
-        colors.load(&self.source, frame);
+        colors.load_covered(&self.source, frame);
         field.load(&self.field, frame);
-        let near = NearField { frame, tensors: field, integrator: Integrator::of(self.params.integrator) };
+        let near = NearField { frame, tensors: field, integrator };
         let edges = frame.meets_edges(self.source.full());
         let last = frame.tile.x1 - 1;
         let (start, end) = ((frame.tile.x0 - band.window.x0) as usize, (frame.tile.x1 - band.window.x0) as usize);
@@ -261,7 +273,8 @@ impl Lines<'_> {
                 let (sums, norms) = self.follow(simd, &near, lines, edges, colors, taps);
                 for (i, target) in target.chunks_mut(4 * BLOCK).enumerate() {
                     let mut sum = load4(simd, &sums[i]);
-                    let centre = get_pixels4(simd, &self.source, x + (i * BLOCK) as i32, y, last);
+                    let [r, g, b, alpha] = get_pixels4(simd, &self.source, x + (i * BLOCK) as i32, y, last);
+                    let centre = [r * alpha, g * alpha, b * alpha, alpha];
                     for c in 0..4 {
                         sum[c] += centre[c];
                     }
@@ -356,18 +369,18 @@ impl Lines<'_> {
 
     /// A band whose lines reach too far for copies of what is around tiles.
     #[inline(always)]
-    fn fill_far<S: Simd>(&self, simd: S, band: &mut Band<'_>) {
+    fn fill_far<S: Simd>(&self, simd: S, covered: View<'_>, band: &mut Band<'_>) {
         let last = band.window.x1 - 1;
-        for_blocks_in_tiles::<4>(band, |block, target| put_pixels4(self.far(simd, block.x, block.y, last), target));
+        for_blocks_in_tiles::<4>(band, |block, target| put_pixels4(self.far(simd, &covered, block.x, block.y, last), target));
     }
 
     /// Up to eight pixels anywhere.
     #[inline(always)]
-    fn far<S: Simd>(&self, simd: S, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
+    fn far<S: Simd>(&self, simd: S, covered: &View<'_>, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
         let (params, zero) = (&self.params, f32x8::splat(simd, 0.0));
         let field = StreamField { tensors: self.field, step: params.step, integrator: Integrator::of(params.integrator) };
         let (reach, mut lines) = self.begun(simd, x, y, last);
-        let mut sum = get_pixels4(simd, &self.source, x, y, last);
+        let mut sum = get_pixels4(simd, covered, x, y, last);
         let mut norm = f32x8::splat(simd, 1.0);
         let mut u = [zero; 2];
         let mut active = [reach.step.simd_le(reach.limit()); 2];
@@ -379,7 +392,7 @@ impl Lines<'_> {
                 active[side] &= u[side].simd_le(reach.limit()) & field.inside(line);
                 active[side] &= line.turn.simd_ge(reach.least_turn);
                 let weight = active[side].select(reach.weight(u[side]), zero);
-                let [r, g, b, a] = sample_linear4(simd, &self.source, line.x, line.y);
+                let [r, g, b, a] = sample_linear4(simd, covered, line.x, line.y);
                 sum = [
                     weight.mul_add(r, sum[0]),
                     weight.mul_add(g, sum[1]),
