@@ -1,8 +1,8 @@
 //! Elementary functions and rearrangements on SIMD vectors, for the CPU twins.
 //!
 //! Every function is plain arithmetic on lanes: a lane's result never depends on its neighbours,
-//! which is what makes tiles equal full frames. Polynomials are those of the Cephes library,
-//! relative error below 2e-7 over the stated ranges.
+//! which is what makes tiles equal full frames. Polynomials are those of the Cephes library or of
+//! least greatest error, their relative error below 3e-7 over the stated ranges.
 
 pub use crate::sampling::*;
 #[cfg(target_arch = "x86_64")]

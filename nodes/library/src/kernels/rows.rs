@@ -7,7 +7,7 @@ use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 
 /// Columns of a strip. Bands are worked through in strips so that their rows stay in the first-level
 /// cache.
-pub const STRIP: i32 = 640;
+pub const STRIP: i32 = 256;
 
 /// Rows y - radius ..= y + radius of a strip of columns, by channel.
 #[derive(Debug, Default)]
