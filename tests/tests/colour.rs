@@ -1,5 +1,5 @@
 //! Colour, alpha and bad pixels, for every node: what enters in a space leaves in it, nothing that is
-//! not finite spreads, flat pictures stay flat, transparent pixels lend no colour.
+//! not finite spreads, flat pictures stay flat and opaque ones opaque, transparent pixels lend no colour.
 
 use isophote::kernels::colour::{colour_import, lightness};
 use isophote::request::ColourSpace;

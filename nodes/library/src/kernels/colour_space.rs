@@ -105,9 +105,11 @@ fn cube_root<S: Simd>(x: f32x8<S>) -> f32x8<S> {
     let r = inverse_root(x, 1.0 / 3.0, 0x54a1_f000);
     // As above; at most 0.103.
     let e = (-(r * r)).mul_add(x * r, one);
-    let low = e.mul_add(f32x8::splat(x.simd, 0.222_212_7), f32x8::splat(x.simd, 0.333_329_04));
-    let high = e.mul_add(f32x8::splat(x.simd, 0.146_184_85), f32x8::splat(x.simd, 0.174_491_88));
-    let r = (r * e).mul_add((e * e).mul_add(high, low), r);
+    let ee = e * e;
+    let low = e.mul_add(f32x8::splat(x.simd, 0.222_216_78), f32x8::splat(x.simd, 0.333_333_35));
+    let high = e.mul_add(f32x8::splat(x.simd, 0.145_687_32), f32x8::splat(x.simd, 0.172_825));
+    let high = ee.mul_add(f32x8::splat(x.simd, 0.127_130_79), high);
+    let r = (r * e).mul_add(ee.mul_add(high, low), r);
     x * (r * r)
 }
 
