@@ -52,8 +52,8 @@ pub fn gaussian_table(sigma: f32, radius: u32) -> GaussianTable {
 /// Pixels that [`map_pixels`] gives at a time.
 pub const PAIR: usize = 16;
 
-/// Runs `f` on [`PAIR`] pixels at a time: a pass from each pixel of input 0, of `I` channels, to the same pixel of output 0,
-/// of `O`.
+/// Runs `f` on [`PAIR`] pixels at a time: a pass from each pixel of input 0, of `I` channels, to the same
+/// pixel of output 0, of `O`.
 #[inline(always)]
 pub fn map_pixels<const I: usize, const O: usize>(
     pass: &CpuPass<'_>,
@@ -91,27 +91,15 @@ pub fn map_pixels4<S: Simd>(
     band: &mut Band<'_>,
     mut f: impl FnMut([f32x8<S>; 4]) -> [f32x8<S>; 4],
 ) {
-    let window = band.window;
-    let view = &pass.inputs[0];
-    for y in window.y0..window.y1 {
-        let at = view.offset(window.x0, y);
-        let target = band.row_mut(0, y);
-        let source = &view.data()[at..at + target.len()];
-        let mut at = 0;
-        while at + 32 <= source.len() {
-            store4(f(load4(simd, &source[at..at + 32])), &mut target[at..at + 32]);
-            at += 32;
-        }
-        if at < source.len() {
-            // The last pixels of a row go through the same arithmetic, padded with zeros.
-            let (source, target) = (&source[at..], &mut target[at..]);
-            let mut block = [0.0; 32];
-            block[..source.len()].copy_from_slice(source);
-            let mut result = [0.0; 32];
-            store4(f(load4(simd, &block)), &mut result);
-            target.copy_from_slice(&result[..target.len()]);
-        }
-    }
+    map_pixels::<4, 4>(
+        pass,
+        band,
+        #[inline(always)]
+        |source, target| {
+            store4(f(load4(simd, &source[..32])), &mut target[..32]);
+            store4(f(load4(simd, &source[32..])), &mut target[32..]);
+        },
+    );
 }
 
 /// Eight four-channel pixels of row `y` from column `x` on; columns past `last` repeat it.
