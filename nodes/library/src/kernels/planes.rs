@@ -86,8 +86,9 @@ impl Planes {
             least = least.min(a);
             let square = b.mul_add(b, g.mul_add(g, r * r));
             let values = [r * a, g * a, b * a, square * a, a];
-            for (channel, value) in values.into_iter().enumerate() {
-                value.store_slice(&mut target[channel * self.len + 8 * i..][..8]);
+            // By number: adapters of iterators over vectors would be calls.
+            for channel in 0..CHANNELS {
+                values[channel].store_slice(&mut target[channel * self.len + 8 * i..][..8]);
             }
         }
         self.opaque[slot] = least.simd_ge(one).all_true();

@@ -142,9 +142,22 @@ impl<S: Simd> Sector<S> {
         let cover = a / weights.max(f32x8::splat(weights.simd, 1e-20));
         let seen = cover.simd_gt(f32x8::splat(weights.simd, SEEN));
         let n = seen.select(f32x8::splat(weights.simd, 1.0) / a, zero);
+        Self::of([r, g, b, q], n, seen.select(cover, zero))
+    }
+
+    /// Of opaque pixels: their coverage is the sum of the weights. A sector is never without weight, since
+    /// all share the centre.
+    #[inline(always)]
+    pub fn opaque(sums: [f32x8<S>; 4], weights: f32x8<S>) -> Self {
+        let one = f32x8::splat(weights.simd, 1.0);
+        Self::of(sums, one / weights, one)
+    }
+
+    #[inline(always)]
+    fn of([r, g, b, q]: [f32x8<S>; 4], n: f32x8<S>, cover: f32x8<S>) -> Self {
         let mean = [r * n, g * n, b * n];
         let square = mean[2].mul_add(mean[2], mean[1].mul_add(mean[1], mean[0] * mean[0]));
-        Self { mean, variance: (q * n - square).max(zero), cover: seen.select(cover, zero) }
+        Self { mean, variance: (q * n - square).max(0.0), cover }
     }
 }
 
@@ -182,13 +195,17 @@ impl Response {
             least = sector.cover.simd_gt(zero).select(least.min(bounded), least);
             deviation += sector.variance.sqrt().max(floor);
         }
-        let mut sum = [zero; 4];
-        for sector in sectors {
-            let bounded = sector.variance.max(threshold);
+        let mut alphas = [one; N];
+        for k in 0..N {
             // Sectors without coverage may lie below the least of the others.
-            let alpha = power((least / bounded).min(one), self.q) * sector.cover;
-            for (sum, mean) in sum.iter_mut().zip(sector.mean) {
-                *sum = alpha.mul_add(mean, *sum);
+            alphas[k] = (least / sectors[k].variance.max(threshold)).min(one);
+        }
+        power(&mut alphas, self.q);
+        let mut sum = [zero; 4];
+        for k in 0..N {
+            let alpha = alphas[k] * sectors[k].cover;
+            for channel in 0..3 {
+                sum[channel] = alpha.mul_add(sectors[k].mean[channel], sum[channel]);
             }
             sum[3] += alpha;
         }
@@ -206,21 +223,29 @@ impl Response {
 
 /// x^(q/2) for x in 0..=1; by repeated squaring for whole q.
 #[inline(always)]
-fn power<S: Simd>(x: f32x8<S>, q: f32) -> f32x8<S> {
+fn power<S: Simd, const N: usize>(x: &mut [f32x8<S>; N], q: f32) {
     if q.fract() != 0.0 {
-        return x.powf(0.5 * q);
+        for x in x {
+            *x = x.powf(0.5 * q);
+        }
+        return;
     }
     let whole = q as u32;
-    let mut result = if whole & 1 != 0 { x.sqrt() } else { f32x8::splat(x.simd, 1.0) };
-    let (mut rest, mut square) = (whole >> 1, x);
+    let (mut rest, mut squares) = (whole >> 1, *x);
+    for x in &mut *x {
+        *x = if whole & 1 != 0 { x.sqrt() } else { f32x8::splat(x.simd, 1.0) };
+    }
     while rest != 0 {
         if rest & 1 != 0 {
-            result *= square;
+            for k in 0..N {
+                x[k] *= squares[k];
+            }
         }
-        square *= square;
+        for square in &mut squares {
+            *square *= *square;
+        }
         rest >>= 1;
     }
-    result
 }
 
 #[cfg(test)]

@@ -101,9 +101,10 @@ pub(crate) fn reach(radius: f32, elongation: f32) -> i32 {
     (radius * (1.0 + elongation) * INSIDE.sqrt()).floor() as i32 + 1
 }
 
-/// One pair of opposite pixels: per pair of opposite sectors the sum and the difference of the weights,
-/// then sums and differences of the pixels' channels.
-type Tap = [[f32; 8]; 18];
+/// One pair of opposite pixels: per pair of opposite sectors the sum and the difference of the polynomials,
+/// then sums and differences of the pixels' channels, the Gaussian, and the sum of all polynomials. What makes
+/// polynomials into weights is found and multiplied in where the sums are: all would wait for its division.
+type Tap = [[f32; 8]; 20];
 
 /// Pairs of pixels that are collected before they are added up: with fewer, sums would often be begun
 /// anew, and more would not stay in the first-level cache.
@@ -113,6 +114,8 @@ const BOTH: usize = 0;
 const APART: usize = 4;
 const SUM: usize = 8;
 const DIFFERENCE: usize = 13;
+const NORM: usize = 18;
+const TOTAL: usize = 19;
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
@@ -122,9 +125,8 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 #[inline(always)]
 fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let reach = reach(params.radius, params.elongation);
-    let response = Response { threshold: params.threshold, q: params.q, floor: params.deviation_floor };
     let mut planes = Planes::default();
-    let mut taps: Vec<Tap> = vec![[[0.0; 8]; 18]; BATCH + 2 * reach as usize];
+    let mut taps: Vec<Tap> = vec![[[0.0; 8]; 20]; BATCH + 2 * reach as usize];
     let (color, window) = (&pass.inputs[0], band.window);
     for (x0, x1) in strips(window.x0, window.x1) {
         planes.start(x0, x1, reach, 2 * reach + 1);
@@ -139,18 +141,10 @@ fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                 let original = get_pixels4(simd, color, x, y, x1 - 1);
                 let place = Place { planes: &planes, x, y };
                 let (colour, deviation) = match (opaque, params.sectors == 8) {
-                    (true, true) => {
-                        respond8(&gather::<S, true, true>(simd, place, &ellipses, params, &mut taps), &response, original)
-                    }
-                    (false, true) => {
-                        respond8(&gather::<S, false, true>(simd, place, &ellipses, params, &mut taps), &response, original)
-                    }
-                    (true, false) => {
-                        respond4(&gather::<S, true, false>(simd, place, &ellipses, params, &mut taps), &response, original)
-                    }
-                    (false, false) => {
-                        respond4(&gather::<S, false, false>(simd, place, &ellipses, params, &mut taps), &response, original)
-                    }
+                    (true, true) => filtered::<S, true, true>(simd, place, &ellipses, params, &mut taps, original),
+                    (false, true) => filtered::<S, false, true>(simd, place, &ellipses, params, &mut taps, original),
+                    (true, false) => filtered::<S, true, false>(simd, place, &ellipses, params, &mut taps, original),
+                    (false, false) => filtered::<S, false, false>(simd, place, &ellipses, params, &mut taps, original),
                 };
                 let (first, last) = ((x - window.x0) as usize, (x1.min(x + 8) - window.x0) as usize);
                 put_pixels4(colour, &mut band.row_mut(0, y)[4 * first..4 * last]);
@@ -224,41 +218,45 @@ struct Gathered<S: Simd> {
 impl<S: Simd> Gathered<S> {
     /// Sector `k` (share 1/2) or its opposite (share -1/2).
     #[inline(always)]
-    fn sector(&self, k: usize, share: f32) -> Sector<S> {
+    fn sector<const OPAQUE: bool>(&self, k: usize, share: f32) -> Sector<S> {
         let mut sums = [f32x8::splat(self.weights[0].simd, 0.0); 5];
-        for (channel, sum) in sums.iter_mut().enumerate() {
-            *sum = self.apart[k][channel] * share + self.both[k][channel] * 0.5;
+        for channel in 0..5 {
+            sums[channel] = self.apart[k][channel] * share + self.both[k][channel] * 0.5;
+        }
+        if OPAQUE {
+            return Sector::opaque([sums[0], sums[1], sums[2], sums[3]], self.weights[k]);
         }
         Sector::new(sums, self.weights[k])
     }
 }
 
+/// Eight pixels: the response, and the sum of the sectors' standard deviations.
 #[inline(always)]
-fn respond8<S: Simd>(
-    gathered: &Gathered<S>,
-    response: &Response,
+fn filtered<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
+    simd: S,
+    place: Place<'_>,
+    ellipses: &Ellipses<S>,
+    params: &Params,
+    taps: &mut [Tap],
     original: [f32x8<S>; 4],
 ) -> ([f32x8<S>; 4], f32x8<S>) {
+    let gathered = gather::<S, OPAQUE, EIGHT>(simd, place, ellipses, params, taps);
+    let response = Response { threshold: params.threshold, q: params.q, floor: params.deviation_floor };
     // A loop, not closures: those the compiler leaves outside the code for wide vectors.
-    let mut sectors = [gathered.sector(0, 0.5); 8];
-    for k in 0..4 {
-        (sectors[k], sectors[k + 4]) = (gathered.sector(k, 0.5), gathered.sector(k, -0.5));
+    let first = gathered.sector::<OPAQUE>(0, 0.5);
+    if EIGHT {
+        let mut sectors = [first; 8];
+        for k in 0..4 {
+            (sectors[k], sectors[k + 4]) =
+                (gathered.sector::<OPAQUE>(k, 0.5), gathered.sector::<OPAQUE>(k, -0.5));
+        }
+        return response.of(&sectors, original);
     }
-    response.of(&sectors, original)
+    let [b, c] = [gathered.sector::<OPAQUE>(0, -0.5), gathered.sector::<OPAQUE>(2, 0.5)];
+    response.of(&[first, b, c, gathered.sector::<OPAQUE>(2, -0.5)], original)
 }
 
-#[inline(always)]
-fn respond4<S: Simd>(
-    gathered: &Gathered<S>,
-    response: &Response,
-    original: [f32x8<S>; 4],
-) -> ([f32x8<S>; 4], f32x8<S>) {
-    let [a, b] = [gathered.sector(0, 0.5), gathered.sector(0, -0.5)];
-    let [c, d] = [gathered.sector(2, 0.5), gathered.sector(2, -0.5)];
-    response.of(&[a, b, c, d], original)
-}
-
-/// Opaque pixels need no sums of coverage: those are twice the sums of weights, to the bit.
+/// Opaque pixels need no sums of coverage: those are the sums of weights, to the bit.
 #[inline(always)]
 fn gather<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
     simd: S,
@@ -278,9 +276,11 @@ fn gather<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
     }
     let mut out = Gathered { both: [centre; 4], apart: [[zero; 5]; 4], weights: [share; 4] };
     let mut collected = 0;
+    let mut next = (1, ellipses.columns(0.0).1);
     for j in 0..=ellipses.rows {
-        let (first, last) = ellipses.columns(j as f32);
-        let first = if j == 0 { 1 } else { first };
+        let (first, last) = next;
+        // Found a row ahead: how often the loops below go round hangs on it.
+        next = ellipses.columns((j + 1) as f32);
         if first <= last {
             let count = (last - first + 1) as usize;
             let row = &mut taps[collected..collected + count];
@@ -288,19 +288,15 @@ fn gather<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
             collected += count;
         }
         if collected >= BATCH || j == ellipses.rows {
-            let taps = &taps[..collected];
-            add::<S, OPAQUE, 0>(simd, taps, &mut out);
-            add::<S, OPAQUE, 2>(simd, taps, &mut out);
-            if EIGHT {
-                add::<S, OPAQUE, 1>(simd, taps, &mut out);
-                add::<S, OPAQUE, 3>(simd, taps, &mut out);
+            let taps = &mut taps[..collected];
+            add::<S, EIGHT, 0, 3>(simd, taps, [BOTH, SUM], &mut out.both);
+            add::<S, EIGHT, 0, 3>(simd, taps, [APART, DIFFERENCE], &mut out.apart);
+            add_squares::<S, EIGHT>(simd, taps, &mut out);
+            if !OPAQUE {
+                add::<S, EIGHT, 4, 5>(simd, taps, [BOTH, SUM], &mut out.both);
+                add::<S, EIGHT, 4, 5>(simd, taps, [APART, DIFFERENCE], &mut out.apart);
             }
             collected = 0;
-        }
-    }
-    if OPAQUE {
-        for k in 0..4 {
-            out.both[k][4] = out.weights[k] * 2.0;
         }
     }
     out
@@ -326,35 +322,44 @@ fn weights<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
         above[channel] = &above[channel][far..far + last + 8];
     }
     let zero = f32x8::splat(simd, 0.0);
-    let zeta = f32x8::splat(simd, params.zeta);
-    let eta = f32x8::splat(simd, -params.eta);
-    let start = [ellipses.along[1] * j as f32, ellipses.across[1] * j as f32];
-    let step = [ellipses.along[0], ellipses.across[0]];
+    // All lengths are taken times eta, which makes it a polynomial with a leading factor of 1. That of the
+    // weights, eta squared, goes when they are normalised.
+    let zeta = f32x8::splat(simd, params.zeta * params.eta);
+    let (scale, shrink) = (params.eta, -(params.eta * params.eta).recip());
+    let middle = f32x8::splat(simd, -2.0 * params.zeta * params.eta * shrink);
+    let below_centre = scale * j as f32;
+    let start = [ellipses.along[1] * below_centre, ellipses.across[1] * below_centre];
+    let step = [ellipses.along[0] * scale, ellipses.across[0] * scale];
     let turned = [(start[0] + start[1]) * FRAC_1_SQRT_2, (start[1] - start[0]) * FRAC_1_SQRT_2];
     let turned_step = [(step[0] + step[1]) * FRAC_1_SQRT_2, (step[1] - step[0]) * FRAC_1_SQRT_2];
+    // Whole numbers. To add up positions instead would round them by where the union begins.
+    let mut column = f32x8::splat(simd, i as f32);
     for (n, tap) in row.iter_mut().enumerate() {
-        let column = f32x8::splat(simd, (i + n as i32) as f32);
         let v = [column.mul_add(step[0], start[0]), column.mul_add(step[1], start[1])];
-        let squares = [v[0] * v[0], v[1] * v[1]];
-        let distance = squares[0] + squares[1];
-        let (s0, d0) = opposite(v[0], eta.mul_add(squares[1], zeta), zero);
-        let (s2, d2) = opposite(v[1], eta.mul_add(squares[0], zeta), zero);
+        let k0 = (-v[1]).mul_add(v[1], zeta);
+        let k2 = (-v[0]).mul_add(v[0], zeta);
+        let distance = (k0 + k2).mul_add(f32x8::splat(simd, shrink), middle);
+        let (s0, d0) = opposite(v[0], k0, zero);
+        let (s2, d2) = opposite(v[1], k2, zero);
         let mut sum = s0 + s2;
         let (mut s1, mut d1, mut s3, mut d3) = (zero, zero, zero, zero);
         if EIGHT {
             let u =
                 [column.mul_add(turned_step[0], turned[0]), column.mul_add(turned_step[1], turned[1])];
-            (s1, d1) = opposite(u[0], eta.mul_add(u[1] * u[1], zeta), zero);
-            (s3, d3) = opposite(u[1], eta.mul_add(u[0] * u[0], zeta), zero);
+            (s1, d1) = opposite(u[0], (-u[1]).mul_add(u[1], zeta), zero);
+            (s3, d3) = opposite(u[1], (-u[0]).mul_add(u[0], zeta), zero);
             sum += s1 + s3;
         }
+        column += 1.0;
         let inside = distance.simd_le(f32x8::splat(simd, INSIDE));
-        let g = inside.select(gaussian(distance) / sum, zero);
+        inside.select(gaussian(distance), zero).store_slice(&mut tap[NORM]);
+        // No sector may hold what lies outside the ellipse: 0 must not be divided by 0.
+        sum.max(f32::MIN_POSITIVE).store_slice(&mut tap[TOTAL]);
         let pairs = [(s0, d0), (s1, d1), (s2, d2), (s3, d3)];
         for k in 0..4 {
             if EIGHT || k % 2 == 0 {
-                (pairs[k].0 * g).store_slice(&mut tap[BOTH + k]);
-                (pairs[k].1 * g).store_slice(&mut tap[APART + k]);
+                pairs[k].0.store_slice(&mut tap[BOTH + k]);
+                pairs[k].1.store_slice(&mut tap[APART + k]);
             }
         }
         for channel in 0..if OPAQUE { 4 } else { 5 } {
@@ -389,18 +394,58 @@ fn gaussian<S: Simd>(x: f32x8<S>) -> f32x8<S> {
     p * p
 }
 
-/// Adds pixels to sector `K` and its opposite.
+/// Adds the channels from `FIRST` to before `LAST`, of sums or of differences, to all sectors: three
+/// channels of four sectors fit the registers, and each value that is read serves all of them.
 #[inline(always)]
-fn add<S: Simd, const OPAQUE: bool, const K: usize>(simd: S, taps: &[Tap], out: &mut Gathered<S>) {
-    let (mut both, mut apart, mut weights) = (out.both[K], out.apart[K], out.weights[K]);
+fn add<S: Simd, const EIGHT: bool, const FIRST: usize, const LAST: usize>(
+    simd: S,
+    taps: &mut [Tap],
+    [weight, value]: [usize; 2],
+    sums: &mut [[f32x8<S>; 5]; 4],
+) {
+    let mut sum = *sums;
     for tap in taps {
-        let s = f32x8::from_slice(simd, &tap[BOTH + K]);
-        let d = f32x8::from_slice(simd, &tap[APART + K]);
-        for channel in 0..if OPAQUE { 4 } else { 5 } {
-            both[channel] = s.mul_add(f32x8::from_slice(simd, &tap[SUM + channel]), both[channel]);
-            apart[channel] = d.mul_add(f32x8::from_slice(simd, &tap[DIFFERENCE + channel]), apart[channel]);
+        let mut weights = [f32x8::splat(simd, 0.0); 4];
+        for k in 0..4 {
+            if EIGHT || k % 2 == 0 {
+                weights[k] = f32x8::from_slice(simd, &tap[weight + k]);
+            }
         }
-        weights += s;
+        let mut norm = f32x8::from_slice(simd, &tap[NORM]);
+        if value == SUM && FIRST == 0 {
+            norm /= f32x8::from_slice(simd, &tap[TOTAL]);
+            norm.store_slice(&mut tap[NORM]);
+        }
+        for channel in FIRST..LAST {
+            let values = f32x8::from_slice(simd, &tap[value + channel]) * norm;
+            for k in 0..4 {
+                if EIGHT || k % 2 == 0 {
+                    sum[k][channel] = weights[k].mul_add(values, sum[k][channel]);
+                }
+            }
+        }
     }
-    (out.both[K], out.apart[K], out.weights[K]) = (both, apart, weights);
+    *sums = sum;
+}
+
+/// Adds the squares, and the weights themselves, to all sectors.
+#[inline(always)]
+fn add_squares<S: Simd, const EIGHT: bool>(simd: S, taps: &[Tap], out: &mut Gathered<S>) {
+    const SQUARES: usize = 3;
+    let (mut both, mut apart, mut weights) = (out.both, out.apart, out.weights);
+    for tap in taps {
+        let norm = f32x8::from_slice(simd, &tap[NORM]);
+        let sum = f32x8::from_slice(simd, &tap[SUM + SQUARES]) * norm;
+        let difference = f32x8::from_slice(simd, &tap[DIFFERENCE + SQUARES]) * norm;
+        for k in 0..4 {
+            if EIGHT || k % 2 == 0 {
+                let s = f32x8::from_slice(simd, &tap[BOTH + k]);
+                let d = f32x8::from_slice(simd, &tap[APART + k]);
+                both[k][SQUARES] = s.mul_add(sum, both[k][SQUARES]);
+                apart[k][SQUARES] = d.mul_add(difference, apart[k][SQUARES]);
+                weights[k] = s.mul_add(norm, weights[k]);
+            }
+        }
+    }
+    (out.both, out.apart, out.weights) = (both, apart, weights);
 }
