@@ -11,6 +11,7 @@ pub mod colour_lines;
 pub mod colour_space;
 pub mod coverage;
 pub mod edge_threshold;
+pub mod flow_log;
 pub mod luma_lines;
 pub mod neighbours;
 pub mod pixel_line;

@@ -52,6 +52,8 @@ pub struct Line<S: Simd> {
     steps: [i32; 2],
     /// Least and greatest slope.
     slopes: [f32; 2],
+    /// All lines step along the same axis.
+    alike: bool,
     /// Rows that the lines' taps come to lie apart at most; 0 where they are more than [`MOST_ROWS`], or
     /// lie on columns as well.
     rows: usize,
@@ -68,6 +70,13 @@ impl<S: Simd> Line<S> {
         self.rows
     }
 
+    /// The same lines, of which taps are read no farther than `radius` pixels to either side: these lie on fewer
+    /// rows.
+    #[inline(always)]
+    pub fn shortened(&self, radius: i32) -> Self {
+        Self { rows: if self.alike { rows_apart(self.slopes, radius) } else { 0 }, ..*self }
+    }
+
     /// The lowest row of taps, floor(along slope + offset), that is read; `ROWS` more follow, the last one of
     /// which lies no farther to the side than `along`.
     #[inline(always)]
@@ -75,6 +84,13 @@ impl<S: Simd> Line<S> {
         let slope = self.slopes[usize::from(along < 0)];
         ((along as f32 * slope + offset).floor() as i32).min(along.abs() - ROWS as i32)
     }
+}
+
+/// Rows that taps of lines between the `slopes` come to lie apart over `radius` pixels; 0 for too many.
+#[inline(always)]
+fn rows_apart(slopes: [f32; 2], radius: i32) -> usize {
+    let apart = (radius as f32 * (slopes[1] - slopes[0]) + 1e-3).ceil() as usize;
+    if apart <= MOST_ROWS { apart } else { 0 }
 }
 
 impl LumaLines {
@@ -184,8 +200,6 @@ impl LumaLines {
             slopes = [slopes[0].min(slope), slopes[1].max(slope)];
         }
         let (all, any) = (along_x.all_true(), along_x.any_true());
-        let apart = (self.radius as f32 * (slopes[1] - slopes[0]) + 1e-3).ceil() as usize;
-        let rows = if all == any && apart <= MOST_ROWS { apart } else { 0 };
         Line {
             at: along_x.select(column + column + (self.width * (self.rows + 1)) as i32, column),
             major: along_x.select(i32x8::splat(simd, 2), i32x8::splat(simd, width)),
@@ -196,7 +210,8 @@ impl LumaLines {
             start,
             steps: if all { [1, width] } else { [width, 1] },
             slopes,
-            rows,
+            alike: all == any,
+            rows: if all == any { rows_apart(slopes, self.radius) } else { 0 },
         }
     }
 

@@ -1,6 +1,7 @@
 //! Shock filters (§ 6.4): sharp edges by eroding about minima and dilating about maxima.
 
-use crate::kernels::coherence::{directed_extremum, flow_log, laplacian, second_derivative, shock_step};
+use crate::kernels::coherence::directed_shock::{self, Options};
+use crate::kernels::coherence::{laplacian, second_derivative, shock_step};
 use crate::kernels::smoothing::gaussian_blur;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
@@ -97,9 +98,13 @@ impl Directed {
     /// Sharpens `color` along the major eigenvectors of `tensor`.
     pub(crate) fn apply(&self, plan: &mut PlanBuilder, color: ImageId, tensor: ImageId) -> ImageId {
         let smooth = smoothed(plan, color, self.sigma_i);
-        let response = flow_log::response(plan, smooth, tensor, self.sigma_g);
-        let radius = self.radius / self.scale;
-        directed_extremum::shocked(plan, color, tensor, response, radius, self.scale, self.threshold)
+        let options = Options {
+            sigma: self.sigma_g,
+            radius: self.radius / self.scale,
+            scale: self.scale,
+            threshold: self.threshold,
+        };
+        directed_shock::sharpened(plan, color, tensor, smooth, &options)
     }
 }
 

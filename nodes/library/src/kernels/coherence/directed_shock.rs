@@ -1,5 +1,5 @@
-//! The minimum or maximum of the gradient-directed shock filter (§ 6.4.3, Listing 6.2): where the second
-//! derivative is above the threshold, the pixel of least luma along the major eigenvector; where it is
+//! The gradient-directed shock filter (§ 6.4.3): where the flow-based Laplacian of Gaussian (Listing 6.1) is
+//! above the threshold, the pixel of least luma along the major eigenvector (Listing 6.2); where it is
 //! below its opposite, the one of greatest luma; elsewhere the pixel itself.
 //!
 //! The colour moves as a whole; coverage stays, and pixels that are covered less than half as much as
@@ -8,9 +8,10 @@
 //! The radius is whole steps of the full-size picture. On a proxy these may end within a step; what
 //! the last one finds then counts by its share, so that small radii fade instead of ending at once.
 //!
-//! Cost: four comparisons per step, and nothing at all where the threshold is not reached.
+//! Cost: that of the derivative; then four comparisons per step, and nothing where the threshold is not reached.
 
 use crate::kernels::blocks::{BLOCK, Block, fetch4, offsets, write4};
+use crate::kernels::flow_log;
 use crate::kernels::luma_lines::{Line, LumaLines, STRIP};
 use crate::kernels::tensor_algebra::axis;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
@@ -18,7 +19,11 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support,
 
 crate::params! {
     /// Uniform block.
-    pub struct Params for directed_extremum {
+    pub struct Params for directed_shock {
+        /// Standard deviation of the second derivative, pixels.
+        pub sigma: f32,
+        /// Distance of its last tap, pixels.
+        pub reach: f32,
         /// Distance of the last pixel looked at, pixels of the full-size picture.
         pub radius: f32,
         /// Pixels per pixel of the full-size picture.
@@ -28,39 +33,54 @@ crate::params! {
     }
 }
 
-crate::kernel!(directed_extremum {
+crate::kernel!(directed_shock {
     cpu: run,
     cost: |params| {
         let p: Params = bytemuck::pod_read_unaligned(params);
-        30.0 + 60.0 * f64::from(p.radius * p.scale)
+        60.0 + 50.0 * f64::from(p.reach) + 60.0 * f64::from(p.radius * p.scale)
     },
     tolerance: Tolerance {
         absolute: 1e-6,
         relative: 1e-6,
         outliers: 5e-3,
-        reason: "colours are moved, not computed; which one is decided by comparisons of luma, and by a line \
-                 that meets a pixel's border, on the last bit",
+        reason: "colours are moved, not computed; which one is decided by comparisons of luma, by a response \
+                 whose taps nearly cancel, and by a line that meets a pixel's border, on the last bit",
     },
 });
 
-/// Erodes where `response` is above `threshold` and dilates where it is below -`threshold`, `radius`
-/// pixels of the full-size picture far along the major eigenvectors of `tensors`. `scale` is the size that
-/// is rendered over the full size.
-pub fn shocked(
+/// Narrower Gaussians than this see no neighbour.
+const LEAST_SIGMA: f32 = 0.2;
+
+/// What the filter is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Standard deviation of the second derivative, pixels.
+    pub sigma: f32,
+    /// How far pixels are looked for, pixels of the full-size picture.
+    pub radius: f32,
+    /// The size that is rendered over the full size.
+    pub scale: f32,
+    /// Responses up to this, in the unit of luma, leave a pixel alone.
+    pub threshold: f32,
+}
+
+/// Sharpens `color` along the major eigenvectors of `tensors`, by the second derivative of `smooth`, which may
+/// be the same.
+pub fn sharpened(
     plan: &mut PlanBuilder,
     color: ImageId,
     tensors: ImageId,
-    response: ImageId,
-    radius: f32,
-    scale: f32,
-    threshold: f32,
+    smooth: ImageId,
+    options: &Options,
 ) -> ImageId {
-    let params = Params { radius, scale, threshold };
-    let support = Support::Pixels(steps(&params) as u32);
-    plan.pass(&KERNEL, &[color, tensors, response], &params, Class::Colour, support)
+    let Options { sigma, radius, scale, threshold } = *options;
+    let sigma = sigma.max(LEAST_SIGMA);
+    let params = Params { sigma, reach: flow_log::CUTOFF * sigma, radius, scale, threshold };
+    let support = steps(&params).max(flow_log::radius(params.reach));
+    plan.pass(&KERNEL, &[color, tensors, smooth], &params, Class::Colour, Support::Pixels(support as u32))
 }
 
-/// Most steps to a side.
+/// Most steps to a side that an extremum is looked for.
 fn steps(params: &Params) -> i32 {
     ((params.radius + 1e-3).floor() * params.scale).ceil() as i32
 }
@@ -73,29 +93,47 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 #[inline(always)]
 fn strips<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let (window, radius) = (band.window, steps(params));
-    let mut lumas = LumaLines::default();
+    let [color, tensors, smooth] = [0, 1, 2].map(|i| &pass.inputs[i]);
+    let derivative = [params.sigma, params.reach];
+    let (mut smoothed, mut plain) = (LumaLines::default(), LumaLines::default());
+    let same = std::ptr::eq(color.data(), smooth.data());
     for x0 in (window.x0..window.x1).step_by(STRIP as usize) {
         let strip = Rect { x0, x1: (x0 + STRIP).min(window.x1), ..window };
-        lumas.load(simd, &pass.inputs[0], strip, radius, false);
+        smoothed.load(simd, smooth, strip, flow_log::radius(params.reach).max(radius), true);
+        // The luma of opaque pixels is the same, weighted by coverage or not.
+        let shared = same && smoothed.is_opaque();
+        if !shared {
+            plain.load(simd, color, strip, radius, false);
+        }
         for y in window.y0..window.y1 {
             let (start, end) = ((x0 - window.x0) as usize, (strip.x1 - window.x0) as usize);
             let row = &mut band.row_mut(0, y)[4 * start..4 * end];
             for i in (0..end - start).step_by(BLOCK) {
                 let block = Block { x: x0 + i as i32, y, len: BLOCK.min(end - start - i) };
                 let target = &mut row[4 * i..4 * (i + block.len)];
-                let z = block.read1(simd, &pass.inputs[2]);
+                let [e, f, g, _] = block.read4(simd, tensors);
+                let (_, n) = axis((e - g) * 0.5, f);
+                let line = smoothed.line(simd, block.x, y, n);
+                let z = if smoothed.is_opaque() {
+                    flow_log::response::<_, true>(simd, derivative, &smoothed, &line, block)
+                } else {
+                    flow_log::response::<_, false>(simd, derivative, &smoothed, &line, block)
+                };
                 let active = z.abs().simd_gt(f32x8::splat(simd, params.threshold));
                 if !active.any_true() {
-                    write4(block.read4(simd, &pass.inputs[0]), target);
+                    write4(block.read4(simd, color), target);
                     continue;
                 }
-                let [e, f, g, _] = block.read4(simd, &pass.inputs[1]);
-                let line = lumas.line(simd, block.x, block.y, axis((e - g) * 0.5, f).1);
+                let (lumas, line) = if shared {
+                    (&smoothed, line.shortened(radius))
+                } else {
+                    (&plain, plain.line(simd, block.x, y, n))
+                };
                 // Over so short a reach neighbours seldom come to lie farther apart.
                 let colors = match (lumas.is_opaque(), line.rows()) {
-                    (true, 1) => extreme::<_, true, 1>(simd, pass, params, radius, &lumas, &line, block, active, z),
-                    (true, _) => extreme::<_, true, 0>(simd, pass, params, radius, &lumas, &line, block, active, z),
-                    (false, _) => extreme::<_, false, 0>(simd, pass, params, radius, &lumas, &line, block, active, z),
+                    (true, 1) => extreme::<_, true, 1>(simd, pass, params, radius, lumas, &line, block, active, z),
+                    (true, _) => extreme::<_, true, 0>(simd, pass, params, radius, lumas, &line, block, active, z),
+                    (false, _) => extreme::<_, false, 0>(simd, pass, params, radius, lumas, &line, block, active, z),
                 };
                 write4(colors, target);
             }
