@@ -9,6 +9,10 @@ use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 /// cache.
 pub const STRIP: i32 = 256;
 
+/// Columns of a strip for passes that do little with a pixel and wait for it: memory gives long rows faster than
+/// short ones, and a few such rows still stay in the second-level cache.
+pub const WIDE_STRIP: i32 = 960;
+
 /// Rows y - radius ..= y + radius of a strip of columns, by channel.
 #[derive(Debug, Default)]
 pub struct Rows {
@@ -101,5 +105,10 @@ pub fn pixels<S: Simd>(simd: S, channels: &[&[f32]; 4], at: usize) -> [f32x8<S>;
 
 /// The strips of columns `x0..x1`.
 pub fn strips(x0: i32, x1: i32) -> impl Iterator<Item = (i32, i32)> {
-    (x0..x1).step_by(STRIP as usize).map(move |x| (x, (x + STRIP).min(x1)))
+    strips_of(STRIP, x0, x1)
+}
+
+/// The strips of columns `x0..x1`, `width` wide.
+pub fn strips_of(width: i32, x0: i32, x1: i32) -> impl Iterator<Item = (i32, i32)> {
+    (x0..x1).step_by(width as usize).map(move |x| (x, (x + width).min(x1)))
 }

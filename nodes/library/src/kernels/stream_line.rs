@@ -63,7 +63,7 @@ pub const FEW_STEPS: f32 = 3.0;
 #[inline(always)]
 pub fn few_steps<S: Simd>(steps: f32x8<S>, stretch: f32) -> f32x8<S> {
     // A last bit must not add a step.
-    (steps / stretch - 1e-3).ceil().max(steps.min(f32x8::splat(steps.simd, FEW_STEPS)))
+    (steps * stretch.recip() - 1e-3).ceil().max(steps.min(f32x8::splat(steps.simd, FEW_STEPS)))
 }
 
 /// By how much steps are longer when `few` of them take the place of `steps`.

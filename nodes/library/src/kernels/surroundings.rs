@@ -88,8 +88,9 @@ impl<S: Simd> Place<S> {
     pub fn new(frame: &Frame, x: f32x8<S>, y: f32x8<S>) -> Self {
         let (x, y) = (x - 0.5, y - 0.5);
         let (left, top) = (x.floor(), y.floor());
-        // Small whole numbers, exact in floating point.
-        let at = (top - frame.held.y0 as f32).mul_add(frame.stride() as f32, left - frame.held.x0 as f32);
+        // Whole numbers below 2^24, exact in floating point: sides are at most 2^16 and strides 2^8 - 1.
+        let first = frame.held.y0 * frame.stride() + frame.held.x0;
+        let at = top.mul_add(frame.stride() as f32, left - first as f32);
         Self { at: at.to_int(), right: x - left, below: y - top }
     }
 }

@@ -8,7 +8,7 @@
 //! Cost: 30 operations for the sums of columns and rows of each channel, 40 for the tensor, and
 //! 4 radius + 2 multiply-adds for each of its three values.
 
-use crate::kernels::rows::{Rows, strips};
+use crate::kernels::rows::{Rows, WIDE_STRIP, strips_of};
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::support::{gaussian_radius, gaussian_table, put_pixels4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
@@ -100,7 +100,7 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, r: usize, band
     }
     let reach = r as i32;
     let mut strip = Strip::default();
-    for (x0, x1) in strips(window.x0, window.x1) {
+    for (x0, x1) in strips_of(2 * WIDE_STRIP, window.x0, window.x1) {
         strip.colors.start(x0 - reach, x1 + reach, 1, 4);
         let wide = strip.colors.stride();
         let narrow = ((x1 - x0) as usize).next_multiple_of(8);

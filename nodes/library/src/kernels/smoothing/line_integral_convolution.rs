@@ -230,7 +230,7 @@ impl Lines<'_> {
             let (step, least_turn) = (one * self.params.step, one * self.params.least_turn);
             return Reach { radius, falloff, step, least_turn };
         }
-        let steps = ((radius + 1e-3) / self.params.step).floor();
+        let steps = ((radius + 1e-3) * self.params.step.recip()).floor();
         let stretch = stretched(steps, few_steps(steps, self.params.stretch));
         // The cosine of so many times the angle whose cosine is c, exact for one and two times; no more than c,
         // since -1 stands for any turn.
@@ -305,19 +305,31 @@ impl Lines<'_> {
         let mut u = [zero; 4];
         let mut norm = [zero + 1.0; 2];
         let mut totals = [[zero; 2]; 2 * BLOCK];
+        // Over equal steps the Gaussian is carried from one to the next.
+        let (mut gaussian, mut ratio, mut growth) = ([zero; 2], [zero; 2], [zero; 2]);
+        for i in 0..2 {
+            gaussian[i] = reach[i].weight(reach[i].step);
+            growth[i] = gaussian[i] * gaussian[i];
+            ratio[i] = growth[i] * gaussian[i];
+        }
         while (active[0] | active[1] | active[2] | active[3]).any_true() {
             let mut counts = [i32x8::splat(simd, 0); 2];
             for k in 0..RUN {
                 field.advance(simd, &mut lines, &places, [reach[0].step, reach[0].step, reach[1].step, reach[1].step]);
                 let mut weights = [zero; 4];
-                for i in 0..4 {
+                for i in 0..2 {
                     // Both sides have come equally far unless turns count.
-                    if i % 2 == 1 && !turns_count {
-                        (u[i], weights[i]) = (u[i - 1], weights[i - 1]);
-                        continue;
+                    let (a, b) = (2 * i, 2 * i + 1);
+                    if turns_count {
+                        u[a] += self.arc(&lines[a], &reach[i]);
+                        u[b] += self.arc(&lines[b], &reach[i]);
+                        (weights[a], weights[b]) = (reach[i].weight(u[a]), reach[i].weight(u[b]));
+                    } else {
+                        u[a] += reach[i].step;
+                        (u[b], weights[a], weights[b]) = (u[a], gaussian[i], gaussian[i]);
+                        gaussian[i] *= ratio[i];
+                        ratio[i] *= growth[i];
                     }
-                    u[i] += self.arc(&lines[i], &reach[i / 2]);
-                    weights[i] = reach[i / 2].weight(u[i]);
                 }
                 for i in 0..4 {
                     active[i] &= u[i].simd_le(reach[i / 2].limit()) & lines[i].turn.simd_ge(reach[i / 2].least_turn);
@@ -345,9 +357,10 @@ impl Lines<'_> {
                 }
             }
             for i in 0..2 {
-                let counts = counts[i].to_array();
+                // As many for all: where the longest line ends is easier to predict than where each does.
+                let count = counts[i].reduce_max() as usize;
                 for lane in 0..BLOCK {
-                    add(simd, taps, colors, [2 * i, lane], counts[lane] as usize, &mut totals[i * BLOCK + lane]);
+                    add(simd, taps, colors, [2 * i, lane], count, &mut totals[i * BLOCK + lane]);
                 }
             }
         }

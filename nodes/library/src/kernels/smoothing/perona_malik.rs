@@ -7,7 +7,7 @@
 //!
 //! Cost: 60 operations (exponential: 100); memory takes longer.
 
-use crate::kernels::rows::{Rows, pixels, strips};
+use crate::kernels::rows::{Rows, pixels, WIDE_STRIP, strips_of};
 use crate::kernels::support::put_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
@@ -80,7 +80,7 @@ fn diffused<S: Simd, const EXPONENTIAL: bool>(
     let window = band.window;
     let view = &pass.inputs[0];
     let mut rows = Rows::default();
-    for (x0, x1) in strips(window.x0, window.x1) {
+    for (x0, x1) in strips_of(WIDE_STRIP, window.x0, window.x1) {
         rows.start(x0, x1, 1, 4);
         for y in window.y0 - 1..=window.y0 {
             rows.load4(simd, view, y, #[inline(always)] |v| v);

@@ -10,7 +10,7 @@
 //! Cost: 4 radius + 2 multiply-adds on four channels: columns are summed once, in the shader once
 //! for the pixels of a workgroup, which makes 1 + radius / 4 columns of 2 radius + 1 loads a pixel.
 
-use crate::kernels::rows::{Rows, strips};
+use crate::kernels::rows::{Rows, WIDE_STRIP, strips_of};
 use crate::kernels::support::put_pixels4;
 use crate::kernels::tensor_algebra;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
@@ -201,7 +201,7 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
     let mut rows = Rows::default();
     // Column sums of one row: smoothed and derived, four channels each.
     let mut columns: Vec<f32> = Vec::new();
-    for (x0, x1) in strips(window.x0, window.x1) {
+    for (x0, x1) in strips_of(WIDE_STRIP, window.x0, window.x1) {
         rows.start(x0, x1, radius, 4);
         let len = rows.stride();
         columns.resize(8 * len, 0.0);
