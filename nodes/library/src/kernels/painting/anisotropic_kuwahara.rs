@@ -5,9 +5,9 @@
 //! own ellipse with weight 0. Two pixels opposite each other share one evaluation of the weights, and
 //! sums over opposite sectors are kept as their sum and their difference: those need the sum and the
 //! difference of the two colours only, which halves the multiply-adds. The weights of some rows are found
-//! first, then the sums of two opposite sectors at a time, which fit the registers.
+//! first, then the sums of some channels in all sectors at a time, which fit the registers.
 //!
-//! Cost: pi radius^2 pixels, each half of about 110 operations. The shader reads them through workgroup memory,
+//! Cost: pi radius^2 pixels, each half of about 105 operations. The shader reads them through workgroup memory,
 //! about (1 + elongation)^2 radius^2 / 4 loads a pixel, up to an elongation of 2.
 
 use crate::kernels::planes::{CHANNELS, Planes};
