@@ -97,6 +97,27 @@ fn stretched_steps_are_better_than_short_ones_of_first_order() {
     table.print();
 }
 
+#[test]
+fn long_lines_of_short_steps_weigh_as_the_gaussian() {
+    // A bright column that horizontal lines meet: what reaches a pixel is the weight at its distance.
+    let sigma = 40.0;
+    let picture = from_fn(400, 3, |x, _| if x == 200 { [1.0; 4] } else { [0.0, 0.0, 0.0, 1.0] });
+    let tensors = from_fn(400, 3, |_, _| [0.0, 0.0, 1.0, 1.0]);
+    let options = Options { sigma, step: 0.25, stretch: 1.0, adapt: Adapt::None, ..Options::default() };
+    let mut plan = PlanBuilder::new(400, 3).unwrap();
+    let color = plan.input("color", 4, Class::Colour);
+    let tensor = plan.input("tensor", 4, Class::Field);
+    let out = line_integral_convolution::color(&mut plan, color, tensor, &options);
+    plan.output("output", out);
+    let smoothed = run::whole(&plan.finish().unwrap(), &[("color", picture), ("tensor", tensors)]);
+    let weight = |distance: i32| f64::from(smoothed.pixel(200 + distance, 1)[0]);
+    for distance in [20, 40, 60, 75] {
+        let got = weight(distance) / weight(4);
+        let want = (f64::from(16 - distance * distance) / (2.0 * f64::from(sigma).powi(2))).exp();
+        assert!((got / want - 1.0).abs() < 5e-4, "{got} for {want} at {distance} pixels");
+    }
+}
+
 /// erf(x) for 0 <= x <= 2 by its Maclaurin series.
 fn erf(x: f64) -> f64 {
     let (mut term, mut sum) = (x, x);

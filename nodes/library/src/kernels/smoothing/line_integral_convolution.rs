@@ -312,8 +312,18 @@ impl Lines<'_> {
             growth[i] = gaussian[i] * gaussian[i];
             ratio[i] = growth[i] * gaussian[i];
         }
+        let mut begins = true;
         while (active[0] | active[1] | active[2] | active[3]).any_true() {
             let mut counts = [i32x8::splat(simd, 0); 2];
+            if !begins && !turns_count {
+                // Anew after a run: roundings would grow by the square of the number of steps.
+                for i in 0..2 {
+                    let (step, next) = (reach[i].step, u[2 * i] + reach[i].step);
+                    gaussian[i] = reach[i].weight(next);
+                    ratio[i] = (reach[i].falloff * step * (next + next + step)).exp2_falling();
+                }
+            }
+            begins = false;
             for k in 0..RUN {
                 field.advance(simd, &mut lines, &places, [reach[0].step, reach[0].step, reach[1].step, reach[1].step]);
                 let mut weights = [zero; 4];
