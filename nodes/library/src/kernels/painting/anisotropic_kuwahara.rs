@@ -104,7 +104,10 @@ pub(crate) fn reach(radius: f32, elongation: f32) -> i32 {
 /// One pair of opposite pixels: per pair of opposite sectors the sum and the difference of the polynomials,
 /// then sums and differences of the pixels' channels, the Gaussian, and the sum of all polynomials. What makes
 /// polynomials into weights is found and multiplied in where the sums are: all would wait for its division.
-type Tap = [[f32; 8]; 20];
+/// Aligned, so that no vector lies in two cache lines.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Tap([[f32; 8]; 20]);
 
 /// Pairs of pixels that are collected before they are added up: with fewer, sums would often be begun
 /// anew, and more would not stay in the first-level cache.
@@ -126,7 +129,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let reach = reach(params.radius, params.elongation);
     let mut planes = Planes::default();
-    let mut taps: Vec<Tap> = vec![[[0.0; 8]; 20]; BATCH + 2 * reach as usize];
+    let mut taps = vec![Tap([[0.0; 8]; 20]); BATCH + 2 * reach as usize];
     let (color, window) = (&pass.inputs[0], band.window);
     for (x0, x1) in strips(window.x0, window.x1) {
         planes.start(x0, x1, reach, 2 * reach + 1);
@@ -193,17 +196,25 @@ impl<S: Simd> Ellipses<S> {
         Self { along, across, shift: -(b * inverse), width: [inverse, inverse * inverse * area], rows }
     }
 
-    /// First and last column of row `j` that hold a pixel of any of the ellipses.
+    /// First and last columns of eight rows from `j` on that hold a pixel of any of the ellipses.
     #[inline(always)]
-    fn columns(&self, j: f32) -> (i32, i32) {
-        let middle = self.shift * j;
-        let square = self.width[0] * INSIDE - self.width[1] * (j * j);
-        let half = square.max(0.0).sqrt() + 1e-3;
-        let some = square.simd_ge(f32x8::splat(square.simd, 0.0));
-        let far = f32x8::splat(square.simd, 1e6);
-        let first = some.select(middle - half, far).ceil().reduce_min();
-        let last = some.select(middle + half, -far).floor().reduce_max();
-        (first as i32, last as i32)
+    fn columns(&self, simd: S, j: i32) -> [[f32; 8]; 2] {
+        let rows = f32x8::simd_from(simd, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]) + j as f32;
+        let squares = rows * rows;
+        let none = f32x8::splat(simd, -1e6);
+        let (mut first, mut last) = (-none, none);
+        let (shift, inverse) = (self.shift.to_array(), (self.width[0] * INSIDE).to_array());
+        let width = (-self.width[1]).to_array();
+        // The rows of one ellipse side by side, so that nothing is compared across a vector.
+        for k in 0..8 {
+            let middle = rows * shift[k];
+            let square = squares.mul_add(f32x8::splat(simd, width[k]), f32x8::splat(simd, inverse[k]));
+            let some = square.simd_ge(f32x8::splat(simd, 0.0));
+            let half = some.select(square.max(0.0).sqrt() + 1e-3, none);
+            first = first.min(middle - half);
+            last = last.max(middle + half);
+        }
+        [first.ceil().to_array(), last.floor().to_array()]
     }
 }
 
@@ -276,11 +287,13 @@ fn gather<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
     }
     let mut out = Gathered { both: [centre; 4], apart: [[zero; 5]; 4], weights: [share; 4] };
     let mut collected = 0;
-    let mut next = (1, ellipses.columns(0.0).1);
+    let mut columns = [[0.0; 8]; 2];
     for j in 0..=ellipses.rows {
-        let (first, last) = next;
-        // Found a row ahead: how often the loops below go round hangs on it.
-        next = ellipses.columns((j + 1) as f32);
+        let row = j as usize % 8;
+        if row == 0 {
+            columns = ellipses.columns(simd, j);
+        }
+        let (first, last) = (if j == 0 { 1 } else { columns[0][row] as i32 }, columns[1][row] as i32);
         if first <= last {
             let count = (last - first + 1) as usize;
             let row = &mut taps[collected..collected + count];
@@ -352,21 +365,21 @@ fn weights<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
         }
         column += 1.0;
         let inside = distance.simd_le(f32x8::splat(simd, INSIDE));
-        inside.select(gaussian(distance), zero).store_slice(&mut tap[NORM]);
+        inside.select(gaussian(distance), zero).store_slice(&mut tap.0[NORM]);
         // No sector may hold what lies outside the ellipse: 0 must not be divided by 0.
-        sum.max(f32::MIN_POSITIVE).store_slice(&mut tap[TOTAL]);
+        sum.max(f32::MIN_POSITIVE).store_slice(&mut tap.0[TOTAL]);
         let pairs = [(s0, d0), (s1, d1), (s2, d2), (s3, d3)];
         for k in 0..4 {
             if EIGHT || k % 2 == 0 {
-                pairs[k].0.store_slice(&mut tap[BOTH + k]);
-                pairs[k].1.store_slice(&mut tap[APART + k]);
+                pairs[k].0.store_slice(&mut tap.0[BOTH + k]);
+                pairs[k].1.store_slice(&mut tap.0[APART + k]);
             }
         }
         for channel in 0..if OPAQUE { 4 } else { 5 } {
             let p = f32x8::from_slice(simd, &below[channel][n..n + 8]);
             let q = f32x8::from_slice(simd, &above[channel][last - n..last - n + 8]);
-            (p + q).store_slice(&mut tap[SUM + channel]);
-            (p - q).store_slice(&mut tap[DIFFERENCE + channel]);
+            (p + q).store_slice(&mut tap.0[SUM + channel]);
+            (p - q).store_slice(&mut tap.0[DIFFERENCE + channel]);
         }
     }
 }
@@ -405,22 +418,21 @@ fn add<S: Simd, const EIGHT: bool, const FIRST: usize, const LAST: usize>(
 ) {
     let mut sum = *sums;
     for tap in taps {
-        let mut weights = [f32x8::splat(simd, 0.0); 4];
+        let mut norm = f32x8::from_slice(simd, &tap.0[NORM]);
+        if value == SUM && FIRST == 0 {
+            norm /= f32x8::from_slice(simd, &tap.0[TOTAL]);
+            norm.store_slice(&mut tap.0[NORM]);
+        }
+        let mut values = [f32x8::splat(simd, 0.0); 3];
+        for channel in FIRST..LAST {
+            values[channel - FIRST] = f32x8::from_slice(simd, &tap.0[value + channel]) * norm;
+        }
+        // Twelve sums, three values and a weight: what the registers hold.
         for k in 0..4 {
             if EIGHT || k % 2 == 0 {
-                weights[k] = f32x8::from_slice(simd, &tap[weight + k]);
-            }
-        }
-        let mut norm = f32x8::from_slice(simd, &tap[NORM]);
-        if value == SUM && FIRST == 0 {
-            norm /= f32x8::from_slice(simd, &tap[TOTAL]);
-            norm.store_slice(&mut tap[NORM]);
-        }
-        for channel in FIRST..LAST {
-            let values = f32x8::from_slice(simd, &tap[value + channel]) * norm;
-            for k in 0..4 {
-                if EIGHT || k % 2 == 0 {
-                    sum[k][channel] = weights[k].mul_add(values, sum[k][channel]);
+                let weight = f32x8::from_slice(simd, &tap.0[weight + k]);
+                for channel in FIRST..LAST {
+                    sum[k][channel] = weight.mul_add(values[channel - FIRST], sum[k][channel]);
                 }
             }
         }
@@ -434,13 +446,13 @@ fn add_squares<S: Simd, const EIGHT: bool>(simd: S, taps: &[Tap], out: &mut Gath
     const SQUARES: usize = 3;
     let (mut both, mut apart, mut weights) = (out.both, out.apart, out.weights);
     for tap in taps {
-        let norm = f32x8::from_slice(simd, &tap[NORM]);
-        let sum = f32x8::from_slice(simd, &tap[SUM + SQUARES]) * norm;
-        let difference = f32x8::from_slice(simd, &tap[DIFFERENCE + SQUARES]) * norm;
+        let norm = f32x8::from_slice(simd, &tap.0[NORM]);
+        let sum = f32x8::from_slice(simd, &tap.0[SUM + SQUARES]) * norm;
+        let difference = f32x8::from_slice(simd, &tap.0[DIFFERENCE + SQUARES]) * norm;
         for k in 0..4 {
             if EIGHT || k % 2 == 0 {
-                let s = f32x8::from_slice(simd, &tap[BOTH + k]);
-                let d = f32x8::from_slice(simd, &tap[APART + k]);
+                let s = f32x8::from_slice(simd, &tap.0[BOTH + k]);
+                let d = f32x8::from_slice(simd, &tap.0[APART + k]);
                 both[k][SQUARES] = s.mul_add(sum, both[k][SQUARES]);
                 apart[k][SQUARES] = d.mul_add(difference, apart[k][SQUARES]);
                 weights[k] = s.mul_add(norm, weights[k]);
