@@ -9,8 +9,8 @@ use crate::kernel::{Band, CpuPass};
 use crate::plan::{Pass, Plan};
 use crate::strips::Schedule;
 use fearless_simd::Level;
-use rayon::prelude::*;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// Something that runs independent jobs: the engine's own pool, the caller's thread, or the host's
@@ -36,32 +36,60 @@ impl Threads for CallingThread {
     }
 }
 
-/// A work-stealing pool of the engine's own. Its threads end when it is dropped.
+/// The calling thread and a pool of helpers, whose threads end when it is dropped.
+///
+/// The caller works along: a batch of jobs begins at once, while sleeping helpers are still waking, and a
+/// pass takes as long as the slowest thread, not as long as the slowest to wake.
 #[derive(Debug)]
-pub struct Pool(rayon::ThreadPool);
+pub struct Pool {
+    helpers: Option<rayon::ThreadPool>,
+}
 
 impl Pool {
-    /// A pool of `threads` threads; 0 means one per core.
+    /// A pool of `threads` threads, the calling one among them; 0 means one per core.
     ///
     /// # Errors
     /// [`Error::Memory`] when the system refuses the threads.
     pub fn new(threads: usize) -> Result<Self> {
+        let count = match threads {
+            0 => std::thread::available_parallelism().map_or(1, usize::from),
+            given => given,
+        };
+        if count == 1 {
+            return Ok(Self { helpers: None });
+        }
         rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
+            .num_threads(count - 1)
             .thread_name(|i| format!("isophote-{i}"))
             .build()
-            .map(Self)
+            .map(|helpers| Self { helpers: Some(helpers) })
             .map_err(|e| Error::Memory(format!("cannot start worker threads: {e}")))
     }
 }
 
 impl Threads for Pool {
     fn count(&self) -> usize {
-        self.0.current_num_threads()
+        1 + self.helpers.as_ref().map_or(0, rayon::ThreadPool::current_num_threads)
     }
 
     fn run(&self, jobs: usize, job: &(dyn Fn(usize) + Sync)) {
-        self.0.install(|| (0..jobs).into_par_iter().with_max_len(1).for_each(job));
+        let next = AtomicUsize::new(0);
+        let work = || {
+            loop {
+                let index = next.fetch_add(1, Ordering::Relaxed);
+                if index >= jobs {
+                    break;
+                }
+                job(index);
+            }
+        };
+        let Some(helpers) = &self.helpers else { return work() };
+        helpers.in_place_scope(|scope| {
+            for _ in 1..jobs.min(self.count()) {
+                scope.spawn(|_| work());
+            }
+            work();
+        });
     }
 }
 
@@ -82,7 +110,7 @@ impl Control<'_> {
 
 /// Least rows of the result that all passes go through together: few enough for a plan's images to stay
 /// in a third-level cache, enough for threads to share and for passes to reach beyond.
-const STRIP: i32 = 64;
+const STRIP: i32 = 128;
 
 /// Least rows of a band.
 const BAND: i32 = 16;
@@ -177,7 +205,7 @@ impl CpuExecutor {
         self.spare.truncate(plan.images().len());
         let windows = plan.windows(region);
         let mut slots = Slots::bind(plan, inputs, &windows)?;
-        let rows = self.strip.unwrap_or(STRIP.max(BAND * threads.count() as i32 * 2));
+        let rows = self.strip.unwrap_or(STRIP.max(BAND * threads.count() as i32 * 4));
         let schedule = Schedule::new(plan, region, &windows, rows);
         let last_uses = plan.last_uses();
         let needed = |pass: &Pass| !windows[pass.outputs[0].index()].is_empty();
