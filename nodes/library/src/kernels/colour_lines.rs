@@ -23,6 +23,9 @@ const ROWS: i32 = 64;
 /// Rows that are read at least, for which most taps need no more.
 const FEW: i32 = 3;
 
+/// Steps whose rows are found together.
+pub const STEPS: usize = 8;
+
 /// Farther than any row that is read.
 const FAR: f32 = 1e6;
 
@@ -61,9 +64,9 @@ pub struct Lines<S: Simd> {
 /// many there are.
 #[derive(Clone, Copy, Debug)]
 struct RowRanges {
-    first: [f32; 8],
-    index: [i32; 8],
-    count: [i32; 8],
+    first: [f32; STEPS],
+    index: [i32; STEPS],
+    count: [i32; STEPS],
 }
 
 /// The taps of eight lines at one number of steps.
@@ -88,18 +91,36 @@ impl<S: Simd> Lines<S> {
     /// Calls `f` with the taps at 1, 2, ... steps from the centres.
     #[inline(always)]
     pub fn for_steps(&self, mut f: impl FnMut(Step<S>)) {
+        self.for_blocks(
+            &mut (),
+            #[inline(always)]
+            |(), _, step| f(step),
+            |(), _| (),
+        );
+    }
+
+    /// As [`Lines::for_steps`] with the number of the step in its block of up to [`STEPS`], and calls `done`
+    /// with the number of steps after each block. Both are given `state`.
+    #[inline(always)]
+    pub fn for_blocks<T>(
+        &self,
+        state: &mut T,
+        mut f: impl FnMut(&mut T, usize, Step<S>),
+        mut done: impl FnMut(&mut T, usize),
+    ) {
         let simd = self.slope.simd;
         let (one, far) = (f32x8::splat(simd, 1.0), f32x8::splat(simd, FAR));
         let (mut distance, mut along) = (f32x8::splat(simd, 0.0), 0);
         let mut k = 0;
         while k < self.most {
             let ranges = self.ranges(k + 1);
-            for i in 0..8.min(self.most - k) as usize {
+            let count = (STEPS as i32).min(self.most - k) as usize;
+            for i in 0..count {
                 distance += one;
                 along += self.major;
                 let active = self.steps.simd_ge(distance);
                 let across = ranges.index[i];
-                f(Step {
+                let step = Step {
                     distance,
                     active,
                     // Lines that have ended are far from all rows.
@@ -109,9 +130,11 @@ impl<S: Simd> Lines<S> {
                     ahead: self.start + along + across,
                     behind: self.start - along - across,
                     minor: self.minor,
-                });
+                };
+                f(state, i, step);
             }
-            k += 8;
+            done(state, count);
+            k += STEPS as i32;
         }
     }
 
@@ -299,7 +322,10 @@ impl ColourLines {
         let minor = step.minor as u32 as usize;
         let (ahead, behind) = (step.ahead as u32 as usize, (step.behind - 2 * step.minor) as u32 as usize);
         let place = f32x8::splat(simd, step.row);
-        let shares = [step.share(place), step.share(place + 1.0), step.share(place + 2.0)];
+        // No tap lies before the first row.
+        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+        let first = (one - (step.across - place)).max(zero);
+        let shares = [first, step.share(place + 1.0), step.share(place + 2.0)];
         let mut taps = [[f32x8::splat(simd, 0.0); N]; 2];
         let channels = self.channels();
         for c in 0..N {

@@ -7,7 +7,7 @@
 //!
 //! Cost: about 1.8 cutoff taps of one interpolation and one exponential (manual: two or more).
 
-use crate::kernels::colour_lines::{ColourLines, Lines, strips};
+use crate::kernels::colour_lines::{STEPS, ColourLines, Lines, strips};
 use crate::kernels::support::{put_pixels4, row_pixels4};
 use crate::kernels::tensor_algebra::{anisotropy, tangent};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
@@ -118,6 +118,8 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let (radius, left) = (reach(params), band.window.x0);
     let mut colours = ColourLines::default();
+    let zero = f32x8::splat(simd, 0.0);
+    let mut block = Block { taps: [[[zero; 4]; 2]; STEPS], coverage: [[zero; 2]; STEPS] };
     for strip in strips(band, radius) {
         colours.load(simd, &pass.inputs[0], strip, radius, params.manual == 0);
         let mode = match (params.manual != 0, colours.is_opaque()) {
@@ -140,9 +142,9 @@ fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
             let (mut i, count) = (0, strip.width() as usize);
             while i < count {
                 let result = match mode {
-                    MANUAL => row.filtered::<S, MANUAL>(simd, i),
-                    OPAQUE => row.filtered::<S, OPAQUE>(simd, i),
-                    _ => row.filtered::<S, COVERED>(simd, i),
+                    MANUAL => row.filtered::<S, MANUAL>(simd, i, &mut block),
+                    OPAQUE => row.filtered::<S, OPAQUE>(simd, i, &mut block),
+                    _ => row.filtered::<S, COVERED>(simd, i, &mut block),
                 };
                 put_pixels4(result, &mut target[4 * i..4 * count.min(i + 8)]);
                 i += 8;
@@ -175,10 +177,16 @@ struct Weights<S: Simd> {
     domain: f32x8<S>,
 }
 
+/// Of some steps, the colours ahead and behind with the exponents of their weights, and their coverage.
+struct Block<S: Simd> {
+    taps: [[[f32x8<S>; 4]; 2]; STEPS],
+    coverage: [[f32x8<S>; 2]; STEPS],
+}
+
 impl Row<'_> {
     /// The eight pixels from pixel `i` of the row on; past its end they repeat the last one.
     #[inline(always)]
-    fn filtered<S: Simd, const MODE: u32>(&self, simd: S, i: usize) -> [f32x8<S>; 4] {
+    fn filtered<S: Simd, const MODE: u32>(&self, simd: S, i: usize, block: &mut Block<S>) -> [f32x8<S>; 4] {
         let params = self.params;
         let at = [self.strip.x0 + i as i32, self.y];
         let [e, f, g, _] = row_pixels4(simd, self.tensors, i);
@@ -215,7 +223,7 @@ impl Row<'_> {
             let along = if is_x { along_x } else { !along_x };
             if along.any_true() {
                 let lines = self.colours.lines(at, is_x, along, slope, steps);
-                self.gather::<S, MODE>(&lines, &weights, &mut sum);
+                self.gather::<S, MODE>(&lines, &weights, block, &mut sum);
             }
         }
         let seen = sum[3].simd_gt(f32x8::splat(simd, 1e-6));
@@ -234,13 +242,17 @@ impl Row<'_> {
         &self,
         lines: &Lines<S>,
         weights: &Weights<S>,
+        block: &mut Block<S>,
         sum: &mut [f32x8<S>; 4],
     ) {
         let simd = weights.domain.simd;
         let (one, none) = (f32x8::splat(simd, 1.0), f32x8::splat(simd, -1e3));
-        lines.for_steps(
+        // Taps and exponents of some steps first, then their exponential functions: one after the other
+        // these would be one long chain, and what each needs would not fit the registers.
+        lines.for_blocks(
+            &mut (block, sum),
             #[inline(always)]
-            |step| {
+            |(block, sum), i, step| {
                 // Lines that have ended have black taps, which must weigh less than a float can add to the sum.
                 let domain = step.active.select(weights.domain * step.distance * step.distance, none);
                 if MODE == MANUAL {
@@ -248,7 +260,8 @@ impl Row<'_> {
                         &step,
                         #[inline(always)]
                         |share, [[r0, g0, b0, a0], [r1, g1, b1, a1]]| {
-                            let [w0, w1] = weights.of([[r0, g0, b0], [r1, g1, b1]], domain);
+                            let [e0, e1] = weights.exponents([[r0, g0, b0], [r1, g1, b1]], domain);
+                            let [w0, w1] = exponential(e0, e1);
                             let (w0, w1) = (w0 * share * a0, w1 * share * a1);
                             add(sum, w0, [r0, g0, b0], w0);
                             add(sum, w1, [r1, g1, b1], w1);
@@ -257,15 +270,29 @@ impl Row<'_> {
                 } else if MODE == COVERED {
                     let [[r0, g0, b0, a0], [r1, g1, b1, a1]] = self.colours.taps::<S, 4>(&step);
                     let (n0, n1) = (one / a0.max(1e-6), one / a1.max(1e-6));
-                    let [w0, w1] =
-                        weights.of([[r0 * n0, g0 * n0, b0 * n0], [r1 * n1, g1 * n1, b1 * n1]], domain);
-                    add(sum, w0, [r0, g0, b0], w0 * a0);
-                    add(sum, w1, [r1, g1, b1], w1 * a1);
+                    let [e0, e1] =
+                        weights.exponents([[r0 * n0, g0 * n0, b0 * n0], [r1 * n1, g1 * n1, b1 * n1]], domain);
+                    block.taps[i] = [[r0, g0, b0, e0], [r1, g1, b1, e1]];
+                    block.coverage[i] = [a0, a1];
                 } else {
-                    let taps = self.colours.taps::<S, 3>(&step);
-                    let [w0, w1] = weights.of(taps, domain);
-                    add(sum, w0, taps[0], w0);
-                    add(sum, w1, taps[1], w1);
+                    let [[r0, g0, b0], [r1, g1, b1]] = self.colours.taps::<S, 3>(&step);
+                    let [e0, e1] = weights.exponents([[r0, g0, b0], [r1, g1, b1]], domain);
+                    block.taps[i] = [[r0, g0, b0, e0], [r1, g1, b1, e1]];
+                }
+            },
+            #[inline(always)]
+            |(block, sum), count| {
+                if MODE == MANUAL {
+                    return;
+                }
+                for i in 0..count.min(STEPS) {
+                    let taps = block.taps[i];
+                    let weights = exponential(taps[0][3], taps[1][3]);
+                    for side in 0..2 {
+                        let ([r, g, b, _], weight) = (taps[side], weights[side]);
+                        let share = if MODE == COVERED { weight * block.coverage[i][side] } else { weight };
+                        add(sum, weight, [r, g, b], share);
+                    }
                 }
             },
         );
@@ -273,9 +300,9 @@ impl Row<'_> {
 }
 
 impl<S: Simd> Weights<S> {
-    /// The weights of two colours whose domain weights have the exponent `domain`.
+    /// The exponents of the weights of two colours; `domain` are those of their domain weights.
     #[inline(always)]
-    fn of(&self, colours: [[f32x8<S>; 3]; 2], domain: f32x8<S>) -> [f32x8<S>; 2] {
+    fn exponents(&self, colours: [[f32x8<S>; 3]; 2], domain: f32x8<S>) -> [f32x8<S>; 2] {
         let mut exponents = [domain; 2];
         for i in 0..2 {
             let [r, g, b] = colours[i];
@@ -283,8 +310,14 @@ impl<S: Simd> Weights<S> {
             let square = b.mul_add(b, g.mul_add(g, r * r));
             exponents[i] = square.mul_add(f32x8::splat(r.simd, self.range), domain);
         }
-        exponents[0].combine(exponents[1]).exp2_falling().split().into()
+        exponents
     }
+}
+
+/// 2^x of two vectors.
+#[inline(always)]
+fn exponential<S: Simd>(a: f32x8<S>, b: f32x8<S>) -> [f32x8<S>; 2] {
+    a.combine(b).exp2_falling().split().into()
 }
 
 /// Adds a weighted colour, and its share of the weights.
