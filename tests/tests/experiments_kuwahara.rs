@@ -156,6 +156,18 @@ fn noisy(picture: &Image, gaussian: f64, impulses: f64) -> Image {
     })
 }
 
+/// `picture` with fine strands that bend, three pixels from one to the next, as fur has them.
+fn with_strands(picture: &Image) -> Image {
+    from_fn(picture.width(), picture.height(), |x, y| {
+        let [u, v] = [x as f32, y as f32];
+        let (sin, cos) = (0.6 + 0.4 * (0.03 * u).sin() + 0.3 * (0.02 * v).cos()).sin_cos();
+        let strand = 0.12 * ((u * cos + v * sin) * std::f32::consts::TAU / 3.0).sin();
+        let p = picture.pixel(x, y);
+        let add = |v: f32| (v + strand).clamp(0.0, 1.0);
+        [add(p[0]), add(p[1]), add(p[2]), 1.0]
+    })
+}
+
 /// Share of the pixels that noise threw far off and that still are, in percent.
 fn remaining(result: &Image, spoilt: &Image, picture: &Image) -> f64 {
     let far = |image: &Image, x: i32, y: i32| {
@@ -176,27 +188,35 @@ fn remaining(result: &Image, spoilt: &Image, picture: &Image) -> f64 {
 
 #[test]
 fn the_anisotropic_filter_restores_what_noise_has_spoilt() {
-    let picture = pictures::scenery(384, 288);
-    let cases = [("2 % Gaussian, 5 % impulses", 0.02, 0.05), ("5 % impulses", 0.0, 0.05)];
+    let scenery = pictures::scenery(384, 288);
+    let strands = with_strands(&scenery);
+    let cases = [
+        ("2 % Gaussian, 5 % impulses", &scenery, 0.02, false),
+        ("5 % impulses", &scenery, 0.0, false),
+        ("5 % impulses on fine strands", &strands, 0.0, true),
+    ];
     let title = "Peak signal-to-noise ratio against the clean picture, dB, and impulses left";
     let filters = ["anisotropic_kuwahara", "generalized_kuwahara", "flow_bilateral"];
     let columns: Vec<&str> = ["noise", "none"].into_iter().chain(filters).collect();
     let mut table = Table::new(13, "Fig. 5.31", title, &columns);
-    for (name, gaussian, impulses) in cases {
-        let spoilt = noisy(&picture, gaussian, impulses);
-        let none = psnr(&spoilt, &picture);
+    for (name, picture, gaussian, detailed) in cases {
+        let spoilt = noisy(picture, gaussian, 0.05);
+        let none = psnr(&spoilt, picture);
         let results = filters.map(|filter| run::node(filter, &[], &spoilt));
-        let ratios = results.each_ref().map(|result| psnr(result, &picture));
-        let left = results.each_ref().map(|result| remaining(result, &spoilt, &picture));
+        let ratios = results.each_ref().map(|result| psnr(result, picture));
+        let left = results.each_ref().map(|result| remaining(result, &spoilt, picture));
         let mut cells = vec![name.to_owned(), format!("{none:.1}")];
         cells.extend(ratios.iter().zip(left).map(|(ratio, left)| format!("{ratio:.1} ({left:.0} % left)")));
         table.row(&cells);
         let [anisotropic, generalized, bilateral] = ratios;
-        assert!(anisotropic > none + 4.0, "{name}: {anisotropic} dB for {none}");
+        assert!(anisotropic > none + 3.0, "{name}: {anisotropic} dB for {none}");
         assert!(anisotropic > bilateral + 3.0, "{name}: {anisotropic} dB, flow bilateral {bilateral}");
         assert!(anisotropic > generalized - 0.5, "{name}: {anisotropic} dB, generalized {generalized}");
         // The bilateral filter takes impulses for edges.
         assert!(left[0] < 5.0 && left[2] > 50.0, "{name}: {left:?} % of the impulses left");
+        // Where it smooths detail away besides, it is worse than no filter; where there is none to lose, to
+        // soften impulses a little is better than nothing.
+        assert!(!detailed || bilateral < none - 0.3, "{name}: flow bilateral {bilateral} dB for {none}");
     }
     table.print();
 }
