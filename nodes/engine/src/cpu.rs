@@ -110,7 +110,7 @@ impl Control<'_> {
 
 /// Least rows of the result that all passes go through together: few enough for a plan's images to stay
 /// in a third-level cache, enough for threads to share and for passes to reach beyond.
-const STRIP: i32 = 128;
+const STRIP: i32 = 192;
 
 /// Least rows of a band.
 const BAND: i32 = 16;

@@ -195,10 +195,7 @@ impl LumaLines {
         let start = (y - self.y0) * self.width as i32 + x - self.x0;
         let (column, width) = (lanes + start, self.width as i32);
         let slope = along_x.select(ny, nx) / major;
-        let mut slopes = [f32::INFINITY, f32::NEG_INFINITY];
-        for slope in slope.to_array() {
-            slopes = [slopes[0].min(slope), slopes[1].max(slope)];
-        }
+        let slopes = [slope.reduce_min(), slope.reduce_max()];
         let (all, any) = (along_x.all_true(), along_x.any_true());
         Line {
             at: along_x.select(column + column + (self.width * (self.rows + 1)) as i32, column),
