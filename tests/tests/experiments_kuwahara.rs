@@ -209,7 +209,9 @@ fn the_anisotropic_filter_restores_what_noise_has_spoilt() {
         cells.extend(ratios.iter().zip(left).map(|(ratio, left)| format!("{ratio:.1} ({left:.0} % left)")));
         table.row(&cells);
         let [anisotropic, generalized, bilateral] = ratios;
-        assert!(anisotropic > none + 3.0, "{name}: {anisotropic} dB for {none}");
+        // It smooths fine detail away as well.
+        let gain = if detailed { 3.0 } else { 10.0 };
+        assert!(anisotropic > none + gain, "{name}: {anisotropic} dB for {none}");
         assert!(anisotropic > bilateral + 3.0, "{name}: {anisotropic} dB, flow bilateral {bilateral}");
         assert!(anisotropic > generalized - 0.5, "{name}: {anisotropic} dB, generalized {generalized}");
         // The bilateral filter takes impulses for edges.

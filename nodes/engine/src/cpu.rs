@@ -108,8 +108,9 @@ impl Control<'_> {
     }
 }
 
-/// Least rows of the result that all passes go through together: few enough for a plan's images to stay
-/// in a third-level cache, enough for threads to share and for passes to reach beyond.
+/// Least rows of the result that all passes go through together: few enough for what passes hand on to stay
+/// in a third-level cache, enough for threads to share, for passes to reach beyond, and for the ends of
+/// passes, where threads wait for each other, to be rare.
 const STRIP: i32 = 192;
 
 /// Least rows of a band.
