@@ -59,7 +59,8 @@ pub fn tensor(plan: &mut PlanBuilder, color: ImageId, earlier: ImageId, rho: f32
     let radius = if wanted > MAX_RADIUS { 0 } else { wanted };
     let mut weights = [[0.0; 4]; TAPS / 4];
     weights.copy_from_slice(&gaussian_table(rho, radius)[..TAPS / 4]);
-    let params = Params { radius: radius as i32, threshold: threshold * threshold, smoothing: OPERATOR, weights };
+    let params =
+        Params { radius: radius as i32, threshold: threshold * threshold, smoothing: OPERATOR, weights };
     let support = Support::Pixels(radius + 1);
     let tensor = plan.pass(&KERNEL, &[color, earlier], &params, Class::Field, support);
     if radius < wanted { gaussian_blur::smooth(plan, tensor, rho, Class::Field) } else { tensor }

@@ -131,9 +131,15 @@ fn strips<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                 };
                 // Over so short a reach neighbours seldom come to lie farther apart.
                 let colors = match (lumas.is_opaque(), line.rows()) {
-                    (true, 1) => extreme::<_, true, 1>(simd, pass, params, radius, lumas, &line, block, active, z),
-                    (true, _) => extreme::<_, true, 0>(simd, pass, params, radius, lumas, &line, block, active, z),
-                    (false, _) => extreme::<_, false, 0>(simd, pass, params, radius, lumas, &line, block, active, z),
+                    (true, 1) => {
+                        extreme::<_, true, 1>(simd, pass, params, radius, lumas, &line, block, active, z)
+                    }
+                    (true, _) => {
+                        extreme::<_, true, 0>(simd, pass, params, radius, lumas, &line, block, active, z)
+                    }
+                    (false, _) => {
+                        extreme::<_, false, 0>(simd, pass, params, radius, lumas, &line, block, active, z)
+                    }
                 };
                 write4(colors, target);
             }

@@ -70,8 +70,7 @@ pub fn plain<S: Simd>([r, g, b, a]: [f32x8<S>; 4], premultiplied: bool) -> [f32x
     // Where all is opaque the division by 1 can be left out.
     if premultiplied && !a.simd_ge(one).all_true() {
         let covered = a.simd_gt(1e-6);
-        (r, g, b) =
-            (covered.select(r / a, zero), covered.select(g / a, zero), covered.select(b / a, zero));
+        (r, g, b) = (covered.select(r / a, zero), covered.select(g / a, zero), covered.select(b / a, zero));
     }
     [r, g, b, a]
 }

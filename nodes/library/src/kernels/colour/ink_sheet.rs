@@ -91,7 +91,13 @@ pub struct Sheet {
 
 /// Draws a `response` (units of L) on a sheet, shaded and tinted after `color`; the first channel of
 /// `strokes`, 0..=1, roughens it.
-pub fn draw(plan: &mut PlanBuilder, response: ImageId, color: ImageId, strokes: ImageId, sheet: &Sheet) -> ImageId {
+pub fn draw(
+    plan: &mut PlanBuilder,
+    response: ImageId,
+    color: ImageId,
+    strokes: ImageId,
+    sheet: &Sheet,
+) -> ImageId {
     let params = Params {
         line: sheet.line,
         paper: sheet.paper,
@@ -196,9 +202,7 @@ fn catches<S: Simd>(d: f32x8<S>, h: f32x8<S>, depth: f32) -> f32x8<S> {
 #[inline(always)]
 fn hatch<S: Simd>(simd: S, [x, y]: [f32x8<S>; 2], along: [f32; 2], seed: u32) -> f32x8<S> {
     let (p, across) = (x * along[0] + y * along[1], y * along[0] - x * along[1]);
-    even(
-        noise(simd, p * 0.025, across * 0.45, seed) * 0.7 + noise(simd, p * 0.06, across, seed + 57) * 0.3,
-    )
+    even(noise(simd, p * 0.025, across * 0.45, seed) * 0.7 + noise(simd, p * 0.06, across, seed + 57) * 0.3)
 }
 
 /// From `a` at 0 to `b` at 1.

@@ -82,7 +82,8 @@ fn washed<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
             let columns: f32x8<S> = block.columns(simd).to_float();
             let x = (columns + 0.5) * params.inverse_scale;
             let y = f32x8::splat(simd, (block.y as f32 + 0.5) * params.inverse_scale);
-            let cloud = noise(simd, x * 0.017, y * 0.017, 11) * 0.6 + noise(simd, x * 0.043, y * 0.043, 503) * 0.4;
+            let cloud =
+                noise(simd, x * 0.017, y * 0.017, 11) * 0.6 + noise(simd, x * 0.043, y * 0.043, 503) * 0.4;
             let (gx, gy) = (x * params.grain_frequency, y * params.grain_frequency);
             let grain = noise(simd, gx, gy, 1013) * 0.6 + noise(simd, gx * 2.3, gy * 2.3, 2027) * 0.4;
             let v = block.read4(simd, &pass.inputs[0]);

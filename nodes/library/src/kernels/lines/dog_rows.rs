@@ -106,8 +106,7 @@ fn sum<S: Simd>(simd: S, source: &[f32], [narrow, wide]: [&[f32]; 2], target: &m
     // A plain loop: adapters of iterators stay calls in code for wide vectors.
     for i in 1..narrow.len() {
         let (n, w) = (f32x16::splat(simd, narrow[i]), f32x16::splat(simd, wide[i]));
-        let (before, after) =
-            (&source[first / 2 - 2 * i..][..RUN], &source[first / 2 + 2 * i..][..RUN]);
+        let (before, after) = (&source[first / 2 - 2 * i..][..RUN], &source[first / 2 + 2 * i..][..RUN]);
         for k in 0..2 {
             let both = f32x16::from_slice(simd, &before[16 * k..16 * k + 16])
                 + f32x16::from_slice(simd, &after[16 * k..16 * k + 16]);

@@ -88,7 +88,10 @@ fn candidates<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut 
                     continue;
                 }
                 let found = if params.method == Method::Maximum as u32 {
-                    let g = [f32x8::from_slice(simd, &gx[at + 1..at + 9]), f32x8::from_slice(simd, &gy[at + 1..at + 9])];
+                    let g = [
+                        f32x8::from_slice(simd, &gx[at + 1..at + 9]),
+                        f32x8::from_slice(simd, &gy[at + 1..at + 9]),
+                    ];
                     is_maximum(simd, &heights, at, height, g)
                 } else {
                     is_crossing(simd, &laplacians, at)
@@ -146,11 +149,8 @@ fn is_crossing<S: Simd>(simd: S, laplacians: &Around<'_>, at: usize) -> mask32x8
     let mut found = mask32x8::splat(simd, false);
     for (dx, dy) in [(1, 0), (0, 1), (-1, 0), (0, -1)] {
         let other = near(simd, laplacians, at, dx, dy);
-        let nearer = if dx + dy > 0 {
-            size.simd_le(other.abs() * TIE)
-        } else {
-            (size * TIE).simd_lt(other.abs())
-        };
+        let nearer =
+            if dx + dy > 0 { size.simd_le(other.abs() * TIE) } else { (size * TIE).simd_lt(other.abs()) };
         found |= nearer & (bright ^ other.simd_ge(zero));
     }
     found

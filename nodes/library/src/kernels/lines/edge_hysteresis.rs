@@ -28,7 +28,12 @@ crate::kernel!(edge_hysteresis {
         let p: Params = bytemuck::pod_read_unaligned(params);
         6.0 + 0.1 * f64::from(p.steps)
     },
-    tolerance: Tolerance { absolute: 0.0, relative: 0.0, outliers: 0.0, reason: "bits, and constants to write" },
+    tolerance: Tolerance {
+        absolute: 0.0,
+        relative: 0.0,
+        outliers: 0.0,
+        reason: "bits, and constants to write"
+    },
 });
 
 /// Pixels by which one pass grows edges at most: then the eight pixels of a workgroup and what they depend
@@ -150,7 +155,13 @@ mod tests {
         plan.output("edges", out);
         let region = Rect::of_size(width, height);
         CpuExecutor::new()
-            .run(&plan.finish().unwrap(), &[("candidates", candidates)], region, &CallingThread, Control::default())
+            .run(
+                &plan.finish().unwrap(),
+                &[("candidates", candidates)],
+                region,
+                &CallingThread,
+                Control::default(),
+            )
             .unwrap()
             .remove(0)
     }
@@ -181,7 +192,9 @@ mod tests {
             for _ in 0..reach {
                 let near: Vec<_> = chain
                     .iter()
-                    .filter(|(x, y)| reached.iter().any(|(a, b): &(i32, i32)| (a - x).abs() <= 1 && (b - y).abs() <= 1))
+                    .filter(|(x, y)| {
+                        reached.iter().any(|(a, b): &(i32, i32)| (a - x).abs() <= 1 && (b - y).abs() <= 1)
+                    })
                     .copied()
                     .collect();
                 let before = reached.len();

@@ -50,8 +50,7 @@ fn radius(sigma: f32) -> f32 {
 /// The edge image of a `response` (u alpha, alpha): smoothed along the stream lines of `field` (E - G, F) by
 /// standard deviation `sigma` pixels, thresholded as `xdog` says.
 pub fn edges(plan: &mut PlanBuilder, response: ImageId, field: ImageId, sigma: f32, xdog: &Xdog) -> ImageId {
-    let params =
-        Params { sigma, threshold: xdog.threshold as u32, epsilon: xdog.epsilon, phi: xdog.phi };
+    let params = Params { sigma, threshold: xdog.threshold as u32, epsilon: xdog.epsilon, phi: xdog.phi };
     let support = Support::Pixels(radius(sigma) as u32 + 1);
     plan.pass(&KERNEL, &[response, field], &params, Class::Field, support)
 }

@@ -117,8 +117,7 @@ impl<S: Simd> Across<S> {
     /// Steps to the cut-off: the last `k` for which `k` times the length of a step does not exceed it.
     #[inline(always)]
     fn steps(&self, halfwidth: f32) -> f32x8<S> {
-        let (one, halfwidth) =
-            (f32x8::splat(self.step.simd, 1.0), f32x8::splat(self.step.simd, halfwidth));
+        let (one, halfwidth) = (f32x8::splat(self.step.simd, 1.0), f32x8::splat(self.step.simd, halfwidth));
         // The quotient is rounded.
         let steps = (halfwidth / self.step).floor() + one;
         let steps = (steps * self.step).simd_le(halfwidth).select(steps, steps - one);

@@ -33,7 +33,9 @@ crate::kernel!(flow_dog_tangent {
     cpu: run,
     cost: |params| {
         let p: Params = bytemuck::pod_read_unaligned(params);
-        2.0 * f64::from(radius(p.sigma)) * if p.integrator == Integrator::Midpoint as u32 { 110.0 } else { 70.0 } + 30.0
+        2.0 * f64::from(radius(p.sigma))
+            * if p.integrator == Integrator::Midpoint as u32 { 110.0 } else { 70.0 }
+            + 30.0
     },
     tolerance: Tolerance {
         absolute: 2e-3,

@@ -211,8 +211,10 @@ impl Around<'_> {
             let k = k as f32;
             let d = step * k;
             let near = d.simd_le(params.halfwidth);
-            let [l0, a0] = sample_linear2(simd, self.lightness, dx.mul_add(zero + k, x), dy.mul_add(zero + k, y));
-            let [l1, a1] = sample_linear2(simd, self.lightness, dx.mul_add(zero - k, x), dy.mul_add(zero - k, y));
+            let [l0, a0] =
+                sample_linear2(simd, self.lightness, dx.mul_add(zero + k, x), dy.mul_add(zero + k, y));
+            let [l1, a1] =
+                sample_linear2(simd, self.lightness, dx.mul_add(zero - k, x), dy.mul_add(zero - k, y));
             let n = near.select((d * params.narrow * d).exp(), zero);
             let w = near.select((d * params.wide * d).exp(), zero);
             narrow = (l0 + l1).mul_add(n, narrow);

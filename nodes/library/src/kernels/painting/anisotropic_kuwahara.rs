@@ -144,10 +144,18 @@ fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                 let original = get_pixels4(simd, color, x, y, x1 - 1);
                 let place = Place { planes: &planes, x, y };
                 let (colour, deviation) = match (opaque, params.sectors == 8) {
-                    (true, true) => filtered::<S, true, true>(simd, place, &ellipses, params, &mut taps, original),
-                    (false, true) => filtered::<S, false, true>(simd, place, &ellipses, params, &mut taps, original),
-                    (true, false) => filtered::<S, true, false>(simd, place, &ellipses, params, &mut taps, original),
-                    (false, false) => filtered::<S, false, false>(simd, place, &ellipses, params, &mut taps, original),
+                    (true, true) => {
+                        filtered::<S, true, true>(simd, place, &ellipses, params, &mut taps, original)
+                    }
+                    (false, true) => {
+                        filtered::<S, false, true>(simd, place, &ellipses, params, &mut taps, original)
+                    }
+                    (true, false) => {
+                        filtered::<S, true, false>(simd, place, &ellipses, params, &mut taps, original)
+                    }
+                    (false, false) => {
+                        filtered::<S, false, false>(simd, place, &ellipses, params, &mut taps, original)
+                    }
                 };
                 let (first, last) = ((x - window.x0) as usize, (x1.min(x + 8) - window.x0) as usize);
                 put_pixels4(colour, &mut band.row_mut(0, y)[4 * first..4 * last]);
@@ -357,8 +365,7 @@ fn weights<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
         let mut sum = s0 + s2;
         let (mut s1, mut d1, mut s3, mut d3) = (zero, zero, zero, zero);
         if EIGHT {
-            let u =
-                [column.mul_add(turned_step[0], turned[0]), column.mul_add(turned_step[1], turned[1])];
+            let u = [column.mul_add(turned_step[0], turned[0]), column.mul_add(turned_step[1], turned[1])];
             (s1, d1) = opposite(u[0], (-u[1]).mul_add(u[1], zeta), zero);
             (s3, d3) = opposite(u[1], (-u[0]).mul_add(u[0], zeta), zero);
             sum += s1 + s3;

@@ -204,7 +204,8 @@ fn chosen<S: Simd>(
     let mut squares = [[zero; 2]; 2];
     for (squares, sums) in squares.iter_mut().zip([below, above]) {
         let values = &sums[8 * width + 2 * at..][..16];
-        *squares = f32x8::from_slice(simd, &values[..8]).deinterleave(f32x8::from_slice(simd, &values[8..])).into();
+        *squares =
+            f32x8::from_slice(simd, &values[..8]).deinterleave(f32x8::from_slice(simd, &values[8..])).into();
     }
     let regions = [
         (&below[4 * at..4 * width], squares[0][0]),

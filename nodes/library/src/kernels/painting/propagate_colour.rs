@@ -52,8 +52,7 @@ fn merge<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
     let (mut colours, mut spreads) = (Upsampling::default(), Upsampling::default());
     let columns = [band.window.x0, band.window.x1];
     let (mut filtered, mut deviations): (Vec<f32>, Vec<f32>) = (Vec::new(), Vec::new());
-    let (zero, one, least) =
-        (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0), f32x8::splat(simd, 1e-3));
+    let (zero, one, least) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0), f32x8::splat(simd, 1e-3));
     for_blocks::<4>(band, |block, target| {
         if block.x == columns[0] {
             filtered.clear();

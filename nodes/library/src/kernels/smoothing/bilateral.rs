@@ -97,7 +97,8 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 fn is_opaque(pass: &CpuPass<'_>, band: &Band<'_>, reach: i32) -> bool {
     let view = &pass.inputs[0];
     let held = view.window();
-    let (first, last) = ((band.window.y0 - reach).max(held.y0), (band.window.y1 - 1 + reach).min(held.y1 - 1));
+    let (first, last) =
+        ((band.window.y0 - reach).max(held.y0), (band.window.y1 - 1 + reach).min(held.y1 - 1));
     let start = view.offset(held.x0, first);
     let end = view.offset(held.x0, last) + view.stride();
     view.data()[start..end].chunks_exact(4).all(|p| p[3] == 1.0)
@@ -134,10 +135,22 @@ fn filtered<S: Simd, const OPAQUE: bool>(simd: S, pass: &CpuPass<'_>, params: &P
         let x1 = (x0 + STRIP as i32).min(window.x1);
         rows.start(x0, x1, radius, 4);
         for y in window.y0 - ry..window.y0 + ry {
-            rows.load4(simd, view, y, #[inline(always)] |v| v);
+            rows.load4(
+                simd,
+                view,
+                y,
+                #[inline(always)]
+                |v| v,
+            );
         }
         for y in window.y0..window.y1 {
-            rows.load4(simd, view, y + ry, #[inline(always)] |v| v);
+            rows.load4(
+                simd,
+                view,
+                y + ry,
+                #[inline(always)]
+                |v| v,
+            );
             for x in (x0..x1).step_by(8) {
                 let at = (x - x0 + radius) as usize;
                 let values = block::<S, OPAQUE>(simd, &rows, &chords, params.range, y, at);

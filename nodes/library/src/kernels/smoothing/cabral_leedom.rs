@@ -49,7 +49,13 @@ pub fn color(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: 
         adapt: options.adapt as u32,
     };
     // No pixel farther than the line is long; adaptation only shortens it.
-    plan.pass(&KERNEL, &[color, tensors], &params, Class::Colour, Support::Pixels(radius(params.sigma) as u32 + 1))
+    plan.pass(
+        &KERNEL,
+        &[color, tensors],
+        &params,
+        Class::Colour,
+        Support::Pixels(radius(params.sigma) as u32 + 1),
+    )
 }
 
 /// L = floor(2 sigma) (§ 2.9.3); a last bit must not decide whether a whole number is reached.

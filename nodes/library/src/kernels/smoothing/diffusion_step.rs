@@ -47,14 +47,39 @@ fn diffused<S: Simd>(simd: S, pass: &CpuPass<'_>, time_step: f32, band: &mut Ban
         colors.start(x0, x1, 1, 4);
         weights.start(x0, x1, 1, 4);
         for y in window.y0 - 1..=window.y0 {
-            colors.load4(simd, &pass.inputs[0], y, #[inline(always)] |v| v);
-            weights.load4(simd, &pass.inputs[1], y, #[inline(always)] |v| v);
+            colors.load4(
+                simd,
+                &pass.inputs[0],
+                y,
+                #[inline(always)]
+                |v| v,
+            );
+            weights.load4(
+                simd,
+                &pass.inputs[1],
+                y,
+                #[inline(always)]
+                |v| v,
+            );
         }
         for y in window.y0..window.y1 {
-            colors.load4(simd, &pass.inputs[0], y + 1, #[inline(always)] |v| v);
-            weights.load4(simd, &pass.inputs[1], y + 1, #[inline(always)] |v| v);
+            colors.load4(
+                simd,
+                &pass.inputs[0],
+                y + 1,
+                #[inline(always)]
+                |v| v,
+            );
+            weights.load4(
+                simd,
+                &pass.inputs[1],
+                y + 1,
+                #[inline(always)]
+                |v| v,
+            );
             let around = Around { colors: &colors, weights: &weights, y };
-            let target = &mut band.row_mut(0, y)[4 * (x0 - window.x0) as usize..4 * (x1 - window.x0) as usize];
+            let target =
+                &mut band.row_mut(0, y)[4 * (x0 - window.x0) as usize..4 * (x1 - window.x0) as usize];
             for (i, target) in target.chunks_mut(32).enumerate() {
                 put_pixels4(around.moved(simd, 8 * i + 1, time_step), target);
             }

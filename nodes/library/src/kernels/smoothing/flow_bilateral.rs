@@ -98,7 +98,11 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         params,
         origins: pass.inputs[0],
         source: covered.as_ref().map_or(pass.inputs[0], |c| c.view(&pass.inputs[0])),
-        field: StreamField { tensors: pass.inputs[1], step: 1.0, integrator: Integrator::of(params.midpoint) },
+        field: StreamField {
+            tensors: pass.inputs[1],
+            step: 1.0,
+            integrator: Integrator::of(params.midpoint),
+        },
         opaque: covered.as_ref().is_some_and(Covered::is_opaque),
     };
     let last = band.window.x1 - 1;

@@ -47,7 +47,13 @@ pub fn strokes(
     length: f32,
 ) -> ImageId {
     let params = Params { length };
-    plan.pass(&KERNEL, &[color, tensors, noise], &params, Class::Colour, Support::Pixels(reach(&params) as u32))
+    plan.pass(
+        &KERNEL,
+        &[color, tensors, noise],
+        &params,
+        Class::Colour,
+        Support::Pixels(reach(&params) as u32),
+    )
 }
 
 /// The most pixels that a sample of a line reads away from the centre.

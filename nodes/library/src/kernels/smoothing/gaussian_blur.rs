@@ -51,7 +51,13 @@ pub fn color(plan: &mut PlanBuilder, image: ImageId, sigma: f32) -> ImageId {
     both_axes(plan, image, sigma, Class::Colour, [1, 2])
 }
 
-fn both_axes(plan: &mut PlanBuilder, image: ImageId, sigma: f32, class: Class, coverage: [u32; 2]) -> ImageId {
+fn both_axes(
+    plan: &mut PlanBuilder,
+    image: ImageId,
+    sigma: f32,
+    class: Class,
+    coverage: [u32; 2],
+) -> ImageId {
     let radius = gaussian_radius(sigma, CUTOFF);
     let weights = gaussian_table(sigma, radius);
     let rows = Params { axis: [1, 0], radius: radius as i32, coverage: coverage[0], weights };
@@ -82,7 +88,14 @@ fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
         }
         for (n, target) in band.row_mut(0, y).chunks_mut(RUN).enumerate() {
             // Tap i of value v lies 4 i values to either side.
-            smoothed(simd, params, &weights, #[inline(always)] |i| &source[4 * i + RUN * n..], target);
+            smoothed(
+                simd,
+                params,
+                &weights,
+                #[inline(always)]
+                |i| &source[4 * i + RUN * n..],
+                target,
+            );
         }
     }
 }
@@ -108,7 +121,14 @@ fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
     }
     for (y, rows) in (window.y0..window.y1).zip(rows.windows(2 * r as usize + 1)) {
         for (n, target) in band.row_mut(0, y).chunks_mut(RUN).enumerate() {
-            smoothed(simd, params, &weights, #[inline(always)] |i| &rows[i][RUN * n..], target);
+            smoothed(
+                simd,
+                params,
+                &weights,
+                #[inline(always)]
+                |i| &rows[i][RUN * n..],
+                target,
+            );
         }
     }
 }
@@ -122,7 +142,14 @@ fn smoothed<'s, S: Simd>(
     tap: impl Fn(usize) -> &'s [f32],
     target: &mut [f32],
 ) {
-    sum(simd, params.radius as usize, #[inline(always)] |i| f32x16::splat(simd, weights[i]), tap, target);
+    sum(
+        simd,
+        params.radius as usize,
+        #[inline(always)]
+        |i| f32x16::splat(simd, weights[i]),
+        tap,
+        target,
+    );
     if params.coverage & 2 != 0 {
         for pixel in target.chunks_exact_mut(4) {
             let alpha = pixel[3];

@@ -8,7 +8,8 @@ use crate::kernels::blocks::{BLOCK, for_blocks_in_tiles};
 use crate::kernels::coverage::{Covered, full_or};
 use crate::kernels::lines::orientation_field;
 use crate::kernels::stream_line::{
-    FEW_STEPS, Integrator, NearField, STRETCH, Stream, StreamField, acos, centres, few_steps, holds, stretched,
+    FEW_STEPS, Integrator, NearField, STRETCH, Stream, StreamField, acos, centres, few_steps, holds,
+    stretched,
 };
 use crate::kernels::support::{get_pixels4, put_pixels4};
 use crate::kernels::surroundings::{FOUR, Frame, Place, Surroundings, TWO};
@@ -106,7 +107,13 @@ pub fn color(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: 
         adapt: options.adapt as u32,
     };
     let field = orientation_field::of_tensor(plan, tensors);
-    plan.pass(&KERNEL, &[color, tensors, field], &params, Class::Colour, Support::Pixels(reach(&params) as u32))
+    plan.pass(
+        &KERNEL,
+        &[color, tensors, field],
+        &params,
+        Class::Colour,
+        Support::Pixels(reach(&params) as u32),
+    )
 }
 
 /// Cosine of the greatest turn that a line survives, `max_angle` degrees; 0 for any.
@@ -264,7 +271,8 @@ impl Lines<'_> {
         let near = NearField { frame, tensors: field, integrator };
         let edges = frame.meets_edges(self.source.full());
         let last = frame.tile.x1 - 1;
-        let (start, end) = ((frame.tile.x0 - band.window.x0) as usize, (frame.tile.x1 - band.window.x0) as usize);
+        let (start, end) =
+            ((frame.tile.x0 - band.window.x0) as usize, (frame.tile.x1 - band.window.x0) as usize);
         for y in frame.tile.y0..frame.tile.y1 {
             let row = &mut band.row_mut(0, y)[4 * start..4 * end];
             for (i, target) in row.chunks_mut(8 * BLOCK).enumerate() {
@@ -325,7 +333,12 @@ impl Lines<'_> {
             }
             begins = false;
             for k in 0..RUN {
-                field.advance(simd, &mut lines, &places, [reach[0].step, reach[0].step, reach[1].step, reach[1].step]);
+                field.advance(
+                    simd,
+                    &mut lines,
+                    &places,
+                    [reach[0].step, reach[0].step, reach[1].step, reach[1].step],
+                );
                 let mut weights = [zero; 4];
                 for i in 0..2 {
                     // Both sides have come equally far unless turns count.
@@ -342,7 +355,8 @@ impl Lines<'_> {
                     }
                 }
                 for i in 0..4 {
-                    active[i] &= u[i].simd_le(reach[i / 2].limit()) & lines[i].turn.simd_ge(reach[i / 2].least_turn);
+                    active[i] &=
+                        u[i].simd_le(reach[i / 2].limit()) & lines[i].turn.simd_ge(reach[i / 2].least_turn);
                     if edges {
                         active[i] &= holds(self.source.full(), lines[i].x, lines[i].y);
                     }
@@ -394,21 +408,31 @@ impl Lines<'_> {
     #[inline(always)]
     fn fill_far<S: Simd>(&self, simd: S, covered: View<'_>, band: &mut Band<'_>) {
         let last = band.window.x1 - 1;
-        for_blocks_in_tiles::<4>(band, |block, target| put_pixels4(self.far(simd, &covered, block.x, block.y, last), target));
+        for_blocks_in_tiles::<4>(band, |block, target| {
+            put_pixels4(self.far(simd, &covered, block.x, block.y, last), target)
+        });
     }
 
     /// Up to eight pixels anywhere.
     #[inline(always)]
     fn far<S: Simd>(&self, simd: S, covered: &View<'_>, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
         let (params, zero) = (&self.params, f32x8::splat(simd, 0.0));
-        let field = StreamField { tensors: self.field, step: params.step, integrator: Integrator::of(params.integrator) };
+        let field = StreamField {
+            tensors: self.field,
+            step: params.step,
+            integrator: Integrator::of(params.integrator),
+        };
         let (reach, mut lines) = self.begun(simd, x, y, last);
         let mut sum = get_pixels4(simd, covered, x, y, last);
         let mut norm = f32x8::splat(simd, 1.0);
         let mut u = [zero; 2];
         let mut active = [reach.step.simd_le(reach.limit()); 2];
         while (active[0] | active[1]).any_true() {
-            field.advance_by(simd, &mut lines, [active[0].select(reach.step, zero), active[1].select(reach.step, zero)]);
+            field.advance_by(
+                simd,
+                &mut lines,
+                [active[0].select(reach.step, zero), active[1].select(reach.step, zero)],
+            );
             for side in 0..2 {
                 let line = &lines[side];
                 u[side] += self.arc(line, &reach);
@@ -460,5 +484,10 @@ fn add<S: Simd>(
 fn mean<S: Simd>([r, g, b, alpha]: [f32x8<S>; 4], norm: f32x8<S>) -> [f32x8<S>; 4] {
     let zero = f32x8::splat(norm.simd, 0.0);
     let seen = alpha.simd_gt(f32x8::splat(norm.simd, 1e-6));
-    [seen.select(r / alpha, zero), seen.select(g / alpha, zero), seen.select(b / alpha, zero), full_or(alpha / norm)]
+    [
+        seen.select(r / alpha, zero),
+        seen.select(g / alpha, zero),
+        seen.select(b / alpha, zero),
+        full_or(alpha / norm),
+    ]
 }

@@ -165,7 +165,8 @@ fn moved<S: Simd, const CONSTRAINED: bool>(
             magnitudes.compute(simd, &rows, y + 1);
             let around = Around::new(&rows, y);
             let own = [magnitudes.row(y - 1), magnitudes.row(y), magnitudes.row(y + 1)];
-            let target = &mut band.row_mut(0, y)[4 * (x0 - window.x0) as usize..4 * (x1 - window.x0) as usize];
+            let target =
+                &mut band.row_mut(0, y)[4 * (x0 - window.x0) as usize..4 * (x1 - window.x0) as usize];
             for (i, target) in target.chunks_mut(32).enumerate() {
                 let at = 8 * i + 2;
                 let x = x0 + 8 * i as i32;

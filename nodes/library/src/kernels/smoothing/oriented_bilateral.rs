@@ -7,7 +7,7 @@
 //!
 //! Cost: about 1.8 cutoff taps of one interpolation and one exponential (manual: two or more).
 
-use crate::kernels::colour_lines::{STEPS, ColourLines, Lines, strips};
+use crate::kernels::colour_lines::{ColourLines, Lines, STEPS, strips};
 use crate::kernels::support::{put_pixels4, row_pixels4};
 use crate::kernels::tensor_algebra::{anisotropy, tangent};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};

@@ -7,7 +7,7 @@
 //!
 //! Cost: 60 operations (exponential: 100); memory takes longer.
 
-use crate::kernels::rows::{Rows, pixels, WIDE_STRIP, strips_of};
+use crate::kernels::rows::{Rows, WIDE_STRIP, pixels, strips_of};
 use crate::kernels::support::put_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
@@ -83,12 +83,25 @@ fn diffused<S: Simd, const EXPONENTIAL: bool>(
     for (x0, x1) in strips_of(WIDE_STRIP, window.x0, window.x1) {
         rows.start(x0, x1, 1, 4);
         for y in window.y0 - 1..=window.y0 {
-            rows.load4(simd, view, y, #[inline(always)] |v| v);
+            rows.load4(
+                simd,
+                view,
+                y,
+                #[inline(always)]
+                |v| v,
+            );
         }
         for y in window.y0..window.y1 {
-            rows.load4(simd, view, y + 1, #[inline(always)] |v| v);
+            rows.load4(
+                simd,
+                view,
+                y + 1,
+                #[inline(always)]
+                |v| v,
+            );
             let (above, centre, below) = (rows.channels(y - 1), rows.channels(y), rows.channels(y + 1));
-            let target = &mut band.row_mut(0, y)[4 * (x0 - window.x0) as usize..4 * (x1 - window.x0) as usize];
+            let target =
+                &mut band.row_mut(0, y)[4 * (x0 - window.x0) as usize..4 * (x1 - window.x0) as usize];
             for (i, target) in target.chunks_mut(32).enumerate() {
                 let at = 8 * i + 1;
                 let origin = pixels(simd, &centre, at);

@@ -60,11 +60,13 @@ fn wavering<S: Simd>(simd: S, params: &Params, source: &View<'_>, band: &mut Ban
     for y in window.y0..window.y1 {
         for x in (window.x0..window.x1).step_by(8) {
             let [cx, cy] = centres(simd, x, y, window.x1 - 1);
-            let q = [cx * params.inverse_scale * params.frequency, cy * params.inverse_scale * params.frequency];
+            let q =
+                [cx * params.inverse_scale * params.frequency, cy * params.inverse_scale * params.frequency];
             let (dx, dy) = (offset(simd, q, 3001, params.amount), offset(simd, q, 5003, params.amount));
             let [r, g, b, alpha] = sample_linear4(simd, source, cx + dx, cy + dy);
             let seen = alpha.simd_gt(f32x8::splat(simd, 1e-6));
-            let color = [seen.select(r / alpha, zero), seen.select(g / alpha, zero), seen.select(b / alpha, zero)];
+            let color =
+                [seen.select(r / alpha, zero), seen.select(g / alpha, zero), seen.select(b / alpha, zero)];
             let [r, g, b] = color;
             put_pixels4([r, g, b, alpha], &mut band.row_mut(0, y)[4 * (x - window.x0) as usize..]);
         }

@@ -97,6 +97,8 @@ mod tests {
         let grey = |x: i32, y: i32| [got.pixel(x, y)[0], got.pixel(x, y)[3]];
         let near = |got: [f32; 2], want: [f32; 2]| (0..2).all(|i| (got[i] - want[i]).abs() < 1e-5);
         assert!(near(grey(0, 0), [11.0 / 3.0, 0.75]), "{:?}", grey(0, 0));
-        assert!(near(grey(1, 0), [7.0, 1.0]) && near(grey(0, 1), [20.5, 1.0]) && near(grey(1, 1), [22.0, 1.0]));
+        assert!(
+            near(grey(1, 0), [7.0, 1.0]) && near(grey(0, 1), [20.5, 1.0]) && near(grey(1, 1), [22.0, 1.0])
+        );
     }
 }

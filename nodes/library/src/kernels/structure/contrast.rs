@@ -18,7 +18,12 @@ crate::params! {
 crate::kernel!(contrast {
     cpu: run,
     cost: |_| 4.0,
-    tolerance: Tolerance { absolute: 2e-6, relative: 0.0, outliers: 0.0, reason: "three roundings of values up to 1" },
+    tolerance: Tolerance {
+        absolute: 2e-6,
+        relative: 0.0,
+        outliers: 0.0,
+        reason: "three roundings of values up to 1"
+    },
 });
 
 /// Adds the pass: 0.5 + gain (colour - 0.5), clamped.

@@ -129,10 +129,22 @@ fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
     for (x0, x1) in strips(window.x0, window.x1) {
         held.start(x0, x1, radius, 4);
         for y in window.y0 - radius..window.y0 + radius {
-            held.load4(simd, view, y, #[inline(always)] |v| v);
+            held.load4(
+                simd,
+                view,
+                y,
+                #[inline(always)]
+                |v| v,
+            );
         }
         for y in window.y0..window.y1 {
-            held.load4(simd, view, y + radius, #[inline(always)] |v| v);
+            held.load4(
+                simd,
+                view,
+                y + radius,
+                #[inline(always)]
+                |v| v,
+            );
             let start = 4 * (x0 - window.x0) as usize;
             let target = &mut band.row_mut(0, y)[start..start + 4 * (x1 - x0) as usize];
             for (block, pixels) in target.chunks_mut(32).enumerate() {
@@ -225,7 +237,11 @@ mod tests {
         (0..SIDE * SIDE)
             .map(|i| {
                 let (angle, magnitude) = (next() * std::f64::consts::PI, next());
-                if i % SIDE < 4 && i / SIDE < 4 { ([0.0; 2], 0.0) } else { ([angle.cos(), angle.sin()], magnitude) }
+                if i % SIDE < 4 && i / SIDE < 4 {
+                    ([0.0; 2], 0.0)
+                } else {
+                    ([angle.cos(), angle.sin()], magnitude)
+                }
             })
             .collect()
     }

@@ -26,8 +26,7 @@ pub fn maximum(plan: &mut PlanBuilder, image: ImageId) -> ImageId {
         return image;
     }
     let params = Params { channel: desc.channels - 1 };
-    let half =
-        plan.pass_at(&KERNEL, &[image], &params, &[Class::Field], Support::Pixels(0), desc.level + 1);
+    let half = plan.pass_at(&KERNEL, &[image], &params, &[Class::Field], Support::Pixels(0), desc.level + 1);
     maximum(plan, half)
 }
 

@@ -331,13 +331,7 @@ pub(crate) fn outer<S: Simd>(
 
 /// 1 where lambda1 is above `threshold`, else 0 (2.164).
 #[inline(always)]
-pub(crate) fn validity<S: Simd>(
-    simd: S,
-    threshold: f32,
-    e: f32x8<S>,
-    f: f32x8<S>,
-    g: f32x8<S>,
-) -> f32x8<S> {
+pub(crate) fn validity<S: Simd>(simd: S, threshold: f32, e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> f32x8<S> {
     let one = f32x8::splat(simd, 1.0);
     if threshold < 0.0 {
         return one;

@@ -105,7 +105,13 @@ mod tests {
             (_, false) => (100 + 37 * x + 11 * y + c) as f32,
             (0, _) => 1.0 + x as f32 / 10.0,
             (1, _) => 0.5 - y as f32 / 40.0,
-            _ => if x == 20 { 4.0 } else { 1.0 },
+            _ => {
+                if x == 20 {
+                    4.0
+                } else {
+                    1.0
+                }
+            }
         };
         let values = (0..4 * w * h).map(|i| value(i / 4 % w, i / 4 / w, i % 4));
         Image::from_vec(w, h, 4, values.collect()).unwrap()

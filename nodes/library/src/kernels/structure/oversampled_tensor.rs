@@ -277,7 +277,10 @@ mod tests {
             for (x, y) in [(inset, inset), (inset + 1, inset), (50, 53), (61, 50)] {
                 let t = got.pixel(x, y);
                 let near = |v: f32, want: f32| (v - want).abs() < 2e-6;
-                assert!(near(t[0], 9e-4) && near(t[1], 0.0) && near(t[2], 16e-4) && t[3] == 1.0, "{sigma}: {t:?}");
+                assert!(
+                    near(t[0], 9e-4) && near(t[1], 0.0) && near(t[2], 16e-4) && t[3] == 1.0,
+                    "{sigma}: {t:?}"
+                );
             }
         }
     }

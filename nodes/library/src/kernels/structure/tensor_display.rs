@@ -211,12 +211,9 @@ mod tests {
     fn measures_are_those_of_the_eigenvalues() {
         let (l1, l2) = (0.03f64, 0.004f64);
         let (sin, cos) = 0.7f64.sin_cos();
-        let tensor = [
-            l1 * cos * cos + l2 * sin * sin,
-            (l1 - l2) * sin * cos,
-            l1 * sin * sin + l2 * cos * cos,
-        ]
-        .map(|v| v as f32);
+        let tensor =
+            [l1 * cos * cos + l2 * sin * sin, (l1 - l2) * sin * cos, l1 * sin * sin + l2 * cos * cos]
+                .map(|v| v as f32);
         let a = (l1 - l2) / (l1 + l2);
         let root = (l1.sqrt() - l2.sqrt()) / (l1.sqrt() + l2.sqrt());
         let toned = |v: f64, half: f64| v / (v.abs() + half);
@@ -247,7 +244,8 @@ mod tests {
     #[test]
     fn extreme_tensors_are_shown_between_black_and_white() {
         for v in [0.0, 1e-38, 1.0, 1e30] {
-            for show in [Show::Magnitude, Show::Harris(0.04), Show::Foerstner, Show::TomasiKanade, Show::Rohr] {
+            for show in [Show::Magnitude, Show::Harris(0.04), Show::Foerstner, Show::TomasiKanade, Show::Rohr]
+            {
                 for tensor in [[v, 0.0, v], [v, v, v], [0.0, 0.0, v]] {
                     assert!((0.0..=1.0).contains(&grey(tensor, show)), "{show:?} of {tensor:?}");
                 }

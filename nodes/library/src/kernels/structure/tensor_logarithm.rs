@@ -113,14 +113,18 @@ mod tests {
     #[test]
     fn the_way_there_and_back_keeps_tensors() {
         // Of any size; with an eigenvalue that is no vanishing share of the other.
-        let tensors = [[1.0, 0.0, 0.01, 1.0], [3e-6, 2e-6, 2e-6, 0.5], [40.0, -9.0, 4.0, 0.0], [2.0, 0.0, 2.0, 1.0]];
+        let tensors =
+            [[1.0, 0.0, 0.01, 1.0], [3e-6, 2e-6, 2e-6, 0.5], [40.0, -9.0, 4.0, 0.0], [2.0, 0.0, 2.0, 1.0]];
         let image = Image::from_vec(4, 1, 4, tensors.concat()).unwrap();
         let there = run(&image, logarithm);
         assert!((there.pixel(0, 0)[0]).abs() < 1e-6 && (there.pixel(0, 0)[2] - 0.01f32.ln()).abs() < 1e-5);
         let back = run(&there, exponential);
         for (got, want) in back.data().chunks_exact(4).zip(tensors) {
             let size = want[0].max(want[2]);
-            assert!((0..3).all(|i| (got[i] - want[i]).abs() < 1e-4 * size) && got[3] == want[3], "{got:?} {want:?}");
+            assert!(
+                (0..3).all(|i| (got[i] - want[i]).abs() < 1e-4 * size) && got[3] == want[3],
+                "{got:?} {want:?}"
+            );
         }
     }
 

@@ -48,14 +48,18 @@ pub(crate) const RHO: Param = Param::float("rho", "Rho", 1.0, [0.0, 20.0])
     .pixels()
     .structural()
     .doc("Standard deviation of the Gaussian that smooths the structure tensor.");
-pub(crate) const RELAX_THRESHOLD: Param =
-    Param::float("relax_threshold", "Relaxation threshold", 0.0447, [0.0, 10.0])
-        .slider(0.0, 0.2)
-        .structural()
-        .doc(
-            "Where sqrt(lambda1) is not above this, the orientation is filled in from around it at first, and \
+pub(crate) const RELAX_THRESHOLD: Param = Param::float(
+    "relax_threshold",
+    "Relaxation threshold",
+    0.0447,
+    [0.0, 10.0],
+)
+.slider(0.0, 0.2)
+.structural()
+.doc(
+    "Where sqrt(lambda1) is not above this, the orientation is filled in from around it at first, and \
              from the step before later on (2.7.3); 0 trusts every gradient.",
-        );
+);
 pub(crate) const SIGMA_T: Param = Param::float("sigma_t", "Sigma t", 6.0, [0.0, 40.0])
     .slider(0.0, 15.0)
     .pixels()
@@ -158,7 +162,8 @@ impl Filter {
                     if i > 0 {
                         across = self.tensor(plan, color, Some(across));
                     }
-                    color = shock::coherence_enhancing_step(plan, color, across, self.shock.sigma_i, time_step);
+                    color =
+                        shock::coherence_enhancing_step(plan, color, across, self.shock.sigma_i, time_step);
                 }
             } else {
                 color = self.shock.apply(plan, color, across);

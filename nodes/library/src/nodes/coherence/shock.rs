@@ -18,10 +18,7 @@ pub static NODE: NodeSpec = NodeSpec {
           pixel along the local gradient (6.4.3) at once; the others solve a differential equation in \
           small steps (6.3).",
     section: "6.4",
-    inputs: &[
-        ports::COLOR,
-        ports::TENSOR,
-    ],
+    inputs: &[ports::COLOR, ports::TENSOR],
     output: ports::color_output("The sharpened picture."),
     own_params: &[
         Param::choice(
@@ -114,7 +111,12 @@ fn smoothed(plan: &mut PlanBuilder, color: ImageId, sigma_i: f32) -> ImageId {
 }
 
 /// One step of the classical shock filter (§ 6.4.1).
-pub(crate) fn osher_rudin_step(plan: &mut PlanBuilder, color: ImageId, sigma_i: f32, time_step: f32) -> ImageId {
+pub(crate) fn osher_rudin_step(
+    plan: &mut PlanBuilder,
+    color: ImageId,
+    sigma_i: f32,
+    time_step: f32,
+) -> ImageId {
     let smooth = smoothed(plan, color, sigma_i);
     let detector = laplacian::of_color(plan, smooth);
     shock_step::step(plan, color, detector, time_step)

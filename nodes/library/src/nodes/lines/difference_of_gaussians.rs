@@ -17,9 +17,7 @@ pub static NODE: NodeSpec = NodeSpec {
     section: "4.2-4.4",
     inputs: &[ports::COLOR],
     output: EDGES,
-    own_params: &[
-        SIGMA_E, K, FORM, TAU, EPSILON, PHI, P, EPSILON_P, PHI_P, THRESHOLD,
-    ],
+    own_params: &[SIGMA_E, K, FORM, TAU, EPSILON, PHI, P, EPSILON_P, PHI_P, THRESHOLD],
     build,
 };
 

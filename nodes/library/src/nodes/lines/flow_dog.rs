@@ -5,7 +5,8 @@ use crate::kernels::colour::lightness;
 use crate::kernels::edge_threshold::{Threshold, Xdog};
 use crate::kernels::lines::flow_dog_two_dimensional::{self, Stepping};
 use crate::kernels::lines::{
-    darken_by_lines, flow_dog_cabral_leedom, flow_dog_gradient, flow_dog_tangent, guide_lines, orientation_field,
+    darken_by_lines, flow_dog_cabral_leedom, flow_dog_gradient, flow_dog_tangent, guide_lines,
+    orientation_field,
 };
 use crate::kernels::stream_line::Integrator;
 use crate::nodes::lines::difference_of_gaussians as dog;
@@ -23,13 +24,7 @@ pub static NODE: NodeSpec = NodeSpec {
           Where normals, depth or object ids are given and `guide_weight` is above 0, lines are also \
           drawn where these break, along the same flow. 1 is paper, 0 is line.",
     section: "4.5",
-    inputs: &[
-        ports::COLOR,
-        ports::TENSOR,
-        NORMAL,
-        DEPTH,
-        OBJECT_ID,
-    ],
+    inputs: &[ports::COLOR, ports::TENSOR, NORMAL, DEPTH, OBJECT_ID],
     output: dog::EDGES,
     own_params: &[
         dog::SIGMA_E,
@@ -43,10 +38,9 @@ pub static NODE: NodeSpec = NodeSpec {
         dog::EPSILON_P,
         dog::PHI_P,
         dog::THRESHOLD,
-        Param::int("iterations", "Iterations", 1, [1, 16])
-            .slider(1.0, 5.0)
-            .structural()
-            .doc("Times the filter runs, each on the lightness times the lines found so far, which closes gaps."),
+        Param::int("iterations", "Iterations", 1, [1, 16]).slider(1.0, 5.0).structural().doc(
+            "Times the filter runs, each on the lightness times the lines found so far, which closes gaps.",
+        ),
         KERNEL,
         INTEGRATOR,
         Param::float("guide_weight", "Guide weight", 0.0, [0.0, 16.0])
@@ -57,8 +51,12 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
-pub(crate) const NORMAL: Port =
-    Port { id: "normal", kind: ImageKind::Normal, optional: true, doc: "View-space normals; creases draw lines." };
+pub(crate) const NORMAL: Port = Port {
+    id: "normal",
+    kind: ImageKind::Normal,
+    optional: true,
+    doc: "View-space normals; creases draw lines.",
+};
 pub(crate) const DEPTH: Port = Port {
     id: "depth",
     kind: ImageKind::Depth,
@@ -142,8 +140,7 @@ impl FlowDog {
                 let sigmas = [self.sigma_e, self.k, self.sigma_m];
                 flow_dog_two_dimensional::edges(plan, [source, field, marked], sigmas, self.stepping, &xdog)
             } else {
-                let response =
-                    flow_dog_gradient::response(plan, source, field, self.sigma_e, self.k, &xdog);
+                let response = flow_dog_gradient::response(plan, source, field, self.sigma_e, self.k, &xdog);
                 let response = self.marked(plan, response, field, guides);
                 self.along(plan, response, field, &xdog)
             };
@@ -183,11 +180,7 @@ pub(crate) fn guides(scope: &Scope<'_>, weight: f32) -> Guides {
     if weight <= 0.0 {
         return Guides::default();
     }
-    Guides {
-        normal: scope.input("normal"),
-        depth: scope.input("depth"),
-        object_id: scope.input("object_id"),
-    }
+    Guides { normal: scope.input("normal"), depth: scope.input("depth"), object_id: scope.input("object_id") }
 }
 
 /// The tensor of a picture and of the guides that count, for a node without a connected one.

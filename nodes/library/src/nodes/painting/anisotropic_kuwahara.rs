@@ -60,9 +60,9 @@ pub(crate) const RADIUS: Param = Param::float("radius", "Radius", 6.0, [0.0, 40.
     .slider(1.0, 16.0)
     .pixels()
     .doc("Radius of the disc that is stretched to an ellipse (r); at every level the same number of its pixels.");
-pub(crate) const ALPHA: Param = Param::float("alpha", "Roundness", 1.0, [0.25, 100.0])
-    .slider(0.25, 4.0)
-    .doc("Tunes the ellipse (alpha of 5.22): up to ((1 + alpha) / alpha)^2 times as long as wide, 4 by default.");
+pub(crate) const ALPHA: Param = Param::float("alpha", "Roundness", 1.0, [0.25, 100.0]).slider(0.25, 4.0).doc(
+    "Tunes the ellipse (alpha of 5.22): up to ((1 + alpha) / alpha)^2 times as long as wide, 4 by default.",
+);
 pub(crate) const LEVELS: Param = Param::int("levels", "Levels", 1, [1, MAX_LEVELS as i32])
     .slider(1.0, 6.0)
     .structural()

@@ -35,7 +35,8 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::float("sigma_r", "Sigma r", 4.25, [0.01, 200.0])
             .slider(0.5, 30.0)
             .doc("Standard deviation of the range weight, in CIELAB units or in per cent of RGB."),
-        Param::int("iterations", "Iterations", 4, [0, 20]).neutral_at_zero()
+        Param::int("iterations", "Iterations", 4, [0, 20])
+            .neutral_at_zero()
             .slider(0.0, 10.0)
             .structural()
             .doc("How often the filter runs."),

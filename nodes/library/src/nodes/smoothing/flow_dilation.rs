@@ -16,19 +16,13 @@ pub static NODE: NodeSpec = NodeSpec {
           greatest on the stream line through it, as continuous glass patterns do. Transparent pixels \
           lend no colour, and coverage stays as it is.",
     section: "5.1",
-    inputs: &[
-        ports::COLOR,
-        ports::TENSOR,
-    ],
+    inputs: &[ports::COLOR, ports::TENSOR],
     output: ports::color_output("The picture in strokes."),
     own_params: &[
-        Param::float("length", "Length", 12.0, [0.0, 60.0]).neutral_at_zero()
-            .slider(0.0, 30.0)
-            .pixels()
-            .doc(
-                "Arc length that is searched on each side; strokes are up to twice as long. Shorter where \
+        Param::float("length", "Length", 12.0, [0.0, 60.0]).neutral_at_zero().slider(0.0, 30.0).pixels().doc(
+            "Arc length that is searched on each side; strokes are up to twice as long. Shorter where \
                  the orientation is uncertain: times (1 + A)^2 / 4 (6.3.1).",
-            ),
+        ),
         Param::float("width", "Width", 1.2, [0.0, 10.0])
             .slider(0.0, 4.0)
             .pixels()

@@ -39,7 +39,8 @@ pub static NODE: NodeSpec = NodeSpec {
             ],
         )
         .doc("Dilation and erosion, opening (erosion, then dilation), closing (the reverse), or both."),
-        Param::float("radius", "Radius", 3.0, [0.0, 30.0]).neutral_at_zero()
+        Param::float("radius", "Radius", 3.0, [0.0, 30.0])
+            .neutral_at_zero()
             .slider(0.0, 12.0)
             .pixels()
             .doc("Radius of the disc; its pixels are those with x^2 + y^2 <= radius (radius + 1)."),

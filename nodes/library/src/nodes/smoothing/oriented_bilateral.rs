@@ -20,10 +20,7 @@ pub static NODE: NodeSpec = NodeSpec {
           repeated. Colours are compared in CIELAB. Transparent pixels lend no colour, and coverage \
           stays as it is.",
     section: "3.4",
-    inputs: &[
-        ports::COLOR,
-        ports::TENSOR,
-    ],
+    inputs: &[ports::COLOR, ports::TENSOR],
     output: ports::color_output("The abstracted picture."),
     own_params: &[
         Param::float("sigma_dg", "Sigma along gradient", 3.0, [0.0, 40.0])
@@ -40,7 +37,8 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::float("sigma_rt", "Range along", 4.25, [0.01, 200.0])
             .slider(0.5, 30.0)
             .doc("Standard deviation of the range weight along edges, in CIELAB units."),
-        Param::int("iterations", "Iterations", 4, [0, 20]).neutral_at_zero()
+        Param::int("iterations", "Iterations", 4, [0, 20])
+            .neutral_at_zero()
             .slider(0.0, 10.0)
             .structural()
             .doc("How often both passes run; the orientation is found once."),

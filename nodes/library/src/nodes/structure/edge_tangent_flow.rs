@@ -39,7 +39,9 @@ pub static NODE: NodeSpec = NodeSpec {
         )
         .uniform()
         .doc("Spatial weight: 1 for all neighbours, or a Gaussian of a third of the radius."),
-        Param::int("iterations", "Iterations", 3, [1, 10]).structural().doc("Times that the tangents are averaged."),
+        Param::int("iterations", "Iterations", 3, [1, 10])
+            .structural()
+            .doc("Times that the tangents are averaged."),
         Param::bool("separable", "Separable", false)
             .structural()
             .doc("Averages over the row and then over the column: faster for large radii, less exact."),

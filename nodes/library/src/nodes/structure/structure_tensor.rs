@@ -262,7 +262,8 @@ mod tests {
     /// Noise of every bit pattern that a picture could have, in 0..1.
     fn noise(seed: u32) -> impl Fn(u32, u32, u32) -> f32 {
         move |x, y, c| {
-            let mut h = seed.wrapping_add(x.wrapping_mul(0x9e37_79b1)) ^ y.wrapping_mul(0x85eb_ca77) ^ (c << 28);
+            let mut h =
+                seed.wrapping_add(x.wrapping_mul(0x9e37_79b1)) ^ y.wrapping_mul(0x85eb_ca77) ^ (c << 28);
             for _ in 0..3 {
                 h = (h ^ (h >> 15)).wrapping_mul(0x2c1b_3c6d);
             }
@@ -345,7 +346,9 @@ mod tests {
         let mut scene = Scene::color(image(61, 47, 4, noise(1)));
         scene.images.push(("normal", image(61, 47, 4, |x, y, c| 2.0 * noise(2)(x, y, c) - 1.0)));
         scene.images.push(("depth", image(61, 47, 1, noise(3))));
-        scene.images.push(("object_id", image(61, 47, 1, |x, y, c| (3.0 * noise(4)(x / 7, y / 5, c)).floor())));
+        scene
+            .images
+            .push(("object_id", image(61, 47, 1, |x, y, c| (3.0 * noise(4)(x / 7, y / 5, c)).floor())));
         let settings: [&[(&str, &str)]; 10] = [
             &[],
             &[("derivative", "central"), ("space", "lab"), ("rho", "0.7")],
@@ -392,10 +395,13 @@ mod tests {
         let flat = || Scene::color(image(40, 40, 4, |_, _, c| if c == 3 { 1.0 } else { 0.5 }));
         let left = |x: u32| x < 20;
         let guides: [(&'static str, Image); 4] = [
-            ("normal", image(40, 40, 4, |x, _, c| match (c, left(x)) {
-                (0, true) | (2, false) | (3, _) => 1.0,
-                _ => 0.0,
-            })),
+            (
+                "normal",
+                image(40, 40, 4, |x, _, c| match (c, left(x)) {
+                    (0, true) | (2, false) | (3, _) => 1.0,
+                    _ => 0.0,
+                }),
+            ),
             ("depth", image(40, 40, 1, |x, _, _| if left(x) { 5.0 } else { 0.0 })),
             ("depth", image(40, 40, 1, |x, _, _| if left(x) { 1.0 } else { 1e20 })),
             ("object_id", image(40, 40, 1, |x, _, _| if left(x) { 1.0 } else { 7.0 })),

@@ -18,12 +18,7 @@ pub static NODE: NodeSpec = NodeSpec {
     doc: "Light lines on blue paper with a grid: the flow-based difference of Gaussians of lightness and, \
           where given, of the breaks of normals, depth and object ids.",
     section: "1.2, 4.5",
-    inputs: &[
-        ports::COLOR,
-        flow_dog::NORMAL,
-        flow_dog::DEPTH,
-        flow_dog::OBJECT_ID,
-    ],
+    inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID],
     output: ports::color_output("The blueprint."),
     own_params: &[
         look::LINE_WIDTH,

@@ -2,9 +2,9 @@
 
 use crate::kernels::colour::quantize_luminance::{Steepness, quantize};
 use crate::kernels::colour::{composite_lines, lab_to_rgb, lightness, rgb_to_lab, tone_curve};
+use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::smoothing::bilateral::Options;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
-use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::stream_line::Integrator;
 use crate::look::{self, ADVANCED, Lines};
 use crate::nodes::colour::quantize_luminance as quantization;
@@ -25,12 +25,7 @@ pub static NODE: NodeSpec = NodeSpec {
           Defaults are those of Fig. 4.8. Normals, depth and object ids, where given, draw lines of \
           their own.",
     section: "4.6",
-    inputs: &[
-        ports::COLOR,
-        flow_dog::NORMAL,
-        flow_dog::DEPTH,
-        flow_dog::OBJECT_ID,
-    ],
+    inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID],
     output: ports::color_output("The cartoon."),
     own_params: &[
         look::LINE_WIDTH,
@@ -222,7 +217,12 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let drawn = composite_lines::composite(scope.plan, rgb, edges, line, [0.0; 4]);
     let sigma_a = scope.float("sigma_a");
     if sigma_a > 0.0 {
-        return line_integral_convolution::color(scope.plan, drawn, tensor, &Lic { sigma: sigma_a, ..Lic::default() });
+        return line_integral_convolution::color(
+            scope.plan,
+            drawn,
+            tensor,
+            &Lic { sigma: sigma_a, ..Lic::default() },
+        );
     }
     drawn
 }

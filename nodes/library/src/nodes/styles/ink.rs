@@ -4,9 +4,9 @@ use crate::kernels::colour::ink_sheet::{Sheet, draw};
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::edge_threshold::{Threshold, Xdog};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
-use crate::kernels::stream_line::Integrator;
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
+use crate::kernels::stream_line::Integrator;
 use crate::kernels::structure::{contrast, noise};
 use crate::look::{self, ADVANCED, LOOK};
 use crate::nodes::lines::difference_of_gaussians as dog;
@@ -332,8 +332,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let response = flow.edges(scope.plan, lightness, tensor, &guides);
     let tinted = lab_to_rgb::to_rgb(scope.plan, smooth, scope.float("saturation"));
     // Which passes there are is a matter of the style alone: the trims only change numbers.
-    let carved =
-        if own.stroke[1] > 0.0 { strokes(scope.plan, tensor, own.stroke, scale) } else { tinted };
+    let carved = if own.stroke[1] > 0.0 { strokes(scope.plan, tensor, own.stroke, scale) } else { tinted };
     let mut line = scope.color("line_color");
     line[3] *= drawing.opacity;
     let sheet = Sheet {

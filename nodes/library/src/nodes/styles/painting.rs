@@ -53,10 +53,8 @@ const SHARPNESS: Param = Param::float("sharpness", "Sharpness", 0.5, [0.0, 1.0])
     .group(LOOK)
     .doc("How crisp the borders of strokes are: scales `q` from 1/4 to 4 times.");
 /// The levels of the node, more of them by default.
-const PAINTING_LEVELS: Param = Param {
-    kind: ParamKind::Int { default: 2, range: [1, 8], slider: [1, 6] },
-    ..LEVELS.group(ADVANCED)
-};
+const PAINTING_LEVELS: Param =
+    Param { kind: ParamKind::Int { default: 2, range: [1, 8], slider: [1, 6] }, ..LEVELS.group(ADVANCED) };
 
 /// A factor from 1/4 to 4 for a control of 0..=1, 1 at its middle.
 fn quadruple(control: f32) -> f32 {
@@ -70,7 +68,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let mut painting = Painting::of(scope, false);
     let brush = scope.float("brush_size") / (12.0 * scale);
     painting.options.radius = (painting.options.radius * brush).min(LARGEST_RADIUS * scale);
-    painting.options.alpha = (painting.options.alpha / quadruple(scope.float("stroke_length"))).max(LEAST_ALPHA);
+    painting.options.alpha =
+        (painting.options.alpha / quadruple(scope.float("stroke_length"))).max(LEAST_ALPHA);
     // Neutral controls leave whole exponents whole, which are the fast ones.
     painting.options.q = (painting.options.q * quadruple(scope.float("sharpness"))).clamp(1.0, 64.0);
     painting.p_s *= quadruple(scope.float("detail"));
