@@ -7,14 +7,15 @@
 mod compare;
 mod cpu;
 mod gpu;
+mod peak;
 mod peers;
 mod report;
 mod sequence;
 
 use std::path::Path;
 
+use isophote_engine::cpu::Pool;
 use isophote_engine::fearless_simd::Level;
-use isophote_engine::{cpu::Pool, peak};
 
 use self::compare::Saved;
 use self::report::{Machine, Report, Shown};

@@ -1,9 +1,9 @@
 //! Measurements as a table, in Markdown or as JSON.
 
-use isophote_engine::peak::Peak;
 use serde_json::{Value, json};
 
 use super::compare::{self, Saved};
+use super::peak::Peak;
 use super::peers;
 use crate::error::{Error, Result};
 use crate::loader::Library;

@@ -11,7 +11,6 @@ pub mod gpu;
 pub mod image;
 pub mod kernel;
 pub mod math;
-pub mod peak;
 pub mod pixels;
 pub mod plan;
 pub mod program;

@@ -1,11 +1,12 @@
 //! What this machine can do at most, measured: fused multiply-adds and bytes copied per second, on all
 //! threads. Benchmarks state the share of it that a pass attains.
 
-use crate::cpu::Threads;
-use fearless_simd::{Level, Simd, dispatch, f32x8, f32x16, prelude::*};
 use std::hint::black_box;
 use std::sync::Mutex;
 use std::time::Instant;
+
+use isophote_engine::cpu::Threads;
+use isophote_engine::fearless_simd::{Level, Simd, dispatch, f32x8, f32x16, prelude::*};
 
 /// The machine's peak.
 #[derive(Clone, Copy, Debug)]
@@ -96,8 +97,9 @@ fn copied(threads: &dyn Threads) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use isophote_engine::cpu::CallingThread;
+
     use super::*;
-    use crate::cpu::CallingThread;
 
     #[test]
     fn the_peak_is_that_of_a_computer() {
