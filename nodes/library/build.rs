@@ -3,10 +3,19 @@
 //! kernels. A shader that is broken, or that has no Rust file of the same stem, fails the build.
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
+
+/// What several shaders share, and its twins in Rust.
+const SHARED: &str = "shared";
+
+/// What only GPUs need, such as where a texture lies in the picture; it has no twins.
+const GPU: &str = "gpu";
+
+/// What only CPUs need, such as how pixels are read; it has no twins.
+const SIMD: &str = "simd";
 
 /// What reflection finds in one shader.
 struct Shader {
@@ -26,10 +35,14 @@ fn main() {
     println!("cargo::rerun-if-changed={}", library.join("src/kernels").display());
 
     let mut found = BTreeMap::new();
+    let mut shared = BTreeSet::new();
     let mut failed = false;
     for (group, path) in files_in_groups(&shaders, "wgsl") {
         println!("cargo::rerun-if-changed={}", path.display());
-        if group == "shared" {
+        if group == SHARED {
+            shared.insert(stem(&path));
+        }
+        if group == SHARED || group == GPU {
             continue;
         }
         let name = stem(&path);
@@ -43,10 +56,27 @@ fn main() {
             }
         }
     }
-    let twins: BTreeMap<String, (String, PathBuf)> = files_in_groups(&library.join("src/kernels"), "rs")
-        .into_iter()
-        .map(|(group, path)| (stem(&path), (group, path)))
-        .collect();
+    let mut twins = BTreeMap::new();
+    let mut shared_twins = BTreeMap::new();
+    for (group, path) in files_in_groups(&library.join("src/kernels"), "rs") {
+        match group.as_str() {
+            SIMD => {}
+            SHARED => drop(shared_twins.insert(stem(&path), path)),
+            _ => drop(twins.insert(stem(&path), (group, path))),
+        }
+    }
+    for name in &shared {
+        if !shared_twins.contains_key(name) {
+            eprintln!("shaders/{SHARED}/{name}.wgsl has no src/kernels/{SHARED}/{name}.rs");
+            failed = true;
+        }
+    }
+    for name in shared_twins.keys() {
+        if !shared.contains(name) {
+            eprintln!("src/kernels/{SHARED}/{name}.rs has no shaders/{SHARED}/{name}.wgsl");
+            failed = true;
+        }
+    }
     for (name, shader) in &found {
         if twins.get(name).is_none_or(|(group, _)| *group != shader.group) {
             eprintln!("shaders/{}/{name}.wgsl has no src/kernels/{}/{name}.rs", shader.group, shader.group);
@@ -63,7 +93,7 @@ fn main() {
     let target = out.join("kernels.rs");
     let _ = fs::remove_file(&target);
     assert!(!failed, "the shaders and their twins must be mended first");
-    fs::write(&target, generated(&found, &twins)).expect("OUT_DIR is writable");
+    fs::write(&target, generated(&found, &twins, &shared_twins)).expect("OUT_DIR is writable");
 }
 
 /// The files `DIR/<group>/<stem>.<ext>`, in a fixed order.
@@ -84,7 +114,7 @@ fn stem(path: &Path) -> String {
     path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// The shader's text with every `#import name` replaced by `shared/name.wgsl`, each file once.
+/// The shader's text with every `#import folder/name` replaced by `folder/name.wgsl`, each file once.
 fn assemble(shaders: &Path, path: &Path) -> Result<String, String> {
     fn include(
         shaders: &Path,
@@ -99,7 +129,7 @@ fn assemble(shaders: &Path, path: &Path) -> Result<String, String> {
         let own = fs::read_to_string(path).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
         for line in own.lines() {
             if let Some(name) = line.strip_prefix("#import ") {
-                include(shaders, &shaders.join("shared").join(format!("{}.wgsl", name.trim())), done, text)?;
+                include(shaders, &shaders.join(format!("{}.wgsl", name.trim())), done, text)?;
             } else {
                 text.push_str(line);
                 text.push('\n');
@@ -168,7 +198,11 @@ fn reflect(group: &str, source: String) -> Result<Shader, String> {
     Ok(shader)
 }
 
-fn generated(found: &BTreeMap<String, Shader>, twins: &BTreeMap<String, (String, PathBuf)>) -> String {
+fn generated(
+    found: &BTreeMap<String, Shader>,
+    twins: &BTreeMap<String, (String, PathBuf)>,
+    shared: &BTreeMap<String, PathBuf>,
+) -> String {
     let mut text =
         String::from("/// WGSL text and reflected layout of every shader, by stem.\npub mod shaders {\n");
     for (name, shader) in found {
@@ -182,6 +216,11 @@ fn generated(found: &BTreeMap<String, Shader>, twins: &BTreeMap<String, (String,
              /// Fields of the uniform block and their offsets.\npub const PARAMS: &[(&str, usize)] = &{:?};\n}}\n",
             shader.group, shader.source, shader.inputs, shader.outputs, shader.params_size, shader.fields
         );
+    }
+    text.push_str("}\n");
+    let _ = writeln!(text, "/// What kernels share: the twins of `shaders/{SHARED}`.\npub mod {SHARED} {{");
+    for (name, path) in shared {
+        let _ = writeln!(text, "#[path = {path:?}]\npub mod {name};");
     }
     text.push_str("}\n");
     let mut groups: BTreeMap<&str, Vec<(&str, &Path)>> = BTreeMap::new();

@@ -2,7 +2,7 @@
 // field before smoothing (thesis § 2.7.3, 6.2). Gradients by the 3x3 operator of (2.27).
 // Cost: (8 + 2 radius)^2 / 64 gradients of nine loads each, and 4 radius + 2 multiply-adds per row and
 // column, from memory that the workgroup shares.
-#import grid
+#import gpu/grid
 
 struct Params {
     // Cut-off of the Gaussian, pixels, 0..8.

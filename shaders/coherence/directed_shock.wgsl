@@ -2,8 +2,8 @@
 // luma is least or greatest, chosen by the sign of a second derivative.
 // Cost: per step of the derivative four loads and about 25 multiply-adds, and at most four loads per step of
 // the radius.
-#import grid
-#import tensor
+#import gpu/grid
+#import shared/tensor
 
 struct Params {
     // Standard deviation of the second derivative, pixels.

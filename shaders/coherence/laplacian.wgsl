@@ -1,7 +1,7 @@
 // The Laplacian of each colour channel, by differences to the four neighbours: where it is negative lies
 // the zone of a maximum (6.3).
 // Cost: five loads.
-#import grid
+#import gpu/grid
 
 @group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;

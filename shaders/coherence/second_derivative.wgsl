@@ -1,8 +1,8 @@
 // The second derivative of each colour channel along the major eigenvector, by central differences
 // (thesis § 6.4.2): where it is negative lies the zone of a maximum.
 // Cost: ten loads.
-#import grid
-#import tensor
+#import gpu/grid
+#import shared/tensor
 
 struct Params {
     // Factor on the result.

@@ -1,7 +1,7 @@
 // One explicit step of a shock filter (6.3) by the upwind scheme of Osher and Sethian: each channel is
 // dilated where its detector is negative and eroded where it is positive.
 // Cost: six loads.
-#import grid
+#import gpu/grid
 
 struct Params {
     // Time step, at most 1/2.

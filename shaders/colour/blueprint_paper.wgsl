@@ -2,8 +2,8 @@
 // lines. All lengths and the texture's cells are those of the full-size picture, so that tiles and
 // proxies show the same sheet.
 // Cost: two loads, twelve hashes and about 100 multiply-adds.
-#import value_noise
-#import grid
+#import shared/value_noise
+#import gpu/grid
 
 struct Params {
     line: vec4f,

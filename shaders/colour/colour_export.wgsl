@@ -1,7 +1,7 @@
 // The working colour back to the host's colour.
 // Cost: one load and three powers.
-#import grid
-#import colour
+#import gpu/grid
+#import shared/colour
 
 struct Params {
     // 0 sRGB, 1 linear Rec. 709, 2 ACEScg.

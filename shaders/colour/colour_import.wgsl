@@ -1,8 +1,8 @@
 // The host's colour to the working colour: finite, not premultiplied, gamma-encoded Rec. 709.
 // Cost: one load and three powers.
-#import grid
-#import colour
-#import host_colour
+#import gpu/grid
+#import shared/colour
+#import shared/host_colour
 
 struct Params {
     // 0 sRGB, 1 linear Rec. 709, 2 ACEScg.

@@ -1,6 +1,6 @@
 // Draws lines over a picture, or over paper in its place (section 4.6); coverage stays.
 // Cost: two loads and eight multiply-adds.
-#import grid
+#import gpu/grid
 
 struct Params {
     // RGB and opacity of the lines.

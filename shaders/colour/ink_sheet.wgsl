@@ -2,8 +2,8 @@
 // Gaussians, roughened by strokes, is thresholded to lines and masses; shading is hatched or rubbed in; both
 // catch on the paper's grain. Cells of grain and hatching are those of the full-size picture.
 // Cost: three loads, 36 hashes and about 150 multiply-adds.
-#import grid
-#import value_noise
+#import gpu/grid
+#import shared/value_noise
 
 struct Params {
     // RGB and opacity of the ink; RGB of the paper.

@@ -1,7 +1,7 @@
 // CIELAB to working colour; alpha passes.
 // Cost: one load and three powers.
-#import grid
-#import colour
+#import gpu/grid
+#import shared/colour
 
 struct Params {
     // Factor on the colour axes: 0 is grey, 1 leaves the saturation alone.

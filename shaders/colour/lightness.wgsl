@@ -1,9 +1,9 @@
 // Lightness L (0..100) and coverage of a colour, as (L alpha, alpha): what the line filters work on.
 // Both are linear, so that smoothing and interpolation weight by coverage of themselves.
 // Cost: one load and four powers; one for a host's linear light, none when the source is Lab already.
-#import grid
-#import colour
-#import host_colour
+#import gpu/grid
+#import shared/colour
+#import shared/host_colour
 
 struct Params {
     // 0 working colour, 1 Lab, 2 the host's colour.

@@ -1,6 +1,6 @@
 // Magnitude of the gradient of the luma by the Sobel operator (2.23), in the first channel.
 // Cost: nine loads.
-#import grid
+#import gpu/grid
 
 struct Params {
     // Weights across the derivative: at the centre and beside it; they sum to 1.

@@ -1,6 +1,6 @@
 // Blend of two pictures, by coverage.
 // Cost: two loads and eight multiply-adds.
-#import grid
+#import gpu/grid
 
 struct Params {
     amount: f32,

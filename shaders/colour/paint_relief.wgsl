@@ -1,6 +1,6 @@
 // Bristle marks and shine of paint on a Lab image, from a field of heights that follows the strokes.
 // Cost: six loads and 25 multiply-adds.
-#import grid
+#import gpu/grid
 
 struct Params {
     // Direction from where the light comes, times the strength of the shine per unit of slope.

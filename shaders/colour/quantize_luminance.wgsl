@@ -1,6 +1,6 @@
 // Soft quantization of the lightness of a Lab image (section 4.6): bins continue below 0 and above 100.
 // Cost: one to five loads, a tanh and a square root.
-#import grid
+#import gpu/grid
 
 struct Params {
     // Width of a bin, units of L, and its reciprocal.

@@ -1,7 +1,7 @@
 // Working colour to CIELAB; alpha passes.
 // Cost: one load and six powers.
-#import grid
-#import colour
+#import gpu/grid
+#import shared/colour
 
 struct Params {
     // Share of the perceptual colour axes that is kept; 1 for CIELAB as it is.

@@ -1,7 +1,7 @@
 // Raises or lowers the dark and the light tones of a Lab image; black, white and what lies beyond
 // them stay.
 // Cost: one load and ten multiply-adds.
-#import grid
+#import gpu/grid
 
 struct Params {
     // Signed, -1..1: how far dark and light tones are raised.

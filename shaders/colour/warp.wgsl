@@ -1,6 +1,6 @@
 // Moves every pixel's sample against the gradient of a field, the first channel of an image.
 // Cost: four loads of the field and four of the colour.
-#import coverage
+#import shared/coverage
 
 struct Params {
     // Pixels moved per unit of the gradient.

@@ -2,8 +2,8 @@
 // of the paper (Bousseau et al. 2006). Clouds and grain belong to the full-size picture, so that tiles
 // and proxies show the same paper.
 // Cost: two loads, 16 hashes and about 150 multiply-adds.
-#import value_noise
-#import grid
+#import shared/value_noise
+#import gpu/grid
 
 struct Params {
     // Pixels of the full-size picture per pixel.

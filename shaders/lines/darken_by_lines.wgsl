@@ -1,7 +1,7 @@
 // Lightness times edge image: the input of the next iteration of the flow-based difference of
 // Gaussians, whose lines thus grow coherent.
 // Cost: two loads and a multiplication.
-#import grid
+#import gpu/grid
 
 struct Params {
     // Share of the edge image that is multiplied in.

@@ -1,8 +1,8 @@
 // Columns of two Gaussians at once, their difference and its threshold: the second half of the
 // isotropic extended difference of Gaussians (4.7-4.10).
 // Cost: one multiply-add on vec4 per tap, 2 radius reads of workgroup memory, radius / 4 + 3 loads.
-#import window
-#import edge_threshold
+#import gpu/window
+#import shared/edge_threshold
 
 struct Params {
     radius: i32,

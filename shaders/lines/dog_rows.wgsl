@@ -2,7 +2,7 @@
 // difference of Gaussians (4.5, 4.7).
 // Cost: two multiply-adds on vec2 per tap, 2 radius reads of workgroup memory,
 // radius / 4 + 3 loads.
-#import window
+#import gpu/window
 
 struct Params {
     // Taps on each side of the centre.

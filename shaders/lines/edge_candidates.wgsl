@@ -2,7 +2,7 @@
 // gradient, or zero crossings of the Laplacian; 0 is none, 1 a weak and 2 a strong candidate. Or, without
 // any thinning, the thresholded magnitude as an edge image.
 // Cost: up to nine loads and about 40 operations.
-#import grid
+#import gpu/grid
 
 struct Params {
     // 0: maxima of the gradient; 1: zero crossings of the Laplacian; 2: the magnitude itself.

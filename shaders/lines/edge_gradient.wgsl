@@ -2,7 +2,7 @@
 // gradient's magnitude as the height of the step that would have it, and the Laplacian.
 // Where a neighbour is transparent it counts as the pixel itself.
 // Cost: nine loads and about 40 operations.
-#import grid
+#import gpu/grid
 
 struct Params {
     // Weights across the derivative: of the pixel's own row or column, and of the two beside it.

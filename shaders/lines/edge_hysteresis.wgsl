@@ -3,7 +3,7 @@
 //
 // A workgroup holds 32 x 32 pixels as one word a row: a step of all its chains is a few operations on words.
 // Cost: 16 loads and 3 operations per step and invocation.
-#import grid
+#import gpu/grid
 
 struct Params {
     // Length of the chains, pixels; at most 12.

@@ -2,8 +2,8 @@
 // Leedom: response and field are constant on pixels, and the Gaussian is integrated exactly (2.193).
 // Cost: per segment one load of the response and one of the field with its tangent, two divisions and
 // the error function; up to 1.5 segments a pixel of length.
-#import pixel_line
-#import edge_threshold
+#import shared/pixel_line
+#import shared/edge_threshold
 
 struct Params {
     // Standard deviation along the line, pixels.

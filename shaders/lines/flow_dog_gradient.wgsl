@@ -4,9 +4,9 @@
 // Steps have length 1 along the axis nearer to the gradient, so a sample lies between two pixels of
 // one row or column, and two loads interpolate it exactly as a bilinear sample would.
 // Cost: 4 loads and two exponentials per step, about 3 k sigma_e steps.
-#import grid
-#import tensor
-#import edge_threshold
+#import gpu/grid
+#import shared/tensor
+#import shared/edge_threshold
 
 struct Params {
     // -1 / (2 sigma^2) of the narrower and of the wider Gaussian.

@@ -2,8 +2,8 @@
 // the stream line of the tensor field, then the threshold (section 4.5, 4.8).
 // Cost: per step one bilinear sample of the response and one (Euler, two-step) or two tensor
 // samples.
-#import stream
-#import edge_threshold
+#import shared/stream
+#import shared/edge_threshold
 
 struct Params {
     // Standard deviation along the line, pixels.

@@ -3,9 +3,9 @@
 // across it, and a Gaussian along the line adds them up.
 // Cost: the steps of the second pass times the samples of the first: about 4 sigma_m times 6 k sigma_e
 // bilinear samples.
-#import stream
-#import pixel_line
-#import edge_threshold
+#import shared/stream
+#import shared/pixel_line
+#import shared/edge_threshold
 
 struct Params {
     // -1 / (2 sigma^2) of the narrower and of the wider Gaussian across the line.

@@ -7,8 +7,8 @@
 // normal: 1 - cos of the angle. depth: 1/z is linear in x and y over any plane, so |z0/z+ + z0/z- - 2|
 // is 0 on planes however slanted, and has no scale. object id: different or not.
 // Cost: up to 3 loads and two exponentials per step, 12 sigma_e steps.
-#import grid
-#import tensor
+#import gpu/grid
+#import shared/tensor
 
 struct Params {
     // -1 / (2 sigma^2) of the narrower and of the wider Gaussian.

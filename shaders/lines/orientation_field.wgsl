@@ -1,7 +1,7 @@
 // What orientation needs of a tensor, (E - G, F): both are linear, so that interpolation commutes, and
 // stream lines load half as much. Read as a tensor whose G is 0 it has the same eigenvectors.
 // Cost: one load.
-#import grid
+#import gpu/grid
 
 struct Params {
     // Factor on both; eigenvectors have none.

@@ -7,9 +7,9 @@
 //
 // Cost: pi radius^2 pixels, each one read of workgroup memory and half of about 110 operations; about a
 // quarter of (1 + elongation)^2 radius^2 loads up to an elongation of 2, beyond it one per pixel.
-#import window
-#import sectors
-#import tensor
+#import gpu/window
+#import shared/sectors
+#import shared/tensor
 
 struct Params {
     // Radius of the disc that the ellipse is made of, pixels.

@@ -3,9 +3,9 @@
 // Cost: pi radius^2 pixels, each one read of workgroup memory and half of eight table lookups and 80
 // multiply-adds; about a quarter of (1 + elongation)^2 radius^2 loads up to an elongation of 2, beyond it one
 // per pixel.
-#import window
-#import sampled_sectors
-#import tensor
+#import gpu/window
+#import shared/sampled_sectors
+#import shared/tensor
 
 struct Params {
     // Radius of the disc that the ellipse is made of, pixels.

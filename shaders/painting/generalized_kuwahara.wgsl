@@ -4,8 +4,8 @@
 //
 // Cost: pi radius^2 pixels, each one read of workgroup memory and half of eight table lookups and 80
 // multiply-adds; about a quarter of radius^2 loads.
-#import window
-#import sampled_sectors
+#import gpu/window
+#import shared/sampled_sectors
 
 struct Params {
     // 1 / radius, per pixel.

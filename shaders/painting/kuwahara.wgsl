@@ -1,7 +1,7 @@
 // The Kuwahara filter (thesis § 5.2) from sums over the rows of its subregions: the mean of the
 // subregion with the least variance.
 // Cost: 6 count reads of workgroup memory and 20 multiply-adds each, 3 count / 4 + 6 loads.
-#import window
+#import gpu/window
 
 struct Params {
     // Offset of the first weight from the pixel, towards the side.

@@ -1,7 +1,7 @@
 // The rows of the Kuwahara filter's four subregions (thesis § 5.2): weighted sums to the left and to the
 // right of every pixel.
 // Cost: 2 count reads of workgroup memory and 10 multiply-adds each, count / 4 + 2 loads.
-#import window
+#import gpu/window
 
 struct Params {
     // Offset of the first weight from the pixel, towards the side.

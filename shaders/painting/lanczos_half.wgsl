@@ -5,7 +5,7 @@
 // pixels below takes over.
 //
 // Cost: 11 loads, 144 reads of workgroup memory and 600 operations per pixel of the coarser level.
-#import group
+#import gpu/group
 
 struct Params {
     // Weights at distances 1/2, 3/2, ... 11/2 pixels.

@@ -1,8 +1,8 @@
 // Merges a level of the multi-scale Kuwahara filter with the result of the coarser one (thesis § 5.5.2):
 // what varied much there stays as it is, the rest takes the coarser result, interpolated.
 // Cost: 9 loads and 60 operations.
-#import sampling
-#import coverage
+#import shared/sampling
+#import shared/coverage
 
 struct Params {
     // p_s p_d^k at this level.

@@ -1,8 +1,8 @@
 // Merges the smoothed structure tensors of a level of the multi-scale Kuwahara filter with those of the
 // coarser one, interpolated, each weighted by its anisotropy (thesis § 5.5.2).
 // Cost: 5 loads, two anisotropies and 30 operations.
-#import sampling
-#import tensor
+#import shared/sampling
+#import shared/tensor
 
 struct Params {
     // Least anisotropy that counts.

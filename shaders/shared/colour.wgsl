@@ -1,5 +1,5 @@
 // Colour encodings, extended to values below 0 and above 1 so that they stay monotonic and
-// invertible: scene-linear highlights survive a round trip. Twin of kernels/colour_space.rs.
+// invertible: scene-linear highlights survive a round trip. Twin of kernels/shared/colour.rs.
 
 const EPSILON_LAB: f32 = 0.008856452; // (6/29)^3
 const SLOPE_LAB: f32 = 7.787037; // (29/6)^2 / 3

@@ -1,6 +1,7 @@
-#import sampling
+#import shared/sampling
 
 // Colours that are to be mixed count by their coverage, so that transparent pixels lend no colour.
+// Twin of kernels/shared/coverage.rs.
 
 // The pixel at absolute position p of input `slot`, its colour multiplied by its alpha.
 fn fetch_covered(image: texture_2d<f32>, slot: u32, p: vec2i) -> vec4f {

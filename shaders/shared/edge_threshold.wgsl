@@ -1,5 +1,5 @@
 // From the response of a difference of Gaussians to an edge image: 1 is paper, 0 is line.
-// Twin of kernels/edge_threshold.rs.
+// Twin of kernels/shared/edge_threshold.rs.
 
 // Kinds: 0 the response itself; 1 binary (4.6); 2 tanh (4.8); 3 smoothstep.
 fn edge_threshold(u: f32, kind: u32, epsilon: f32, phi: f32) -> f32 {

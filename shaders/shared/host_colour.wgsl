@@ -1,5 +1,5 @@
-// The host's pixels in its own space, finite and not premultiplied. Twin of plain() in
-// kernels/colour/colour_import.rs.
+// The host's pixels in its own space, finite and not premultiplied. Twin of
+// kernels/shared/host_colour.rs.
 fn plain(pixel: vec4f, premultiplied: bool) -> vec4f {
     var v = pixel;
     // Compared by bits: shader compilers may assume that NaN does not exist.

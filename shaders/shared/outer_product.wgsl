@@ -1,7 +1,7 @@
-#import tensor
+#import shared/tensor
 
 // The structure tensor of one pixel's gradient and its validity (2.34, 2.133, 2.164).
-// Twin of `outer` in kernels/structure/gradient_tensor.rs.
+// Twin of kernels/shared/outer_product.rs.
 //
 // c is the centre's colour times coverage and its coverage; gx and gy are derivatives of such values.
 // `flags`: bit 0, the gradient of the luma alone; bit 1, divide each channel's tensor by its

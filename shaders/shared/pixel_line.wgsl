@@ -1,8 +1,8 @@
-#import grid
-#import tensor
+#import gpu/grid
+#import shared/tensor
 
 // Stream lines after Cabral and Leedom (thesis § 2.9.4): straight through each pixel, along the minor
-// eigenvector of the pixel's own tensor, to the pixel's boundary. Twin of kernels/pixel_line.rs.
+// eigenvector of the pixel's own tensor, to the pixel's boundary. Twin of kernels/shared/pixel_line.rs.
 //
 // The pixel is kept apart from the position, in whole numbers: positions lie on boundaries exactly, and
 // the small correction of (2.191), which is to bring them inside, is not needed. Where the tensor behind a

@@ -1,7 +1,8 @@
-#import sectors
+#import shared/sectors
 
 // Sectors whose weighting functions are sampled (thesis § 5.3, 5.4.2), for shaders whose parameters hold
 // `weights`: h_0 and its quarter turns at 43 x 22 nodes over the half y >= 0 of the disc's bounding square.
+// Twin of kernels/shared/sampled_sectors.rs.
 //
 // The four weights a quarter turn apart are one texel; those between them lie at positions turned by 45
 // degrees. Two pixels opposite each other share one evaluation of the weights, whose order is turned by

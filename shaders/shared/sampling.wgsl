@@ -1,11 +1,11 @@
-#import grid
+#import gpu/grid
 
-// Bilinear sampling by hand.
+// Bilinear sampling by hand. Twin of kernels/shared/sampling.rs.
 //
 // Samplers are not used because their weights have eight bits of fraction on common hardware, too
 // few for stream lines that add up many small steps; because filtering 32-bit floats is an optional
 // feature of a device; and because the CPU twin must get the same numbers: the formula and the order
-// of its operations are those of `sample_linear4` in nodes/engine/src/math.rs.
+// of its operations are those of `sample_linear4` there.
 
 // Input `slot` at absolute position p, pixel centres at +0.5, clamped to the picture's edge.
 fn sample_linear(image: texture_2d<f32>, slot: u32, p: vec2f) -> vec4f {

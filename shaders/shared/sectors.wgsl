@@ -1,5 +1,5 @@
 // The mean of the sectors of a disc, weighted by their variance (5.14, 5.15), for the generalized and
-// the anisotropic Kuwahara filters. Twin of kernels/sectors.rs.
+// the anisotropic Kuwahara filters. Twin of kernels/shared/sectors.rs.
 //
 // Sectors are handled four to a vector. Colours count by their coverage and are taken relative to the
 // centre's, so that the variance of nearly equal values does not cancel.

@@ -1,8 +1,8 @@
-#import sampling
-#import tensor
+#import shared/sampling
+#import shared/tensor
 
 // Stream lines of the minor eigenvectors of a tensor field (thesis § 2.9, Listing 2.6).
-// Twin of kernels/stream_line.rs.
+// Twin of kernels/shared/stream.rs.
 //
 // Tensors are interpolated, never eigenvectors: those are defined up to sign, and opposite ones would
 // cancel. A line is traced from its centre in one direction and then in the other:

@@ -1,5 +1,5 @@
 // Algebra of symmetric positive semidefinite 2x2 tensors (E, F, G, w); w takes no part.
-// Twin of kernels/tensor_algebra.rs, operation by operation.
+// Twin of kernels/shared/tensor.rs, operation by operation.
 //
 // The eigenanalysis is that of Listing 2.1. Its squares would underflow for weak gradients and
 // overflow for strong ones, so values are first multiplied by a power of two, which is exact.

@@ -1,4 +1,4 @@
-// Smooth noise from hashed cells: the texture of papers and paint. Twin of kernels/value_noise.rs.
+// Smooth noise from hashed cells: the texture of papers and paint. Twin of kernels/shared/value_noise.rs.
 
 // A number in 0..1 that belongs to a cell.
 fn value_hash(x: u32, y: u32) -> f32 {

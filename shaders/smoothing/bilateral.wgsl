@@ -3,7 +3,7 @@
 // Cost: one read of workgroup memory and one exponential per pixel of the window, a disc of about
 // 3.1 radius^2 or a line of 2 radius + 1 pixels; radius^2 / 16 + radius / 2 + 1 loads and, where windows
 // go in parts, about as many again.
-#import window
+#import gpu/window
 
 struct Params {
     // Pixels on each side of the centre, along x and along y; the larger one is the window's radius.

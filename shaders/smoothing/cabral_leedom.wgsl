@@ -2,7 +2,7 @@
 // (§ 2.9.4): image and field are constant on pixels, and the Gaussian is integrated exactly (2.193).
 // Cost: per segment one colour and one tensor load with its tangent, two divisions and the error
 // function; up to 1.5 segments a pixel of length.
-#import pixel_line
+#import shared/pixel_line
 
 struct Params {
     // Standard deviation along the line, pixels.

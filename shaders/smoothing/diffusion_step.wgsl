@@ -1,6 +1,6 @@
 // One explicit step of tensor-driven diffusion (§ 3.1) towards the eight neighbours.
 // Cost: 5 loads, 18 reads of workgroup memory and about 60 multiply-adds.
-#import group
+#import gpu/group
 
 struct Params {
     time_step: f32,

@@ -1,8 +1,8 @@
 // The diffusion tensor of edge-enhancing or coherence-enhancing diffusion (§ 3.1) from a smoothed
 // structure tensor, as the weights of the step that follows.
 // Cost: one load, one eigenanalysis, one exponential.
-#import tensor
-#import grid
+#import shared/tensor
+#import gpu/grid
 
 struct Params {
     // 1 / lambda^2 (edge-enhancing) or 1 / contrast^2 (coherence-enhancing).

@@ -1,7 +1,7 @@
 // The greatest or least value of each channel within a disc: dilation or erosion (§ 5.1).
 // Cost: one read of workgroup memory and one comparison per pixel of the disc, about 3.1 (radius + 1/2)^2;
 // radius^2 / 16 + radius / 2 + 1 loads and, where discs go in parts, about as many again.
-#import window
+#import gpu/window
 
 struct Params {
     // Rows on each side of the centre.

@@ -2,8 +2,8 @@
 // a tensor field, sampled at equal distances or where lines cross pixel centres (Listings 3.2, 3.3).
 // Cost: per step one bilinear colour sample with one or four exponentials, and one (Euler) or two
 // tensor samples with their tangents.
-#import coverage
-#import stream
+#import shared/coverage
+#import shared/stream
 
 struct Params {
     // Standard deviation along the line, pixels.

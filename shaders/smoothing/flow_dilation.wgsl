@@ -1,8 +1,8 @@
 // The colour at the place of the greatest noise along the stream line of a tensor field (§ 5.1): glass
 // patterns of a picture.
 // Cost: per step one bilinear sample of the noise and two tensor samples with their tangents.
-#import coverage
-#import stream
+#import shared/coverage
+#import shared/stream
 
 struct Params {
     // Arc length of each side of the line where the orientation is certain, pixels.

@@ -1,7 +1,7 @@
 // One axis of a separable Gaussian on four channels (2.21).
 // Cost: radius + 1 multiply-adds on vec4, 2 radius reads of workgroup memory, radius / 4 + 3 loads.
-#import coverage
-#import window
+#import shared/coverage
+#import gpu/window
 
 struct Params {
     // (1, 0) for rows, (0, 1) for columns.

@@ -2,8 +2,8 @@
 // field, with the length adapted to the anisotropy (§ 6.3.1) or to the curvature (§ 6.3.2).
 // Cost: per step one bilinear colour sample and one (Euler, two-step) or two tensor samples with their
 // tangents.
-#import coverage
-#import stream
+#import shared/coverage
+#import shared/stream
 
 struct Params {
     // Standard deviation along the line, pixels.

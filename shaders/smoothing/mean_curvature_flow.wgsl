@@ -1,8 +1,8 @@
 // One step of mean curvature flow (6.1), by harmonic averaging, or of its constrained variant (6.2).
 // Cost: 4 loads, 30 reads of workgroup memory, four divisions and about 120 multiply-adds; the constraint
 // takes 30 more.
-#import tensor
-#import window
+#import shared/tensor
+#import gpu/window
 
 struct Params {
     time_step: f32,

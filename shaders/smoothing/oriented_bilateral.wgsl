@@ -1,8 +1,8 @@
 // One pass of the orientation-aligned bilateral filter (Listing 3.1), along the gradient or along the
 // tangent; the range is measured as Euclidean distance of the three colour channels.
 // Cost: about 2 cutoff taps of two loads, one interpolation and one or two exponentials.
-#import coverage
-#import tensor
+#import shared/coverage
+#import shared/tensor
 
 struct Params {
     // Standard deviation along the line, pixels.

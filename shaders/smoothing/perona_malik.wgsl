@@ -1,6 +1,6 @@
 // One explicit step of Perona and Malik's diffusion (3.3) towards the four neighbours.
 // Cost: five loads, four diffusivities and about 60 multiply-adds.
-#import grid
+#import gpu/grid
 
 struct Params {
     time_step: f32,

@@ -1,8 +1,8 @@
 // Moves every pixel a little, by smooth noise, so that outlines waver as a hand's do. The noise belongs
 // to the full-size picture.
 // Cost: 16 hashes, one bilinear sample and about 150 multiply-adds.
-#import value_noise
-#import coverage
+#import shared/value_noise
+#import shared/coverage
 
 struct Params {
     // Pixels of the full-size picture per pixel.

@@ -1,5 +1,5 @@
 // A colour at half the resolution: the mean of four pixels by their coverage. Cost: 4 loads.
-#import coverage
+#import shared/coverage
 
 struct Params {
     // Coverage below this is none.

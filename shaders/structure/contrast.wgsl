@@ -1,5 +1,5 @@
 // Stretches contrast about middle grey and clamps to 0..1. Cost: one load, one multiply-add.
-#import grid
+#import gpu/grid
 
 struct Params {
     gain: f32,

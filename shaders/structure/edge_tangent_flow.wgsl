@@ -3,8 +3,8 @@
 // centre's vector.
 // Cost: up to (2 reach + 1)^2 reads of workgroup memory and 12 operations each; reach^2 / 16 + reach / 2 + 1
 // loads and, where windows go in parts, about as many again.
-#import window
-#import tensor
+#import gpu/window
+#import shared/tensor
 
 struct Params {
     // Largest distance in x and in y, pixels.

@@ -1,5 +1,5 @@
 // One level of a pyramid of maxima up. Cost: 4 loads.
-#import grid
+#import gpu/grid
 
 struct Params {
     // The channel to look at.

@@ -1,7 +1,7 @@
 // The start of the edge tangent flow: the tensor of a pixel's gradient as one of length 1, and the
 // gradient's magnitude (2.5). Cost: one load and about 20 operations.
-#import grid
-#import tensor
+#import gpu/grid
+#import shared/tensor
 
 struct Params {
     // A magnitude below this is no gradient.

@@ -1,7 +1,7 @@
 // Adds the gradient of a normal, depth or object image to a tensor, as further channels of the
 // multi-image gradient (2.34). Cost: 10 loads and about 60 operations.
-#import grid
-#import tensor
+#import gpu/grid
+#import shared/tensor
 
 struct Params {
     // 0 normal, 1 depth, 2 object id.

@@ -1,6 +1,6 @@
 // One Jacobi step of Laplace's equation on tensors: those that are not valid become the mean of
 // their four neighbours (2.171, Listing 2.3). Cost: up to 5 loads.
-#import grid
+#import gpu/grid
 
 struct Params {
     // A tensor is valid from this w on.

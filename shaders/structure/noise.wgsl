@@ -1,7 +1,7 @@
 // White noise by a hash of each grain's place in the full-size picture, grey and opaque: the mean of the
 // grains that a pixel covers.
 // Cost: about 15 integer operations a grain.
-#import grid
+#import gpu/grid
 
 struct Params {
     // Grains per pixel, each way.

@@ -2,8 +2,8 @@
 // (2.4.6). Columns are summed once and held in workgroup memory for all pixels whose windows they are in.
 // Cost: 2/3 + radius / 4 columns of 2 radius + 1 loads and as many multiply-adds on two vec4; as many again
 // along the row.
-#import group
-#import outer_product
+#import gpu/group
+#import shared/outer_product
 
 struct Params {
     radius: i32,

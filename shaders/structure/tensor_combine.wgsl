@@ -1,8 +1,8 @@
 // A smoothed tensor and that of the next coarser level, upsampled, weighted by their anisotropies
 // (2.172, 2.173). Cost: 5 loads and about 50 operations.
-#import grid
-#import sampling
-#import tensor
+#import gpu/grid
+#import shared/sampling
+#import shared/tensor
 
 struct Params {
     // Where both anisotropies together are not above this, the finer tensor stays.

@@ -1,7 +1,7 @@
 // A tensor field as a colour: orientation on the circle of double angles, or a measure as grey.
 // Cost: one load and about 30 operations.
-#import grid
-#import tensor
+#import gpu/grid
+#import shared/tensor
 
 struct Params {
     // 0 orientation; 1, 2, 3 anisotropy, of roots, squared; 4 magnitude; 5 Harris, 6 Foerstner,

@@ -1,7 +1,7 @@
 // One level of the pyramid down: tensors that are not valid take the coarser level's, bilinearly
 // (Listing 2.5). Cost: up to 5 loads.
-#import grid
-#import sampling
+#import gpu/grid
+#import shared/sampling
 
 struct Params {
     // A tensor is valid from this w on.

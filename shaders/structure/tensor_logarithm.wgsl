@@ -1,7 +1,7 @@
 // The logarithm of a tensor, or back: its eigenvalues' at the same eigenvectors.
 // Cost: one eigenanalysis and two logarithms or powers.
-#import grid
-#import tensor
+#import gpu/grid
+#import shared/tensor
 
 struct Params {
     // 0: the logarithm; 1: back.

@@ -1,6 +1,6 @@
 // One level of the pyramid of valid tensors up: the mean of the valid among four (Listing 2.4).
 // Cost: 4 loads.
-#import grid
+#import gpu/grid
 
 struct Params {
     // A tensor is valid from this w on; below 0 all are.

@@ -2,7 +2,7 @@
 
 use crate::pictures::from_fn;
 use crate::random::Random;
-use isophote::kernels::tensor_algebra::scalar;
+use isophote::kernels::shared::tensor::scalar;
 use isophote_engine::Image;
 
 /// Radius of a plate, where its frequency is 0.9 of Nyquist's, or 0 for the inverted one.

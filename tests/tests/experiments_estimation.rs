@@ -1,8 +1,8 @@
 //! Experiments on how the structure tensor is sampled, stored and propagated over scales: Figures 2.17
 //! (oversampling), 2.18 (8-bit storage) and 2.29 (multi-scale estimation).
 
+use isophote::kernels::shared::tensor::scalar;
 use isophote::kernels::smoothing::gaussian_blur;
-use isophote::kernels::tensor_algebra::scalar;
 use isophote_engine::{Class, Image, PlanBuilder};
 use isophote_tests::pictures::from_fn;
 use isophote_tests::random::Random;

@@ -1,7 +1,8 @@
 //! Experiments on the Kuwahara filters: the two ways to the sums of the generalized filter, the weighting
 //! functions of both kinds (Figs. 5.22, 5.27), and restoration of a noisy picture (Fig. 5.31).
 
-use isophote::kernels::sectors::{self, Polynomial};
+use isophote::kernels::shared::sampled_sectors;
+use isophote::kernels::shared::sectors::Polynomial;
 use isophote_engine::Image;
 use isophote_engine::fearless_simd::{Level, dispatch, prelude::*};
 use isophote_tests::compare::{distance, psnr};
@@ -49,8 +50,8 @@ fn polynomial_weights(p: Polynomial, n: u32, [x, y]: [f64; 2]) -> Vec<f64> {
 
 /// Sampled weights of four sectors a quarter turn apart.
 fn four(n: u32, [x, y]: [f64; 2]) -> [f32; 4] {
-    let table = sectors::table(n);
-    dispatch!(Level::new(), simd => sectors::sample(simd, table, x as f32, y as f32).to_array())
+    let table = sampled_sectors::table(n);
+    dispatch!(Level::new(), simd => sampled_sectors::sample(simd, table, x as f32, y as f32).to_array())
 }
 
 /// Points of the unit disc.

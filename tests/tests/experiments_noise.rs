@@ -1,9 +1,9 @@
 //! Experiments on the anisotropy of noise, § 2.6.3: distribution 2.152, significance 2.154, and the
 //! number of samples that a Gaussian window is worth (Figure 2.23).
 
+use isophote::kernels::shared::tensor::scalar;
 use isophote::kernels::smoothing::gaussian_blur;
 use isophote::kernels::structure::tensor_display::least_significant;
-use isophote::kernels::tensor_algebra::scalar;
 use isophote_engine::{Class, Image, PlanBuilder};
 use isophote_tests::pictures::from_fn;
 use isophote_tests::random::Random;

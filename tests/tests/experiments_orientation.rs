@@ -1,7 +1,7 @@
 //! Experiments on derivative operators, edge tangent flow and the eigen solver: Figures 2.7 (angular
 //! error and rotation invariance on zone plates), 2.15 and 2.20, and § 2.3.4.
 
-use isophote::kernels::tensor_algebra::{self, scalar};
+use isophote::kernels::shared::tensor::{self, scalar};
 use isophote_engine::Image;
 use isophote_engine::fearless_simd::{Level, Simd, dispatch, f32x8, prelude::*};
 use isophote_tests::random::Random;
@@ -138,7 +138,7 @@ fn on_lanes([e, f, g]: [f32; 3]) -> (f32, f32, [f32; 2]) {
     #[inline(always)]
     fn lanes<S: Simd>(simd: S, [e, f, g]: [f32; 3]) -> (f32, f32, [f32; 2]) {
         let c = |v: f32| f32x8::splat(simd, v);
-        let eigen = tensor_algebra::eigen(c(e), c(f), c(g));
+        let eigen = tensor::eigen(c(e), c(f), c(g));
         (eigen.lambda1[5], eigen.lambda2[5], [eigen.major[0][5], eigen.major[1][5]])
     }
     dispatch!(Level::new(), simd => lanes(simd, [e, f, g]))

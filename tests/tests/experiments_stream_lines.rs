@@ -1,9 +1,9 @@
 //! Experiments on stream lines: their drift on a circular field (Figure 2.31), and the Gaussian along them
 //! on images that are constant on pixels (2.193).
 
+use isophote::kernels::shared::stream::Integrator;
 use isophote::kernels::smoothing::cabral_leedom;
 use isophote::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
-use isophote::kernels::stream_line::Integrator;
 use isophote_engine::{Class, Image, PlanBuilder};
 use isophote_tests::compare::psnr;
 use isophote_tests::pictures::{self, Kind, from_fn};

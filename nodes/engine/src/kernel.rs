@@ -5,7 +5,7 @@
 use crate::image::{Rect, View};
 use fearless_simd::Level;
 
-/// Most images that one pass may read; the size of `Grid.inputs` in `shaders/shared/grid.wgsl`.
+/// Most images that one pass may read; the size of `Grid.inputs` in `shaders/gpu/grid.wgsl`.
 pub const MAX_INPUTS: usize = 6;
 
 /// Side of the square workgroups of every kernel.

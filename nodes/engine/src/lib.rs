@@ -14,7 +14,6 @@ pub mod math;
 pub mod pixels;
 pub mod plan;
 pub mod program;
-mod sampling;
 mod strips;
 
 pub use error::{Error, Result};

@@ -4,7 +4,6 @@
 //! which is what makes tiles equal full frames. Polynomials are those of the Cephes library or of
 //! least greatest error, their relative error below 3e-7 over the stated ranges.
 
-pub use crate::sampling::*;
 #[cfg(target_arch = "x86_64")]
 use fearless_simd::Avx2;
 use fearless_simd::{Level, Simd, f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, prelude::*};

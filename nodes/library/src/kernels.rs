@@ -4,27 +4,12 @@
 //! `kernels/<group>/<kernel>.rs`. The build script finds both, validates the shader and lists the
 //! kernel in [`KERNELS`]; no other file needs to change. The Rust file holds the uniform block
 //! ([`params!`](crate::params)), the twin and `pub static KERNEL` ([`kernel!`](crate::kernel)).
+//!
+//! What kernels share stands in [`shared`], under the stems of `shaders/shared`. How the CPU reads and
+//! writes pixels is in [`simd`], how the GPU does in `shaders/gpu`; those two have no counterparts. What
+//! has a single user lies in a folder of its user's name.
 
-pub mod block_convolution;
-pub mod blocks;
-pub mod colour_lines;
-pub mod colour_space;
-pub mod coverage;
-pub mod edge_threshold;
-pub mod flow_log;
-pub mod luma_lines;
-pub mod neighbours;
-pub mod pixel_line;
-pub mod planes;
-pub mod pyramid;
-pub mod rows;
-pub mod sectors;
-pub mod stream_line;
-pub mod support;
-pub mod surroundings;
-pub mod symmetric;
-pub mod tensor_algebra;
-pub mod value_noise;
+pub mod simd;
 
 include!(concat!(env!("OUT_DIR"), "/kernels.rs"));
 
@@ -38,7 +23,7 @@ macro_rules! params {
         #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
         pub struct Params { $($(#[$doc])* pub $field: $type,)* }
 
-        const _: () = $crate::kernels::support::assert_layout(
+        const _: () = $crate::kernels::assert_layout(
             &[$((stringify!($field), std::mem::offset_of!(Params, $field)),)*],
             size_of::<Params>(),
             $crate::kernels::shaders::$kernel::PARAMS,
@@ -64,4 +49,22 @@ macro_rules! kernel {
             tolerance: $tolerance,
         };
     };
+}
+
+/// Fails the build when a uniform block differs from the struct of its shader.
+pub const fn assert_layout(rust: &[(&str, usize)], size: usize, wgsl: &[(&str, usize)], wgsl_size: usize) {
+    assert!(size == wgsl_size, "the uniform block has another size than the struct in the shader");
+    assert!(rust.len() == wgsl.len(), "the uniform block has another number of fields than the shader's");
+    let mut i = 0;
+    while i < rust.len() {
+        assert!(rust[i].1 == wgsl[i].1, "a field of the uniform block lies at another offset in the shader");
+        let (a, b) = (rust[i].0.as_bytes(), wgsl[i].0.as_bytes());
+        assert!(a.len() == b.len(), "a field of the uniform block has another name in the shader");
+        let mut k = 0;
+        while k < a.len() {
+            assert!(a[k] == b[k], "a field of the uniform block has another name in the shader");
+            k += 1;
+        }
+        i += 1;
+    }
 }

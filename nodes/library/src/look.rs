@@ -5,7 +5,7 @@
 //! defaults give exactly the thesis' values and whoever sets a technical value gets that value. Every
 //! mapping is monotone.
 
-use crate::kernels::edge_threshold::{Threshold, Xdog};
+use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::spec::{Param, Scope};
 
 /// Heading of the controls for artists.

@@ -17,7 +17,7 @@ pub struct BoxParams {
 pub static BOX: Kernel = Kernel {
     name: "box",
     shader: concat!(
-        include_str!("../../../../shaders/shared/grid.wgsl"),
+        include_str!("../../../../shaders/gpu/grid.wgsl"),
         "
         struct Params { radius: i32, gain: f32 }
         @group(0) @binding(1) var<uniform> params: Params;
@@ -67,7 +67,7 @@ fn box_cpu(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 pub static SPLIT: Kernel = Kernel {
     name: "split",
     shader: concat!(
-        include_str!("../../../../shaders/shared/grid.wgsl"),
+        include_str!("../../../../shaders/gpu/grid.wgsl"),
         "
         @group(0) @binding(2) var source: texture_2d<f32>;
         @group(0) @binding(3) var brightness: texture_storage_2d<r32float, write>;
@@ -111,7 +111,7 @@ pub struct JoinParams {
 pub static JOIN: Kernel = Kernel {
     name: "join",
     shader: concat!(
-        include_str!("../../../../shaders/shared/grid.wgsl"),
+        include_str!("../../../../shaders/gpu/grid.wgsl"),
         "
         struct Params { scale: f32 }
         @group(0) @binding(1) var<uniform> params: Params;
@@ -159,7 +159,7 @@ pub struct ShiftParams {
 /// A bilinear sample at another place, or at another pyramid level.
 pub static SHIFT: LazyLock<Kernel> = LazyLock::new(|| {
     let shared = [
-        include_str!("../../../../shaders/shared/grid.wgsl"),
+        include_str!("../../../../shaders/gpu/grid.wgsl"),
         include_str!("../../../../shaders/shared/sampling.wgsl"),
     ];
     let shader = format!(
@@ -174,7 +174,7 @@ pub static SHIFT: LazyLock<Kernel> = LazyLock::new(|| {
             textureStore(result, id.xy, sample_linear(source, 0, centre(id) * params.scale + params.by));
         }}",
         shared[0],
-        shared[1].replace("#import grid", "")
+        shared[1].replace("#import gpu/grid", "")
     );
     Kernel {
         name: "shift",
@@ -189,24 +189,23 @@ pub static SHIFT: LazyLock<Kernel> = LazyLock::new(|| {
 });
 
 fn shift_cpu(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
-    use isophote_engine::math::{sample_linear4, store4};
     let p: ShiftParams = pass.params();
     let window = band.window;
+    let source = &pass.inputs[0];
     for y in window.y0..window.y1 {
         let row = band.row_mut(0, y);
-        dispatch!(pass.level, simd => {
-            for (block, out) in row.chunks_mut(32).enumerate() {
-                let x0 = (window.x0 + 8 * block as i32) as f32 + 0.5;
-                let x = f32x8::from_fn(simd, |lane| (x0 + lane as f32) * p.scale + p.by[0]);
-                // Lanes past the row's end would leave the window.
-                let x = x.min((window.x1 as f32 - 0.5) * p.scale + p.by[0]);
-                let y = f32x8::splat(simd, (y as f32 + 0.5) * p.scale + p.by[1]);
-                let mut pixels = [0.0; 32];
-                store4(sample_linear4(simd, &pass.inputs[0], x, y), &mut pixels);
-                out.copy_from_slice(&pixels[..out.len()]);
+        for (x, out) in (window.x0..window.x1).zip(row.chunks_exact_mut(4)) {
+            let at = |i: i32, axis: usize| (i as f32 + 0.5) * p.scale + p.by[axis] - 0.5;
+            let (u, v) = (at(x, 0), at(y, 1));
+            let (i, j) = (u.floor(), v.floor());
+            let [a, b, c, d] =
+                [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| source.pixel4(i as i32 + dx, j as i32 + dy));
+            for channel in 0..4 {
+                let top = a[channel] + (b[channel] - a[channel]) * (u - i);
+                let bottom = c[channel] + (d[channel] - c[channel]) * (u - i);
+                out[channel] = top + (bottom - top) * (v - j);
             }
-        });
+        }
     }
 }
 

@@ -8,9 +8,10 @@
 //! Cost: 30 operations for the sums of columns and rows of each channel, 40 for the tensor, and
 //! 4 radius + 2 multiply-adds for each of its three values.
 
-use crate::kernels::rows::{Rows, WIDE_STRIP, strips_of};
+use crate::kernels::simd::line_buffer::{Rows, WIDE_STRIP, strips_of};
+use crate::kernels::simd::pixels::put_pixels4;
+use crate::kernels::simd::window_sum::{gaussian_radius, gaussian_table};
 use crate::kernels::smoothing::gaussian_blur;
-use crate::kernels::support::{gaussian_radius, gaussian_table, put_pixels4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};

@@ -10,12 +10,16 @@
 //!
 //! Cost: that of the derivative; then four comparisons per step, and nothing where the threshold is not reached.
 
-use crate::kernels::blocks::{BLOCK, Block, fetch4, offsets, write4};
-use crate::kernels::flow_log;
-use crate::kernels::luma_lines::{Line, LumaLines, STRIP};
-use crate::kernels::tensor_algebra::axis;
+use crate::kernels::shared::tensor::axis;
+use crate::kernels::simd::pixels::{BLOCK, Block, fetch4, offsets, write4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance};
+use luma_taps::{Line, LumaLines, STRIP};
+
+#[path = "directed_shock/flow_log.rs"]
+mod flow_log;
+#[path = "directed_shock/luma_taps.rs"]
+mod luma_taps;
 
 crate::params! {
     /// Uniform block.

@@ -4,9 +4,9 @@
 //!
 //! Cost: 25 operations a channel.
 
-use crate::kernels::blocks::Block;
-use crate::kernels::neighbours::{Neighbours, each};
-use crate::kernels::tensor_algebra::axis;
+use crate::kernels::shared::tensor::axis;
+use crate::kernels::simd::neighbours::{Neighbours, each};
+use crate::kernels::simd::pixels::Block;
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

@@ -4,8 +4,8 @@
 //!
 //! Cost: twelve hashes and about 100 multiply-adds per pixel.
 
-use crate::kernels::blocks::{for_blocks, write4};
-use crate::kernels::value_noise::noise;
+use crate::kernels::shared::value_noise::noise;
+use crate::kernels::simd::pixels::{for_blocks, write4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

@@ -2,8 +2,8 @@
 //!
 //! Cost: three powers per pixel.
 
-use crate::kernels::colour_space::{LINEAR_TO_ACESCG, srgb_decode, transform};
-use crate::kernels::support::map_pixels4;
+use crate::kernels::shared::colour::{LINEAR_TO_ACESCG, srgb_decode, transform};
+use crate::kernels::simd::pixels::map_pixels4;
 use crate::request::ColourSpace;
 use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};

@@ -4,11 +4,11 @@
 //!
 //! Cost: three powers and a division per pixel.
 
-use crate::kernels::colour_space::{ACESCG_TO_LINEAR, srgb_encode, transform};
-use crate::kernels::support::map_pixels4;
+use crate::kernels::shared::colour::{ACESCG_TO_LINEAR, srgb_encode, transform};
+use crate::kernels::shared::host_colour::plain;
+use crate::kernels::simd::pixels::map_pixels4;
 use crate::request::ColourSpace;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::pixels::LARGEST_HALF;
+use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::params! {
@@ -59,25 +59,4 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         }
         [rgb[0], rgb[1], rgb[2], a]
     }));
-}
-
-/// The host's pixels in its own space, finite and not premultiplied.
-#[inline(always)]
-pub fn plain<S: Simd>([r, g, b, a]: [f32x8<S>; 4], premultiplied: bool) -> [f32x8<S>; 4] {
-    let (zero, one) = (f32x8::splat(r.simd, 0.0), f32x8::splat(r.simd, 1.0));
-    let (mut r, mut g, mut b) = (finite(r), finite(g), finite(b));
-    let a = finite(a).min(one).max(zero);
-    // Where all is opaque the division by 1 can be left out.
-    if premultiplied && !a.simd_ge(one).all_true() {
-        let covered = a.simd_gt(1e-6);
-        (r, g, b) = (covered.select(r / a, zero), covered.select(g / a, zero), covered.select(b / a, zero));
-    }
-    [r, g, b, a]
-}
-
-/// Values cut to the largest half, 0 for what is not a number.
-#[inline(always)]
-fn finite<S: Simd>(v: f32x8<S>) -> f32x8<S> {
-    let largest = f32x8::splat(v.simd, LARGEST_HALF);
-    v.is_nan().select(f32x8::splat(v.simd, 0.0), v.min(largest).max(-largest))
 }

@@ -2,7 +2,7 @@
 //!
 //! Cost: eight multiply-adds per pixel.
 
-use crate::kernels::blocks::{for_blocks, write4};
+use crate::kernels::simd::pixels::{for_blocks, write4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

@@ -2,8 +2,8 @@
 //!
 //! Cost: three powers per pixel.
 
-use crate::kernels::colour_space::{lab_to_linear, srgb_encode};
-use crate::kernels::support::map_pixels4;
+use crate::kernels::shared::colour::{lab_to_linear, srgb_encode};
+use crate::kernels::simd::pixels::map_pixels4;
 use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

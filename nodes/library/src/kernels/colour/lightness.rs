@@ -6,10 +6,10 @@
 //!
 //! Cost: four powers per pixel; one for a host's linear light, none when the source is Lab already.
 
-use crate::kernels::blocks::write2;
 use crate::kernels::colour::colour_import;
-use crate::kernels::colour_space::{ACESCG_TO_LINEAR, LUMINANCE, lab_curve, srgb_decode, transform};
-use crate::kernels::support::map_pixels;
+use crate::kernels::shared::colour::{ACESCG_TO_LINEAR, LUMINANCE, lab_curve, srgb_decode, transform};
+use crate::kernels::shared::host_colour::plain;
+use crate::kernels::simd::pixels::{map_pixels, write2};
 use crate::request::ColourSpace;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
 use isophote_engine::math::load4;
@@ -78,7 +78,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 fn luminance<S: Simd>(params: &Params, mut pixels: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
     let host = params.source_space == HOST;
     if host {
-        pixels = colour_import::plain(pixels, params.premultiplied != 0);
+        pixels = plain(pixels, params.premultiplied != 0);
     }
     let [mut r, mut g, mut b, a] = pixels;
     if !host || params.space == ColourSpace::Srgb as u32 {

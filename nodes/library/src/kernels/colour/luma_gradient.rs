@@ -3,7 +3,7 @@
 //!
 //! Cost: 60 operations.
 
-use crate::kernels::neighbours::{Neighbours, each};
+use crate::kernels::simd::neighbours::{Neighbours, each};
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

@@ -4,8 +4,8 @@
 //!
 //! Cost: 25 multiply-adds.
 
-use crate::kernels::rows::{Rows, strips};
-use crate::kernels::support::{get_pixels4, put_pixels4};
+use crate::kernels::simd::line_buffer::{Rows, strips};
+use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

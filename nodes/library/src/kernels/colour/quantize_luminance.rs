@@ -3,7 +3,7 @@
 //!
 //! Cost: one to five reads, a tanh and a square root per pixel.
 
-use crate::kernels::blocks::{Block, for_blocks, write4};
+use crate::kernels::simd::pixels::{Block, for_blocks, write4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};

@@ -3,8 +3,8 @@
 //!
 //! Cost: six powers per pixel.
 
-use crate::kernels::colour_space::{linear_to_lab, srgb_decode};
-use crate::kernels::support::map_pixels4;
+use crate::kernels::shared::colour::{linear_to_lab, srgb_decode};
+use crate::kernels::simd::pixels::map_pixels4;
 use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

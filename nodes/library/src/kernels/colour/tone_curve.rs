@@ -3,7 +3,7 @@
 //!
 //! Cost: ten multiply-adds per pixel.
 
-use crate::kernels::support::map_pixels4;
+use crate::kernels::simd::pixels::map_pixels4;
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

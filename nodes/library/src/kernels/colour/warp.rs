@@ -3,11 +3,11 @@
 //!
 //! Cost: one bilinear sample and about 20 operations.
 
-use crate::kernels::coverage::Covered;
-use crate::kernels::neighbours::{Neighbours, each};
-use crate::kernels::stream_line::centres;
+use crate::kernels::shared::coverage::Covered;
+use crate::kernels::shared::sampling::sample_linear4;
+use crate::kernels::shared::stream::centres;
+use crate::kernels::simd::neighbours::{Neighbours, each};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::math::sample_linear4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::params! {

@@ -3,7 +3,7 @@
 //!
 //! Cost: a multiplication per pixel.
 
-use crate::kernels::blocks::{for_blocks, write2};
+use crate::kernels::simd::pixels::{for_blocks, write2};
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

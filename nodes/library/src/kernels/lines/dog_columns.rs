@@ -5,11 +5,12 @@
 //! and the threshold. Sixteen interleaved pixels at a time. The shader reads its windows through workgroup
 //! memory, radius / 4 + 3 loads a pixel.
 
-use crate::kernels::blocks::{BLOCK, write1};
-use crate::kernels::edge_threshold::{LEAST_COVERAGE, Xdog, dog_response, edge_threshold, edge_uncovered};
 use crate::kernels::lines::dog_rows;
-use crate::kernels::support::GaussianTable;
-use crate::kernels::symmetric::{RUN, flat, sum};
+use crate::kernels::shared::edge_threshold::{
+    LEAST_COVERAGE, Xdog, dog_response, edge_threshold, edge_uncovered,
+};
+use crate::kernels::simd::pixels::{BLOCK, write1};
+use crate::kernels::simd::window_sum::{GaussianTable, RUN, flat, sum};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, f32x16, prelude::*};
 use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -19,7 +20,7 @@ crate::params! {
     pub struct Params for dog_columns {
         /// Taps on each side of the centre.
         pub radius: i32,
-        /// [`Threshold`](crate::kernels::edge_threshold::Threshold) as a number.
+        /// [`Threshold`](crate::kernels::shared::edge_threshold::Threshold) as a number.
         pub threshold: u32,
         /// Weight of the smoothed lightness.
         pub base: f32,

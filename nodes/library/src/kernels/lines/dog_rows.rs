@@ -4,8 +4,7 @@
 //! Cost: two multiply-adds per tap and value, radius + 1 taps. Sixteen interleaved pixels at a time.
 //! The shader reads its windows through workgroup memory, radius / 4 + 3 loads a pixel.
 
-use crate::kernels::support::{GaussianTable, gaussian_radius, gaussian_table};
-use crate::kernels::symmetric::flat;
+use crate::kernels::simd::window_sum::{GaussianTable, flat, gaussian_radius, gaussian_table};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x16, f64x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

@@ -4,8 +4,8 @@
 //!
 //! Cost: eight neighbours and about 40 operations per pixel.
 
-use crate::kernels::blocks::{BLOCK, write1};
-use crate::kernels::rows::{Rows, strips};
+use crate::kernels::simd::line_buffer::{Rows, strips};
+use crate::kernels::simd::pixels::{BLOCK, write1};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, mask32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

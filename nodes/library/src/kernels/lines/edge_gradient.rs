@@ -6,9 +6,10 @@
 //! smoothing, thresholds mean the same at every scale.
 //! Cost: 24 multiply-adds and a square root per pixel.
 
-use crate::kernels::rows::{Rows, strips};
+use crate::kernels::simd::line_buffer::{Rows, strips};
+use crate::kernels::simd::pixels::put_pixels4;
+use crate::kernels::simd::window_sum::{gaussian_radius, gaussian_table};
 use crate::kernels::smoothing::gaussian_blur;
-use crate::kernels::support::{gaussian_radius, gaussian_table, put_pixels4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

@@ -5,10 +5,10 @@
 //! one row or column, and two reads interpolate it exactly as a bilinear sample would.
 //! Cost: per step (about 3 k sigma_e of them) four reads of two values; four exponentials per pixel.
 
-use crate::kernels::blocks::{BLOCK, Block, write2};
-use crate::kernels::colour_lines::{ColourLines, strips};
-use crate::kernels::edge_threshold::{LEAST_COVERAGE, Xdog, dog_response};
-use crate::kernels::tensor_algebra::tangent;
+use crate::kernels::shared::edge_threshold::{LEAST_COVERAGE, Xdog, dog_response};
+use crate::kernels::shared::tensor::tangent;
+use crate::kernels::simd::line_taps::{ColourLines, strips};
+use crate::kernels::simd::pixels::{BLOCK, Block, write2};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};

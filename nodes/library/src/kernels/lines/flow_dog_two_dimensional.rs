@@ -5,14 +5,17 @@
 //! Cost: the steps of the second pass times the samples of the first: about 4 sigma_m times 6 k sigma_e
 //! bilinear samples of two values.
 
-use crate::kernels::blocks::{for_blocks, write1};
-use crate::kernels::edge_threshold::{LEAST_COVERAGE, Xdog, dog_response, edge_threshold, edge_uncovered};
 use crate::kernels::lines::flow_dog_gradient::halfwidth;
-use crate::kernels::pixel_line::{PixelLine, error_function, most_steps};
-use crate::kernels::stream_line::{Integrator, Stream, StreamField, centres};
-use crate::kernels::tensor_algebra::tangent;
+use crate::kernels::shared::edge_threshold::{
+    LEAST_COVERAGE, Xdog, dog_response, edge_threshold, edge_uncovered,
+};
+use crate::kernels::shared::pixel_line::{PixelLine, error_function, most_steps};
+use crate::kernels::shared::sampling::sample_linear2;
+use crate::kernels::shared::stream::{Integrator, Stream, StreamField, centres};
+use crate::kernels::shared::tensor::tangent;
+use crate::kernels::simd::pixels::{for_blocks, write1};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, mask32x8, prelude::*};
-use isophote_engine::math::{Elementary, sample_linear2};
+use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::params! {
@@ -32,7 +35,7 @@ crate::params! {
         pub sigma: f32,
         /// [`Stepping`] as a number.
         pub stepping: u32,
-        /// [`Threshold`](crate::kernels::edge_threshold::Threshold) as a number.
+        /// [`Threshold`](crate::kernels::shared::edge_threshold::Threshold) as a number.
         pub threshold: u32,
         /// Response from which on there is no line.
         pub epsilon: f32,

@@ -10,8 +10,8 @@
 //!
 //! Cost: per step (12 sigma_e of them) up to three reads and two exponentials.
 
-use crate::kernels::blocks::{fetch1, fetch4, for_blocks, offsets, write2};
 use crate::kernels::lines::flow_dog_gradient::Across;
+use crate::kernels::simd::pixels::{fetch1, fetch4, for_blocks, offsets, write2};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};

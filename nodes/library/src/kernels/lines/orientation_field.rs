@@ -4,7 +4,7 @@
 //!
 //! Cost: a subtraction and two multiplications per pixel.
 
-use crate::kernels::blocks::{for_blocks, write2};
+use crate::kernels::simd::pixels::{for_blocks, write2};
 use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

@@ -10,11 +10,11 @@
 //! Cost: pi radius^2 pixels, each half of about 105 operations. The shader reads them through workgroup memory,
 //! about (1 + elongation)^2 radius^2 / 4 loads a pixel, up to an elongation of 2.
 
-use crate::kernels::planes::{CHANNELS, Planes};
-use crate::kernels::rows::strips;
-use crate::kernels::sectors::{INSIDE, MIN_RADIUS, Polynomial, Response, Sector};
-use crate::kernels::support::{get_pixels4, put_pixels4};
-use crate::kernels::tensor_algebra::{anisotropy, tangent};
+use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Polynomial, Response, Sector};
+use crate::kernels::shared::tensor::{anisotropy, tangent};
+use crate::kernels::simd::line_buffer::strips;
+use crate::kernels::simd::moment_buffer::{CHANNELS, Planes};
+use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 use std::f32::consts::FRAC_1_SQRT_2;

@@ -10,11 +10,12 @@
 //! elongation of 2.
 
 use crate::kernels::painting::anisotropic_kuwahara::{Options, reach};
-use crate::kernels::planes::{CHANNELS, Planes};
-use crate::kernels::rows::strips;
-use crate::kernels::sectors::{INSIDE, MIN_RADIUS, Response, Sector, Table, sample, table};
-use crate::kernels::support::{get_pixels4, put_pixels4};
-use crate::kernels::tensor_algebra::scalar::{anisotropy, tangent};
+use crate::kernels::shared::sampled_sectors::{Table, sample, table};
+use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Response, Sector};
+use crate::kernels::shared::tensor::scalar::{anisotropy, tangent};
+use crate::kernels::simd::line_buffer::strips;
+use crate::kernels::simd::moment_buffer::{CHANNELS, Planes};
+use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 use std::f32::consts::FRAC_1_SQRT_2;

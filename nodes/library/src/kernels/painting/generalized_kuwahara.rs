@@ -11,16 +11,20 @@
 //! 10 log2(block) operations for each of 18 transforms. The shader goes through the disc pixel by pixel, through
 //! workgroup memory: about radius^2 / 4 loads.
 
-use crate::kernels::block_convolution::{Convolution, Mask, block_side};
-use crate::kernels::planes::{CHANNELS, Planes};
-use crate::kernels::rows::strips;
-use crate::kernels::sectors::{INSIDE, MIN_RADIUS, Response, Sector, Table, sample, table};
-use crate::kernels::support::{get_pixels4, put_pixels4};
+use crate::kernels::shared::sampled_sectors::{Table, sample, table};
+use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Response, Sector};
+use crate::kernels::simd::line_buffer::strips;
+use crate::kernels::simd::moment_buffer::{CHANNELS, Planes};
+use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
+use block_convolution::{Convolution, Mask, block_side};
 use isophote_engine::fearless_simd::{Level, Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 use rustfft::FftNum;
 use rustfft::num_complex::Complex;
 use std::f32::consts::FRAC_1_SQRT_2;
+
+#[path = "generalized_kuwahara/block_convolution.rs"]
+mod block_convolution;
 
 crate::params! {
     /// Uniform block.

@@ -9,7 +9,7 @@
 //! The shader takes all weights singly, through workgroup memory: 3 count / 4 + 6 loads a pixel.
 
 use crate::kernels::painting::kuwahara_rows::{self, Side, Weights};
-use crate::kernels::support::{get_pixels4, put_pixels4};
+use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};

@@ -7,10 +7,9 @@
 //! Cost: 2 log2(r + 1) additions on five channels; other weights 10 multiply-adds each.
 //! The shader takes all weights singly, through workgroup memory: count / 4 + 2 loads a pixel.
 
-use crate::kernels::blocks::write2;
-use crate::kernels::planes::{CHANNELS, Planes};
-use crate::kernels::rows::strips;
-use crate::kernels::support::put_pixels4;
+use crate::kernels::simd::line_buffer::strips;
+use crate::kernels::simd::moment_buffer::{CHANNELS, Planes};
+use crate::kernels::simd::pixels::{put_pixels4, write2};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

@@ -3,10 +3,9 @@
 //!
 //! Cost: 4 interpolations on four channels, two anisotropies and 20 operations.
 
-use crate::kernels::blocks::for_blocks;
-use crate::kernels::pyramid::Upsampling;
-use crate::kernels::support::put_pixels4;
-use crate::kernels::tensor_algebra::anisotropy;
+use crate::kernels::shared::tensor::anisotropy;
+use crate::kernels::simd::pixels::{for_blocks, put_pixels4};
+use crate::kernels::simd::upsampling::Upsampling;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};

@@ -7,8 +7,8 @@
 //! three loads of eight pixels; half of the operations are the exponential. The shader reads its windows
 //! through workgroup memory, about radius^2 / 16 + radius / 2 + 1 loads a pixel.
 
-use crate::kernels::rows::Rows;
-use crate::kernels::support::put_pixels4;
+use crate::kernels::simd::line_buffer::Rows;
+use crate::kernels::simd::pixels::put_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

@@ -4,12 +4,12 @@
 //! Cost: up to 6 sigma segments per pixel, each one colour and one tensor with its tangent, two divisions
 //! and the error function, about 120 operations.
 
-use crate::kernels::blocks::{Block, fetch4, for_blocks, offsets, write4};
-use crate::kernels::coverage::Covered;
-use crate::kernels::pixel_line::{PixelLine, error_function, most_steps};
+use crate::kernels::shared::coverage::Covered;
+use crate::kernels::shared::pixel_line::{PixelLine, error_function, most_steps};
+use crate::kernels::shared::stream::{acos, centres};
+use crate::kernels::shared::tensor::{anisotropy, tangent};
+use crate::kernels::simd::pixels::{Block, fetch4, for_blocks, offsets, write4};
 use crate::kernels::smoothing::line_integral_convolution::{Adapt, Options, least_turn};
-use crate::kernels::stream_line::{acos, centres};
-use crate::kernels::tensor_algebra::{anisotropy, tangent};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 

@@ -5,8 +5,8 @@
 //!
 //! Cost: 70 operations. The shader reads through workgroup memory, 5 loads a pixel.
 
-use crate::kernels::rows::{Rows, strips};
-use crate::kernels::support::put_pixels4;
+use crate::kernels::simd::line_buffer::{Rows, strips};
+use crate::kernels::simd::pixels::put_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

@@ -8,8 +8,8 @@
 //!
 //! Cost: an eigenanalysis and an exponential, about 80 operations.
 
-use crate::kernels::support::map_pixels4;
-use crate::kernels::tensor_algebra::{Eigen, eigen};
+use crate::kernels::shared::tensor::{Eigen, eigen};
+use crate::kernels::simd::pixels::map_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};

@@ -9,15 +9,15 @@
 //! Cost: 4 sigma steps per pixel, each one bilinear colour sample with one exponential (manual: four)
 //! and one (Euler) or two tensor samples with their tangents.
 
-use crate::kernels::blocks::for_blocks_in_tiles;
-use crate::kernels::coverage::Covered;
 use crate::kernels::lines::orientation_field;
+use crate::kernels::shared::coverage::Covered;
+use crate::kernels::shared::sampling::sample_linear4;
+use crate::kernels::shared::stream::{Integrator, Stream, StreamField, centres, holds};
+use crate::kernels::shared::tensor::tangent;
+use crate::kernels::simd::pixels::{for_blocks_in_tiles, get_pixels2, get_pixels4, load_pixel, put_pixels4};
 use crate::kernels::smoothing::oriented_bilateral::Sampling;
-use crate::kernels::stream_line::{Integrator, Stream, StreamField, centres, holds};
-use crate::kernels::support::{get_pixels2, get_pixels4, put_pixels4};
-use crate::kernels::tensor_algebra::tangent;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
-use isophote_engine::math::{Elementary, channels, load_pixel, sample_linear4};
+use isophote_engine::math::{Elementary, channels};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::params! {

@@ -6,12 +6,12 @@
 //! Cost: 2 length steps per pixel, each one noise sample and two tensor samples with their tangents,
 //! about 130 operations.
 
-use crate::kernels::coverage::Covered;
-use crate::kernels::stream_line::{Integrator, Stream, StreamField, centres};
-use crate::kernels::support::{get_pixels4, put_pixels4};
-use crate::kernels::tensor_algebra::{anisotropy, tangent};
+use crate::kernels::shared::coverage::Covered;
+use crate::kernels::shared::sampling::sample_linear4;
+use crate::kernels::shared::stream::{Integrator, Stream, StreamField, centres};
+use crate::kernels::shared::tensor::{anisotropy, tangent};
+use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::math::sample_linear4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::params! {

@@ -4,9 +4,10 @@
 //! interleaved values, sixteen pixels at a time. The shader reads its windows through workgroup memory,
 //! radius / 4 + 3 loads a pixel.
 
-use crate::kernels::coverage::{FULL, is_opaque};
-use crate::kernels::support::{GAUSSIAN_TAPS, GaussianTable, gaussian_radius, gaussian_table};
-use crate::kernels::symmetric::{RUN, flat, sum};
+use crate::kernels::shared::coverage::{FULL, is_opaque};
+use crate::kernels::simd::window_sum::{
+    GAUSSIAN_TAPS, GaussianTable, RUN, flat, gaussian_radius, gaussian_table, sum,
+};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, f32x16, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

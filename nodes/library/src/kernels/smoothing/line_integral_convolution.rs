@@ -4,18 +4,18 @@
 //! Cost: 4 sigma / h steps per pixel, two fifths of it where steps are stretched, each one bilinear colour sample
 //! and one (Euler, two-step) or two tensor samples with their tangents, about 90 or 130 operations.
 
-use crate::kernels::blocks::{BLOCK, for_blocks_in_tiles};
-use crate::kernels::coverage::{Covered, full_or};
 use crate::kernels::lines::orientation_field;
-use crate::kernels::stream_line::{
+use crate::kernels::shared::coverage::{Covered, full_or};
+use crate::kernels::shared::sampling::sample_linear4;
+use crate::kernels::shared::stream::{
     FEW_STEPS, Integrator, NearField, STRETCH, Stream, StreamField, acos, centres, few_steps, holds,
     stretched,
 };
-use crate::kernels::support::{get_pixels4, put_pixels4};
-use crate::kernels::surroundings::{FOUR, Frame, Place, Surroundings, TWO};
-use crate::kernels::tensor_algebra::{anisotropy, tangent};
+use crate::kernels::shared::tensor::{anisotropy, tangent};
+use crate::kernels::simd::pixels::{BLOCK, for_blocks_in_tiles, get_pixels4, put_pixels4};
+use crate::kernels::simd::tile_copy::{FOUR, Frame, Place, Surroundings, TWO};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
-use isophote_engine::math::{Elementary, load4, sample_linear4};
+use isophote_engine::math::{Elementary, load4};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::params! {

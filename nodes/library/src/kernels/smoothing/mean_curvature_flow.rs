@@ -9,9 +9,9 @@
 //! Cost: 100 operations; 140 with the constraint. Memory takes longer than these: rows are read once
 //! and gradients kept in rings. The shader reads them through workgroup memory, 4 loads a pixel.
 
-use crate::kernels::rows::{Rows, pixels, strips};
-use crate::kernels::support::{get_pixels4, put_pixels4};
-use crate::kernels::tensor_algebra::tangent;
+use crate::kernels::shared::tensor::tangent;
+use crate::kernels::simd::line_buffer::{Rows, pixels, strips};
+use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

@@ -7,9 +7,9 @@
 //!
 //! Cost: about 1.8 cutoff taps of one interpolation and one exponential (manual: two or more).
 
-use crate::kernels::colour_lines::{ColourLines, Lines, STEPS, strips};
-use crate::kernels::support::{put_pixels4, row_pixels4};
-use crate::kernels::tensor_algebra::{anisotropy, tangent};
+use crate::kernels::shared::tensor::{anisotropy, tangent};
+use crate::kernels::simd::line_taps::{ColourLines, Lines, STEPS, strips};
+use crate::kernels::simd::pixels::{put_pixels4, row_pixels4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance, View};

@@ -7,8 +7,8 @@
 //!
 //! Cost: 60 operations (exponential: 100); memory takes longer.
 
-use crate::kernels::rows::{Rows, WIDE_STRIP, pixels, strips_of};
-use crate::kernels::support::put_pixels4;
+use crate::kernels::simd::line_buffer::{Rows, WIDE_STRIP, pixels, strips_of};
+use crate::kernels::simd::pixels::put_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};

@@ -3,12 +3,12 @@
 //!
 //! Cost: 16 hashes, one bilinear sample and about 150 multiply-adds.
 
-use crate::kernels::coverage::Covered;
-use crate::kernels::stream_line::centres;
-use crate::kernels::support::put_pixels4;
-use crate::kernels::value_noise::noise;
+use crate::kernels::shared::coverage::Covered;
+use crate::kernels::shared::sampling::sample_linear4;
+use crate::kernels::shared::stream::centres;
+use crate::kernels::shared::value_noise::noise;
+use crate::kernels::simd::pixels::put_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::math::sample_linear4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::params! {

@@ -12,9 +12,9 @@
 //! Cost: 7 multiply-adds per neighbour, pi radius^2 of them, and about 50 operations. The shader reads
 //! them through workgroup memory, about radius^2 / 16 + radius / 2 + 1 loads a pixel.
 
-use crate::kernels::rows::{Rows, strips};
-use crate::kernels::support::put_pixels4;
-use crate::kernels::tensor_algebra::axis;
+use crate::kernels::shared::tensor::axis;
+use crate::kernels::simd::line_buffer::{Rows, strips};
+use crate::kernels::simd::pixels::put_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -220,8 +220,8 @@ fn turned<S: Simd>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernels::shared::tensor::scalar;
     use crate::kernels::structure::flow_maximum;
-    use crate::kernels::tensor_algebra::scalar;
     use isophote_engine::cpu::{CallingThread, Control, CpuExecutor};
     use isophote_engine::{Image, Rect};
 

@@ -4,8 +4,8 @@
 //!
 //! Cost: about 20 operations.
 
-use crate::kernels::support::map_pixels4;
-use crate::kernels::tensor_algebra::axis;
+use crate::kernels::shared::tensor::axis;
+use crate::kernels::simd::pixels::map_pixels4;
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

@@ -10,9 +10,9 @@
 //! Cost: 4 radius + 2 multiply-adds on four channels: columns are summed once, in the shader once
 //! for the pixels of a workgroup, which makes 1 + radius / 4 columns of 2 radius + 1 loads a pixel.
 
-use crate::kernels::rows::{Rows, WIDE_STRIP, strips_of};
-use crate::kernels::support::put_pixels4;
-use crate::kernels::tensor_algebra;
+use crate::kernels::shared::outer_product::outer_product;
+use crate::kernels::simd::line_buffer::{Rows, WIDE_STRIP, strips_of};
+use crate::kernels::simd::pixels::put_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -229,7 +229,7 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
                     gradients[c] = gradient(simd, &weights, r, sums[c], at);
                 }
                 let (flags, scale, threshold) = (params.flags, params.scale, params.threshold);
-                put_pixels4(outer(simd, flags, scale, threshold, centre, gradients), pixels);
+                put_pixels4(outer_product(simd, flags, scale, threshold, centre, gradients), pixels);
             }
         }
     }
@@ -293,51 +293,6 @@ fn gradient<S: Simd>(
         y = sum.mul_add(f32x8::splat(simd, weights.smoothing[i]), y);
     }
     [x, y]
-}
-
-/// The tensor (2.34) and its validity; twin of `shaders/shared/outer_product.wgsl`.
-#[inline(always)]
-pub(crate) fn outer<S: Simd>(
-    simd: S,
-    flags: u32,
-    scale: f32,
-    threshold: f32,
-    centre: [f32x8<S>; 4],
-    gradients: [[f32x8<S>; 2]; 4],
-) -> [f32x8<S>; 4] {
-    let zero = f32x8::splat(simd, 0.0);
-    let [.., alpha] = centre;
-    // The quotient rule without its division: coverage squared times the gradient of the colour.
-    let (mut x, mut y) = ([zero; 3], [zero; 3]);
-    for c in 0..3 {
-        x[c] = (alpha * gradients[c][0] - centre[c] * gradients[3][0]) * scale;
-        y[c] = (alpha * gradients[c][1] - centre[c] * gradients[3][1]) * scale;
-    }
-    if flags & 1 != 0 {
-        x = [x[0] * 0.2126 + x[1] * 0.7152 + x[2] * 0.0722, zero, zero];
-        y = [y[0] * 0.2126 + y[1] * 0.7152 + y[2] * 0.0722, zero, zero];
-    }
-    let (mut e, mut f, mut g) = (zero, zero, zero);
-    for c in 0..3 {
-        let (mut xx, mut xy, mut yy) = (x[c] * x[c], x[c] * y[c], y[c] * y[c]);
-        if flags & 2 != 0 {
-            let inverse = f32x8::splat(simd, 1.0) / (xx + yy).max(f32x8::splat(simd, 1e-30)).sqrt();
-            (xx, xy, yy) = (xx * inverse, xy * inverse, yy * inverse);
-        }
-        (e, f, g) = (e + xx, f + xy, g + yy);
-    }
-    [e, f, g, validity(simd, threshold, e, f, g)]
-}
-
-/// 1 where lambda1 is above `threshold`, else 0 (2.164).
-#[inline(always)]
-pub(crate) fn validity<S: Simd>(simd: S, threshold: f32, e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> f32x8<S> {
-    let one = f32x8::splat(simd, 1.0);
-    if threshold < 0.0 {
-        return one;
-    }
-    let lambda1 = (e + g) * 0.5 + tensor_algebra::axis((e - g) * 0.5, f).0;
-    lambda1.simd_gt(f32x8::splat(simd, threshold)).select(one, f32x8::splat(simd, 0.0))
 }
 
 #[cfg(test)]

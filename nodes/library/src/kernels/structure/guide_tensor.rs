@@ -8,9 +8,10 @@
 //!
 //! NaN and infinities count as nothing there. Cost: about 60 operations a pixel.
 
-use crate::kernels::rows::{Rows, strips};
-use crate::kernels::structure::gradient_tensor::{least_lambda1, validity};
-use crate::kernels::support::put_pixels4;
+use crate::kernels::shared::outer_product::validity;
+use crate::kernels::simd::line_buffer::{Rows, strips};
+use crate::kernels::simd::pixels::put_pixels4;
+use crate::kernels::structure::gradient_tensor::least_lambda1;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};

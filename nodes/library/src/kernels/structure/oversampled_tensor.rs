@@ -7,8 +7,9 @@
 //! Cost: 8 radius + 4 multiply-adds on four channels: columns are summed once, in the shader once
 //! for the pixels of a workgroup, which makes 2/3 + radius / 4 columns of 2 radius + 1 loads a pixel.
 
-use crate::kernels::rows::{Rows, strips};
-use crate::kernels::structure::gradient_tensor::{Measure, outer};
+use crate::kernels::shared::outer_product::outer_product;
+use crate::kernels::simd::line_buffer::{Rows, strips};
+use crate::kernels::structure::gradient_tensor::Measure;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::store4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -167,7 +168,7 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
                         gradients[c] = gradient(simd, &phases[phase], r, sums, 8 * i);
                     }
                     let (flags, scale, threshold) = (params.flags, params.scale, params.threshold);
-                    both[phase] = outer(simd, flags, scale, threshold, centre, gradients);
+                    both[phase] = outer_product(simd, flags, scale, threshold, centre, gradients);
                 }
                 let (mut low, mut high) = ([zero; 4], [zero; 4]);
                 for c in 0..4 {

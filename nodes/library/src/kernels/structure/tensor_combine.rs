@@ -7,10 +7,10 @@
 //!
 //! Cost: 3 bilinear multiply-adds on four channels, two anisotropies, about 50 operations.
 
-use crate::kernels::blocks::{for_blocks, write4};
-use crate::kernels::tensor_algebra::anisotropy;
+use crate::kernels::shared::sampling::sample_linear4;
+use crate::kernels::shared::tensor::anisotropy;
+use crate::kernels::simd::pixels::{for_blocks, write4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::math::sample_linear4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::params! {

@@ -12,8 +12,8 @@
 //!
 //! Cost: about 30 operations.
 
-use crate::kernels::support::map_pixels4;
-use crate::kernels::tensor_algebra;
+use crate::kernels::shared::tensor;
+use crate::kernels::simd::pixels::map_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -131,7 +131,7 @@ fn orientation<S: Simd>(simd: S, e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> [f32x
 
 #[inline(always)]
 fn anisotropy<S: Simd>(simd: S, params: &Params, e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> f32x8<S> {
-    let a = tensor_algebra::anisotropy(e, f, g);
+    let a = tensor::anisotropy(e, f, g);
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     match params.show {
         2 => a / (one + (one - a * a).max(zero).sqrt()),
@@ -155,7 +155,7 @@ fn strength<S: Simd>(simd: S, params: &Params, t: [f32x8<S>; 3]) -> f32x8<S> {
     }
     let [e, f, g] = bounded;
     let trace = e + g;
-    let lambda1 = trace * 0.5 + tensor_algebra::axis((e - g) * 0.5, f).0;
+    let lambda1 = trace * 0.5 + tensor::axis((e - g) * 0.5, f).0;
     // What rounding leaves of the determinant of a tensor of rank one is no corner.
     let determinant = (e * g - f * f - trace * 1e-6 * trace).max(c(0.0));
     match params.show {

@@ -5,8 +5,8 @@
 //!
 //! Cost: one eigenanalysis and two logarithms or powers.
 
-use crate::kernels::support::map_pixels4;
-use crate::kernels::tensor_algebra::{axis, eigen};
+use crate::kernels::shared::tensor::{axis, eigen};
+use crate::kernels::simd::pixels::map_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};

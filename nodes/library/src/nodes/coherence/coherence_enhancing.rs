@@ -1,6 +1,6 @@
 //! Coherence-enhancing filtering (§ 6, Fig. 6.3): smoothing along the stream lines of the structure
 //! tensor and sharpening across them, in turn. Long lines are followed in stretched steps
-//! ([`few_steps`](crate::kernels::stream_line::few_steps)).
+//! ([`few_steps`](crate::kernels::shared::stream::few_steps)).
 
 use crate::kernels::coherence::carried_tensor;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};

@@ -1,8 +1,8 @@
 //! The extended difference of Gaussians filter (§ 4.2-4.4).
 
 use crate::kernels::colour::lightness;
-use crate::kernels::edge_threshold::{Threshold, Xdog};
 use crate::kernels::lines::dog_columns;
+use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::ports;
 use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
 use isophote_engine::ImageId;

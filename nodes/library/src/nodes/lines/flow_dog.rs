@@ -2,13 +2,13 @@
 //! lines where geometry breaks.
 
 use crate::kernels::colour::lightness;
-use crate::kernels::edge_threshold::{Threshold, Xdog};
 use crate::kernels::lines::flow_dog_two_dimensional::{self, Stepping};
 use crate::kernels::lines::{
     darken_by_lines, flow_dog_cabral_leedom, flow_dog_gradient, flow_dog_tangent, guide_lines,
     orientation_field,
 };
-use crate::kernels::stream_line::Integrator;
+use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
+use crate::kernels::shared::stream::Integrator;
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::structure::structure_tensor::{Guides, TensorOptions, of_color_and_guides};
 use crate::ports;

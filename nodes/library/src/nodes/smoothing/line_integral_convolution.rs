@@ -1,9 +1,9 @@
 //! Line integral convolution (§ 2.9): smoothing along stream lines of the structure tensor, which
 //! makes edges more coherent and gives pictures the look of brush strokes.
 
+use crate::kernels::shared::stream::Integrator;
 use crate::kernels::smoothing::cabral_leedom;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
-use crate::kernels::stream_line::Integrator;
 use crate::nodes::structure::structure_tensor;
 use crate::ports;
 use crate::spec::{Choice, NodeSpec, Param, Scope};

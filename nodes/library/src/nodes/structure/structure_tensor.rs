@@ -7,9 +7,8 @@
 use crate::kernels::colour::rgb_to_lab;
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::structure::gradient_tensor::{self, Derivative, Measure};
-use crate::kernels::structure::guide_tensor;
 use crate::kernels::structure::{
-    colour_restrict, jacobi_step, oversampled_tensor, tensor_combine, tensor_restrict,
+    colour_restrict, guide_tensor, jacobi_step, oversampled_tensor, tensor_combine, tensor_restrict,
 };
 use crate::ports;
 use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
@@ -244,7 +243,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
 
 #[cfg(test)]
 mod tests {
-    use crate::kernels::tensor_algebra::scalar;
+    use crate::kernels::shared::tensor::scalar;
     use crate::request::Guides;
     use crate::{Graph, Planned, Request};
     use isophote_engine::cpu::{CallingThread, Control, CpuExecutor};

@@ -1,7 +1,7 @@
 //! A tensor field made visible (§ 2.6.1, 2.9).
 
+use crate::kernels::shared::stream::Integrator;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
-use crate::kernels::stream_line::Integrator;
 use crate::kernels::structure::tensor_display::{self, Show};
 use crate::kernels::structure::{colour_restrict, contrast, noise, tensor_interpolate, tensor_logarithm};
 use crate::ports;

@@ -3,9 +3,9 @@
 use crate::kernels::colour::quantize_luminance::{Steepness, quantize};
 use crate::kernels::colour::{composite_lines, lab_to_rgb, lightness, rgb_to_lab, tone_curve};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
+use crate::kernels::shared::stream::Integrator;
 use crate::kernels::smoothing::bilateral::Options;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
-use crate::kernels::stream_line::Integrator;
 use crate::look::{self, ADVANCED, Lines};
 use crate::nodes::colour::quantize_luminance as quantization;
 use crate::nodes::lines::difference_of_gaussians as dog;

@@ -2,11 +2,11 @@
 
 use crate::kernels::colour::ink_sheet::{Sheet, draw};
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
-use crate::kernels::edge_threshold::{Threshold, Xdog};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
+use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
+use crate::kernels::shared::stream::Integrator;
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
-use crate::kernels::stream_line::Integrator;
 use crate::kernels::structure::{contrast, noise};
 use crate::look::{self, ADVANCED, LOOK};
 use crate::nodes::lines::difference_of_gaussians as dog;

@@ -1,17 +1,11 @@
-//! Bilinear samples of images at eight positions at once, for the CPU twins.
+//! Bilinear samples of images at eight positions at once. Twin of `shaders/shared/sampling.wgsl`.
 //!
-//! Positions are absolute with pixel centres at +0.5 and clamp to the edge; the `inner` forms leave the
-//! clamping out and give the same bits where it would change nothing.
+//! Positions are absolute with pixel centres at +0.5 and clamp to the edge.
 
-use crate::image::View;
-use crate::math::{spread, transposed};
-use fearless_simd::{Simd, f32x4, f32x8, f64x4, i32x8, prelude::*};
-
-/// The pixels at two offsets, one in each half of a vector.
-#[inline(always)]
-pub fn load_pixels<S: Simd>(simd: S, low: &[f32], high: &[f32]) -> f32x8<S> {
-    f32x4::from_slice(simd, &low[..4]).combine(f32x4::from_slice(simd, &high[..4]))
-}
+use crate::kernels::simd::pixels::{load_pixel, load_pixels};
+use isophote_engine::View;
+use isophote_engine::fearless_simd::{Simd, f32x8, f64x4, i32x8, prelude::*};
+use isophote_engine::math::{spread, transposed};
 
 /// Bilinear sample of a four-channel image at eight positions (absolute, pixel centres at +0.5,
 /// clamped to the edge), one vector per channel.
@@ -65,14 +59,6 @@ fn floor_and_share<S: Simd>(position: f32x8<S>, full: i32) -> (i32x8<S>, f32x8<S
     let position = (position - 0.5).max(-2.0f32).min(full as f32 + 2.0);
     let floor = position.floor();
     (floor.to_int(), position - floor)
-}
-
-/// The four values from offset `at` on.
-#[inline(always)]
-pub fn load_pixel<S: Simd>(simd: S, data: &[f32], at: i32) -> f32x4<S> {
-    // Through u32 one comparison is enough to check the range.
-    let at = at as u32 as usize;
-    f32x4::from_slice(simd, &data[at..at + 4])
 }
 
 /// Bilinear sample of a one-channel image at eight positions; see [`sample_linear4`].
@@ -150,7 +136,7 @@ fn sample_column2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -
 /// Eight pairs of neighbouring values, from where `at` says, four pairs to a vector: one 64-bit load
 /// each.
 #[inline(always)]
-pub fn load_pairs<S: Simd>(simd: S, data: &[f32], at: [i32; 8]) -> [f32x8<S>; 2] {
+fn load_pairs<S: Simd>(simd: S, data: &[f32], at: [i32; 8]) -> [f32x8<S>; 2] {
     let mut pairs = [0.0f64; 8];
     for (pair, at) in pairs.iter_mut().zip(at) {
         let values = &data[at as usize..at as usize + 2];
@@ -211,8 +197,8 @@ impl LinearTaps {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::Image;
-    use fearless_simd::{Level, dispatch};
+    use isophote_engine::Image;
+    use isophote_engine::fearless_simd::{Level, dispatch};
 
     #[test]
     fn sampling_interpolates_and_clamps() {

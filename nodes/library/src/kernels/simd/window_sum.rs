@@ -5,8 +5,34 @@
 //!
 //! Cost: an addition and a multiply-add per value and pair of taps.
 
-use crate::kernels::support::{GAUSSIAN_TAPS, GaussianTable};
 use isophote_engine::fearless_simd::{Simd, f32x16, prelude::*};
+
+/// Entries of a Gaussian table, the centre included.
+pub const GAUSSIAN_TAPS: usize = 256;
+
+/// Largest radius of a Gaussian table, in pixels.
+pub const GAUSSIAN_MAX_RADIUS: u32 = GAUSSIAN_TAPS as u32 - 1;
+
+/// One half of a Gaussian, packed as the uniform block wants it: entry i is the weight at distance i.
+pub type GaussianTable = [[f32; 4]; GAUSSIAN_TAPS / 4];
+
+/// Radius at which a Gaussian of standard deviation `sigma` (pixels) is cut: ceil(cutoff sigma).
+pub fn gaussian_radius(sigma: f32, cutoff: f32) -> u32 {
+    ((cutoff * sigma).ceil().max(0.0) as u32).min(GAUSSIAN_MAX_RADIUS)
+}
+
+/// Weights of a Gaussian of standard deviation `sigma` at distances 0..=radius (2.21), normalised
+/// by the sum of the kept weights (both sides).
+pub fn gaussian_table(sigma: f32, radius: u32) -> GaussianTable {
+    let mut table = [[0.0; 4]; GAUSSIAN_TAPS / 4];
+    let sigma = f64::from(sigma).max(1e-4);
+    let weight = |i: u32| (-f64::from(i * i) / (2.0 * sigma * sigma)).exp();
+    let sum: f64 = weight(0) + 2.0 * (1..=radius).map(weight).sum::<f64>();
+    for i in 0..=radius.min(GAUSSIAN_MAX_RADIUS) {
+        table[i as usize / 4][i as usize % 4] = (weight(i) / sum) as f32;
+    }
+    table
+}
 
 /// Values that are summed at once.
 pub const RUN: usize = 64;

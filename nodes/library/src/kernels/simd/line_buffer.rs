@@ -1,7 +1,7 @@
 //! Rings of rows for kernels that look at a small neighbourhood: each row is clamped to the edge,
 //! mapped once and kept channel by channel, ready for vectors that start at any column.
 
-use crate::kernels::support::row_pixels4;
+use crate::kernels::simd::pixels::row_pixels4;
 use isophote_engine::View;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 

@@ -1,4 +1,4 @@
-#import group
+#import gpu/group
 
 // Windows of neighbours in workgroup memory: what the windows of many pixels share is fetched from the
 // texture once.

@@ -8,9 +8,10 @@
 //!
 //! Cost: one copy of (tile + 2 reach)^2 pixels for each tile.
 
-use crate::kernels::coverage::is_opaque;
+use crate::kernels::shared::coverage::is_opaque;
+use crate::kernels::simd::pixels::load_pixels;
 use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, prelude::*};
-use isophote_engine::math::{load_pixels, spread, transposed};
+use isophote_engine::math::{spread, transposed};
 use isophote_engine::{Rect, View};
 
 /// Widest copy: a row's length must be told by eight bits.
@@ -175,9 +176,9 @@ impl Surroundings<TWO> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernels::shared::sampling::{sample_linear2, sample_linear4};
     use isophote_engine::Image;
     use isophote_engine::fearless_simd::{Level, dispatch};
-    use isophote_engine::math::{sample_linear2, sample_linear4};
 
     #[test]
     fn samples_of_a_copy_are_those_of_the_picture() {

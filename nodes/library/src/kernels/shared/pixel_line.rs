@@ -9,8 +9,8 @@
 //!
 //! Cost: a segment reads one tensor and takes about 60 operations; a pixel of length has up to 1.5.
 
-use crate::kernels::blocks::{fetch1, fetch4, offsets};
-use crate::kernels::tensor_algebra::tangent;
+use crate::kernels::shared::tensor::tangent;
+use crate::kernels::simd::pixels::{fetch1, fetch4, offsets};
 use isophote_engine::View;
 use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
 

@@ -8,11 +8,11 @@
 //! Cost: a step samples one tensor (Euler, two-step) or two (midpoint), bilinearly, and finds their axes; the
 //! first step of Euler's method and of the midpoint method saves one.
 
-use crate::kernels::surroundings::{Frame, Place, Surroundings, TWO};
-use crate::kernels::tensor_algebra::{tangent, tangent_along};
+use crate::kernels::shared::sampling::{sample_linear2, sample_linear4};
+use crate::kernels::shared::tensor::{tangent, tangent_along};
+use crate::kernels::simd::tile_copy::{Frame, Place, Surroundings, TWO};
 use isophote_engine::View;
 use isophote_engine::fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
-use isophote_engine::math::{sample_linear2, sample_linear4};
 
 /// How a stream line goes on to its next point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

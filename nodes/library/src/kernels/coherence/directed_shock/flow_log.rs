@@ -8,8 +8,8 @@
 //!
 //! Cost: 5 sigma steps, each one linear interpolation between sums of opposite pixels and about 20 operations.
 
-use crate::kernels::blocks::Block;
-use crate::kernels::luma_lines::{Line, LumaLines};
+use super::luma_taps::{Line, LumaLines};
+use crate::kernels::simd::pixels::Block;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 

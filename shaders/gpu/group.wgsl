@@ -1,4 +1,4 @@
-#import grid
+#import gpu/grid
 
 // The 8 x 8 pixels of a workgroup, for kernels that load their neighbours together.
 //

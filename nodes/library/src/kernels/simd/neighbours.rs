@@ -1,7 +1,7 @@
 //! The eight neighbours of eight pixels, for kernels of small support.
 
-use crate::kernels::rows::{Rows, strips};
-use crate::kernels::support::put_pixels4;
+use crate::kernels::simd::line_buffer::{Rows, strips};
+use crate::kernels::simd::pixels::put_pixels4;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, View};
 

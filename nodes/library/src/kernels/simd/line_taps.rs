@@ -10,8 +10,9 @@
 //! Cost: per row and pair of taps four operations for the share and two multiply-adds a channel; two or
 //! three rows along edges, more where orientation is noise.
 
+use crate::kernels::simd::pixels::load_pixels;
 use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
-use isophote_engine::math::{load_pixels, transposed};
+use isophote_engine::math::transposed;
 use isophote_engine::{Band, Rect, View};
 
 /// Columns of a strip when lines are short: its rows stay in the first-level cache.
