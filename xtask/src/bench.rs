@@ -1,7 +1,7 @@
 //! `cargo xtask bench`: the host's benchmark, built for speed.
 
 use crate::error::Result;
-use crate::tools::{cargo, host, run as run_command};
+use crate::tools::{build_with_host, host, run as run_command};
 
 /// Options of `cargo xtask bench`.
 #[derive(clap::Args)]
@@ -17,6 +17,6 @@ pub struct Options {
 /// # Errors
 /// When the build or the benchmark fails.
 pub fn run(options: &Options) -> Result<()> {
-    cargo(&["build", "--release", "--workspace", "--lib", "--bins"])?;
+    build_with_host("release", &[])?;
     run_command(host("release").arg("bench").args(&options.arguments))
 }

@@ -1,12 +1,8 @@
 //! `cargo xtask bundle`: the dynamic library as an OpenFX bundle, with its property list and an icon for
 //! every effect, and its installation.
 
-mod icon;
-
 use crate::error::{Context, Failure, Result};
-use crate::tools::{cargo, heading, host, target_dir};
-use icon::Icon;
-use serde_json::Value;
+use crate::tools::{build_with_host, heading, host, program, run as run_command, target_dir};
 use std::path::{Path, PathBuf};
 
 /// Options of `cargo xtask bundle`.
@@ -52,11 +48,7 @@ const ARCHITECTURE: &str = if cfg!(target_os = "windows") {
 pub fn run(options: &Options) -> Result<()> {
     heading("build");
     let profile = if options.debug { "debug" } else { "release" };
-    let mut build = vec!["build", "--workspace", "--lib", "--bins"];
-    if !options.debug {
-        build.push("--release");
-    }
-    cargo(&build)?;
+    build_with_host(profile, &["isophote-icons"])?;
     let bundle = target_dir("bundle").join(format!("{NAME}.bundle"));
     write(&bundle, profile)?;
     println!("{}", bundle.display());
@@ -82,14 +74,15 @@ fn write(bundle: &Path, profile: &str) -> Result<()> {
     std::fs::copy(&library, binaries.join(NAME)).context(|| format!("cannot copy {}", library.display()))?;
     let list = contents.join("Info.plist");
     std::fs::write(&list, property_list()).context(|| format!("cannot write {}", list.display()))?;
-    for (id, group) in effects(profile)? {
-        let icon = Icon::new(&id, &group);
-        let file = |ending: &str| resources.join(format!("org.isophote.{id}.{ending}"));
-        let (png, svg) = (file("png"), file("svg"));
-        icon.raster().save(&png).context(|| format!("cannot write {}", png.display()))?;
-        std::fs::write(&svg, icon.drawing()).context(|| format!("cannot write {}", svg.display()))?;
+    // The icons follow the catalogue of the library that was built.
+    let mut nodes = host(profile);
+    let output = nodes.args(["nodes", "--json"]).output().context(|| "cannot run `isophote nodes`".into())?;
+    if !output.status.success() {
+        return Err(Failure(format!("`isophote nodes`: {}", String::from_utf8_lossy(&output.stderr))));
     }
-    Ok(())
+    let catalogue = bundle.with_extension("json");
+    std::fs::write(&catalogue, output.stdout).context(|| format!("cannot write {}", catalogue.display()))?;
+    run_command(program("isophote-icons", profile).arg(&catalogue).arg(&resources))
 }
 
 fn property_list() -> String {
@@ -112,31 +105,6 @@ fn property_list() -> String {
          \"http://www.apple.com/DTDs/PropertyList-1.0.dtd\">\n\
          <plist version=\"1.0\">\n<dict>\n{entries}</dict>\n</plist>\n"
     )
-}
-
-/// Ids and groups of the effects, by the rule that the library follows, from the catalogue that it gives.
-fn effects(profile: &str) -> Result<Vec<(String, String)>> {
-    let output =
-        host(profile).args(["nodes", "--json"]).output().context(|| "cannot run `isophote nodes`".into())?;
-    if !output.status.success() {
-        return Err(Failure(format!("`isophote nodes`: {}", String::from_utf8_lossy(&output.stderr))));
-    }
-    let catalogue: Value =
-        serde_json::from_slice(&output.stdout).context(|| "`isophote nodes` gave no JSON".into())?;
-    let nodes =
-        catalogue["nodes"].as_array().ok_or_else(|| Failure("`isophote nodes` lists no nodes".into()))?;
-    let effect = |node: &Value| {
-        let (id, group) = (node["id"].as_str()?, node["group"].as_str()?);
-        if id == "tensor_view" {
-            return Some(("structure".to_owned(), group.to_owned()));
-        }
-        let inputs = node["inputs"].as_array()?;
-        let colour = |port: &Value| port["kind"] == "color";
-        let alone = inputs.iter().any(colour) && inputs.iter().all(|p| colour(p) || p["optional"] == true);
-        let shown = node["output"]["kind"] == "color" || node["output"]["kind"] == "scalar";
-        (alone && shown).then(|| (id.to_owned(), group.to_owned()))
-    };
-    Ok(nodes.iter().filter_map(effect).collect())
 }
 
 fn remove(folder: &Path) -> Result<()> {

@@ -43,12 +43,44 @@ pub fn target_dir(profile: &str) -> PathBuf {
     target.join(profile)
 }
 
-/// The sample host of a build.
-pub fn host(profile: &str) -> Command {
-    let mut command =
-        Command::new(target_dir(profile).join(format!("isophote{}", std::env::consts::EXE_SUFFIX)));
+/// Builds programs of the workspace. Their dependencies have the features that they have when the whole
+/// workspace is built, so that nothing is compiled twice.
+///
+/// # Errors
+/// The command line, when it fails.
+pub fn build(profile: &str, programs: &[&str]) -> Result<()> {
+    let mut command = cargo_command(&["build", "--workspace"]);
+    command.args(programs.iter().flat_map(|program| ["--bin", program]));
+    run(command.args(release(profile)))
+}
+
+/// Builds the sample host, the dynamic library and some more packages, and nothing else. These two together
+/// already ask for every feature that the workspace asks for of what they depend on.
+///
+/// # Errors
+/// The command line, when it fails.
+pub fn build_with_host(profile: &str, more: &[&str]) -> Result<()> {
+    let mut command = cargo_command(&["build"]);
+    let packages = ["isophote-host", "isophote-plugin"];
+    command.args(packages.iter().chain(more).flat_map(|package| ["--package", package]));
+    run(command.args(release(profile)))
+}
+
+fn release(profile: &str) -> Option<&'static str> {
+    (profile == "release").then_some("--release")
+}
+
+/// A program of a build.
+pub fn program(name: &str, profile: &str) -> Command {
+    let file = format!("{name}{}", std::env::consts::EXE_SUFFIX);
+    let mut command = Command::new(target_dir(profile).join(file));
     command.env("NODEVICE_SELECT", "1");
     command
+}
+
+/// The sample host of a build.
+pub fn host(profile: &str) -> Command {
+    program("isophote", profile)
 }
 
 /// Runs a command to its end.

@@ -1,12 +1,13 @@
 //! Sky, earth, wood, water and leaves.
 
-use super::{Heights, Painted, Picture, Texture, blend, byte};
-use crate::scene::noise::{Random, fractal, fractal_stretched, hash, smoothstep, unit};
+use super::names::Texture;
+use super::picture::{Heights, Picture, blend, byte};
+use crate::noise::{Random, fractal, fractal_stretched, hash, smoothstep, unit};
 use glam::{IVec2, Vec2, Vec3};
 use std::f32::consts::FRAC_PI_2;
 
 /// Dry ground with tufts of grass; vertex colours make it greener or paler.
-pub fn earth() -> Vec<Painted> {
+pub fn earth() -> Vec<(Texture, Picture)> {
     let picture = Picture::paint(1024, 1024, |uv| {
         let grass = smoothstep(0.30, 0.66, fractal(uv, 11, 5, 101));
         let blades = fractal_stretched(uv, IVec2::new(256, 96), 2, 103);
@@ -19,7 +20,7 @@ pub fn earth() -> Vec<Painted> {
 }
 
 /// Eight upright planks, and bark.
-pub fn wood() -> Vec<Painted> {
+pub fn wood() -> Vec<(Texture, Picture)> {
     let picture = Picture::paint(512, 512, |uv| {
         let plank = (uv.x * 8.0).floor();
         let id = hash(IVec2::new(plank as i32, 0), 109);
@@ -41,13 +42,13 @@ pub fn wood() -> Vec<Painted> {
 }
 
 /// Ripples.
-pub fn water() -> Vec<Painted> {
+pub fn water() -> Vec<(Texture, Picture)> {
     let heights = Heights::sample(512, |uv| 0.6 * fractal(uv, 5, 3, 127) + 0.4 * fractal(uv, 9, 2, 131));
     vec![(Texture::WaterNormal, heights.normal_map(0.10))]
 }
 
 /// A bright sky with thin clouds, once around; from the zenith (top) to below the horizon.
-pub fn sky() -> Vec<Painted> {
+pub fn sky() -> Vec<(Texture, Picture)> {
     let picture = Picture::paint(2048, 512, |uv| {
         let height = (1.0 - uv.y / SKY_HORIZON).max(0.0);
         let haze = (1.0 - height).powi(5);
@@ -124,7 +125,7 @@ impl Card {
 }
 
 /// Leaf cards: a spray of broad leaves, and the scales of a cypress.
-pub fn foliage() -> Vec<Painted> {
+pub fn foliage() -> Vec<(Texture, Picture)> {
     const SIZE: u32 = 512;
     let middle = Vec2::splat(SIZE as f32 / 2.0);
     let mut random = Random::new(137);

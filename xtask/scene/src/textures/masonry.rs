@@ -1,7 +1,8 @@
 //! Stone, plaster and fired clay.
 
-use super::{Heights, Painted, Picture, Texture, blend};
-use crate::scene::noise::{cells, fractal, hash, mix, smoothstep, unit};
+use super::names::Texture;
+use super::picture::{Heights, Picture, blend};
+use crate::noise::{cells, fractal, hash, mix, smoothstep, unit};
 use glam::{IVec2, Vec2, Vec3};
 
 /// A stone of a wall laid in courses.
@@ -46,7 +47,7 @@ fn trait_of(id: u32, salt: u32) -> f32 {
 }
 
 /// Squared blocks with drafted joints: colour, normals, occlusion and roughness.
-pub fn blocks() -> Vec<Painted> {
+pub fn blocks() -> Vec<(Texture, Picture)> {
     const SIZE: u32 = 1024;
     let stone = |uv| course(uv, 5, 2, 1, 3);
     let heights = Heights::sample(SIZE, |uv| {
@@ -75,7 +76,7 @@ pub fn blocks() -> Vec<Painted> {
 }
 
 /// Slabs of a paved square.
-pub fn paving() -> Vec<Painted> {
+pub fn paving() -> Vec<(Texture, Picture)> {
     const SIZE: u32 = 1024;
     let stone = |uv| course(uv, 7, 5, 2, 21);
     let heights = Heights::sample(SIZE, |uv| {
@@ -96,7 +97,7 @@ pub fn paving() -> Vec<Painted> {
 }
 
 /// Rounded cobbles in earth.
-pub fn cobbles() -> Vec<Painted> {
+pub fn cobbles() -> Vec<(Texture, Picture)> {
     const SIZE: u32 = 512;
     let dome = |uv: Vec2| {
         let cell = cells(uv, 13, 0.75, 31);
@@ -114,7 +115,7 @@ pub fn cobbles() -> Vec<Painted> {
 }
 
 /// White marble with faint grey veins: a low-contrast surface.
-pub fn marble() -> Vec<Painted> {
+pub fn marble() -> Vec<(Texture, Picture)> {
     let picture = Picture::paint(512, 512, |uv| {
         let bend = Vec2::new(fractal(uv, 3, 3, 41), fractal(uv, 3, 3, 43)) - 0.5;
         let flow = fractal((uv + bend * 0.22).rem_euclid(Vec2::ONE), 4, 4, 47);
@@ -127,7 +128,7 @@ pub fn marble() -> Vec<Painted> {
 }
 
 /// Lime plaster, patchy and streaked by rain.
-pub fn plaster() -> Vec<Painted> {
+pub fn plaster() -> Vec<(Texture, Picture)> {
     let picture = Picture::paint(512, 512, |uv| {
         let patches = fractal(uv, 3, 5, 61);
         let trowel = fractal(uv, 40, 2, 67);
@@ -139,7 +140,7 @@ pub fn plaster() -> Vec<Painted> {
 
 /// Tiles of a roof: the plain clay for roofs whose tiles are modelled, and colour and normals for
 /// roofs that are flat. One repetition is 12 tiles wide and 8 tiles high.
-pub fn roof() -> Vec<Painted> {
+pub fn roof() -> Vec<(Texture, Picture)> {
     const SIZE: u32 = 512;
     let across = 12;
     let down = 8;

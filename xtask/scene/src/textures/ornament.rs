@@ -1,7 +1,8 @@
 //! Man-made patterns: the mosaic, cloths, and the painted vase.
 
-use super::{Painted, Picture, Texture, blend};
-use crate::scene::noise::{fractal, hash, smoothstep, unit};
+use super::names::Texture;
+use super::picture::{Picture, blend};
+use crate::noise::{fractal, hash, smoothstep, unit};
 use glam::{Vec2, Vec3};
 use std::f32::consts::TAU;
 
@@ -18,7 +19,7 @@ fn key(point: Vec2) -> bool {
 
 /// A carpet of black and white tesserae: a border of key pattern around a disc of
 /// triangles that shrink towards the centre.
-pub fn mosaic() -> Vec<Painted> {
+pub fn mosaic() -> Vec<(Texture, Picture)> {
     let picture = Picture::paint(1024, 1024, |uv| {
         // Tesserae are whole: the pattern is taken at the centre of each.
         const COUNT: f32 = 144.0;
@@ -71,7 +72,7 @@ fn carpet(uv: Vec2) -> bool {
 }
 
 /// Striped cloth, the pennant and the vase.
-pub fn fabrics() -> Vec<Painted> {
+pub fn fabrics() -> Vec<(Texture, Picture)> {
     let weave = |uv: Vec2, threads: f32| {
         let angle = uv * threads * TAU;
         0.94 + 0.06 * angle.x.sin() * angle.y.sin()

@@ -1,8 +1,7 @@
-//! `cargo xtask scene`: writes a scene of the project's own, so that a machine without assets has
-//! something to render.
+//! A scene of the project's own, so that a machine without assets has something to render.
 //!
-//! The scene is a piece of an antique city: a temple with fluted columns, a paved square with a
-//! mosaic, a fountain and a market, houses, a gate, a portico, trees and distant hills. It is made
+//! It is a piece of an antique city: a temple with fluted columns, a paved square with a
+//! mosaic, a fountain and a market, houses, a gate, a portico, trees and distant hills. It was made
 //! to try the filters: strong edges, smooth curved surfaces, fine repeated detail, foliage that
 //! looks like noise, low contrast (marble, haze) and high contrast (mosaic, stripes, doorways). It
 //! also uses the features of glTF that a renderer must know: textures of every role, alpha masks,
@@ -10,6 +9,7 @@
 
 mod city;
 mod elements;
+mod error;
 mod houses;
 mod life;
 mod market;
@@ -26,41 +26,34 @@ mod writer;
 #[cfg(test)]
 mod tests;
 
-use crate::error::{Context, Result};
+pub use error::{Error, Result};
+
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use textures::Texture;
 
-/// Where the scene is written.
-#[derive(clap::Args)]
-pub struct Options {
-    /// Folder to write to
-    #[arg(long, value_name = "DIR", default_value = "target/scene")]
-    pub out: PathBuf,
-}
+/// Name of the file that holds the whole scene.
+pub const SCENE: &str = "city.gltf";
+
+/// Name of the file that holds one house.
+pub const HOUSE: &str = "house.obj";
 
 /// Files of the scene: name and contents. What another file names comes before it.
-type Files = Vec<(String, Vec<u8>)>;
+pub type Files = Vec<(String, Vec<u8>)>;
 
 /// Makes the scene and writes it to the folder, creating it when it is not there.
 ///
 /// # Errors
-/// When a file cannot be written; then no file is left half written.
-pub fn run(options: &Options) -> Result<()> {
-    let folder = &options.out;
-    fs::create_dir_all(folder).context(|| format!("creating {}", folder.display()))?;
-    for (name, contents) in generate()? {
-        write(folder, &name, &contents)?;
-    }
-    println!("{}", folder.join("city.gltf").display());
-    println!("{}", folder.join("house.obj").display());
-    Ok(())
+/// [`Error::Encode`] and [`Error::Write`]; no file is left half written.
+pub fn write_to(folder: &Path) -> Result<()> {
+    fs::create_dir_all(folder).map_err(|source| Error::Write { path: folder.to_owned(), source })?;
+    generate()?.iter().try_for_each(|(name, contents)| write(folder, name, contents))
 }
 
 /// Makes the scene in memory.
 ///
 /// # Errors
-/// When a texture cannot be encoded.
+/// [`Error::Encode`].
 pub fn generate() -> Result<Files> {
     let mut files: Files = textures::paint_all()?
         .into_iter()
@@ -68,12 +61,12 @@ pub fn generate() -> Result<Files> {
         .collect();
     let house = obj::write(&city::corner_house(), "house.mtl");
     files.push(("house.mtl".into(), house.materials.into_bytes()));
-    files.push(("house.obj".into(), house.geometry.into_bytes()));
+    files.push((HOUSE.into(), house.geometry.into_bytes()));
     let mut writer = writer::Writer::default();
     city::city(&mut writer);
     let (document, buffer) = writer.finish("city.bin");
     files.push(("city.bin".into(), buffer));
-    files.push(("city.gltf".into(), document.into_bytes()));
+    files.push((SCENE.into(), document.into_bytes()));
     Ok(files)
 }
 
@@ -86,5 +79,5 @@ fn write(folder: &Path, name: &str, contents: &[u8]) -> Result<()> {
         // What failed is reported; that the remains may stay as well adds nothing.
         let _ = fs::remove_file(&beside);
     }
-    written.context(|| format!("writing {}", path.display()))
+    written.map_err(|source| Error::Write { path, source })
 }
