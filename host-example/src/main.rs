@@ -4,25 +4,14 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use clap::error::ErrorKind;
-use isophote_host::cli::{Cli, Command};
-use isophote_host::{apply, bench, farm_verb, nodes_verb, preset_verb, render_verb, view};
+use isophote_host::cli::Cli;
 
 fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => return usage(&error),
     };
-    let result = match cli.command {
-        Command::Render(args) => render_verb::run(&args),
-        Command::View(args) => view::run(&args),
-        Command::Apply(args) => apply::run(&args),
-        Command::Sheet(args) => apply::sheet::run(&args),
-        Command::Preset(args) => preset_verb::run(&args),
-        Command::Farm { command } => farm_verb::run(&command),
-        Command::Nodes(args) => nodes_verb::run(&args),
-        Command::Bench(args) => bench::run(&args),
-    };
-    match result {
+    match cli.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");

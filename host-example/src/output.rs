@@ -3,13 +3,14 @@
 
 use std::fs;
 use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, SmallVec, WritableImage,
 };
 use half::f16;
 
+use crate::apply::space::srgb_encode;
 use crate::error::{Error, Result};
 
 /// An image of 32-bit floats, channels interleaved, rows from the top.
@@ -32,11 +33,6 @@ pub enum Precision {
     Half,
     /// 32 bit, for ids, depths and motion.
     Float,
-}
-
-/// Encodes linear light in [0, 1] for sRGB displays (IEC 61966-2-1).
-pub fn srgb_encode(linear: f32) -> f32 {
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// Saves a picture as its extension says. One of 4 channels is linear red, green and blue with premultiplied
@@ -232,23 +228,6 @@ pub fn print(text: &str) -> Result<()> {
     }
 }
 
-/// The name of frame `index` (from 1) of `count`: itself for a single frame; `####` in the name is replaced by
-/// the number, otherwise `.0001` goes before the extension.
-pub fn frame_path(path: &Path, index: usize, count: usize) -> PathBuf {
-    let name = path.file_name().and_then(|n| n.to_str()).unwrap_or_default();
-    if let Some(start) = name.find('#') {
-        let length = name[start..].bytes().take_while(|b| *b == b'#').count();
-        let numbered = format!("{}{index:0length$}{}", &name[..start], &name[start + length..]);
-        return path.with_file_name(numbered);
-    }
-    if count <= 1 {
-        return path.to_owned();
-    }
-    let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or_default();
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
-    path.with_file_name(format!("{stem}.{index:04}.{extension}"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -256,15 +235,6 @@ mod tests {
     fn gradient() -> Picture {
         let data = (0..5 * 3).flat_map(|i| [i as f32 / 14.0, 0.25, 0.5, 1.0]).collect();
         Picture { width: 5, height: 3, channels: 4, data }
-    }
-
-    #[test]
-    fn frames_are_numbered() {
-        let name = |path: &str, index, count| frame_path(Path::new(path), index, count).display().to_string();
-        assert_eq!(name("a/out.png", 1, 1), "a/out.png");
-        assert_eq!(name("a/out.png", 7, 24), "a/out.0007.png");
-        assert_eq!(name("a/out.####.exr", 7, 24), "a/out.0007.exr");
-        assert_eq!(name("a/out.##.exr", 7, 1), "a/out.07.exr");
     }
 
     #[test]

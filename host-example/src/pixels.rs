@@ -2,6 +2,9 @@
 
 use half::f16;
 
+/// Most pixels of one picture, so that sizes in files and on the command line cannot ask for all memory.
+pub const MOST_PIXELS: u64 = 1 << 28;
+
 /// Samples of one precision.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Samples {

@@ -1,9 +1,8 @@
 //! From the numbers of one family of files to those of the other.
 
-use super::primaries::{AP1, Change, Chromaticities, P3, REC709, REC2020};
+use super::primaries::{Change, REC709};
 use super::read::Family;
-use crate::cli::Space;
-use crate::output::srgb_encode;
+use super::space::{Space, srgb_decode, srgb_encode};
 use crate::pixels::{Pixels, Samples};
 
 /// What an infinity becomes.
@@ -16,7 +15,7 @@ pub fn between(pixels: Pixels, from: Family, space: Space, to: Family) -> Pixels
         return pixels;
     }
     let (width, height, channels) = (pixels.width(), pixels.height(), pixels.channels());
-    let change = primaries(space).and_then(|from| Change::new(from, REC709));
+    let change = space.primaries().and_then(|from| Change::new(from, REC709));
     let mut numbers = pixels.to_f32();
     for pixel in numbers.chunks_exact_mut(channels as usize) {
         let (color, alpha) = match pixel {
@@ -52,16 +51,6 @@ pub fn between(pixels: Pixels, from: Family, space: Space, to: Family) -> Pixels
     Pixels::new(width, height, channels, samples).unwrap_or(pixels)
 }
 
-/// The primaries of a space that are not Rec.709's.
-pub fn primaries(space: Space) -> Option<Chromaticities> {
-    match space {
-        Space::Srgb | Space::Linear => None,
-        Space::Acescg => Some(AP1),
-        Space::P3 => Some(P3),
-        Space::Rec2020 => Some(REC2020),
-    }
-}
-
 /// Colours of other primaries, premultiplied or not; what is no number or infinite is mended first, as the
 /// library would, and counted, lest it spread to the other channels.
 pub fn changed(pixels: &Pixels, change: &Change) -> (Pixels, u64) {
@@ -79,11 +68,6 @@ pub fn changed(pixels: &Pixels, change: &Change) -> (Pixels, u64) {
     // As many numbers as there were.
     let changed = Pixels::new(pixels.width(), pixels.height(), pixels.channels(), Samples::F32(numbers));
     (changed.unwrap_or_else(|| pixels.clone()), mended)
-}
-
-/// Linear light of a gamma-encoded value (IEC 61966-2-1).
-fn srgb_decode(encoded: f32) -> f32 {
-    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
 #[cfg(test)]

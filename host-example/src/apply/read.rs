@@ -9,12 +9,10 @@ use image::{DynamicImage, ImageDecoder};
 use super::exr::{self, ExrFile, Picture, Selection};
 use super::jpeg;
 use crate::error::{Error, Result};
-use crate::pixels::{Pixels, Precision, Samples};
+use crate::pixels::{MOST_PIXELS, Pixels, Precision, Samples};
 
 /// First bytes of an EXR file.
 const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
-/// Most pixels of a picture.
-const MOST_PIXELS: u64 = 1 << 28;
 
 /// What a kind of file means by its numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

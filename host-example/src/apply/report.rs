@@ -7,7 +7,7 @@ use std::time::Instant;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 
-use super::sequence::Task;
+use super::tasks::Task;
 use crate::error::Error;
 
 /// What became of a frame.

@@ -4,31 +4,23 @@
 //! cores within a frame. A frame takes its share of the memory before it is decoded and gives it back when it is
 //! written.
 
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use super::exr::Selection;
-use super::frame::{Filter, Filtered};
-use super::memory::{Budget, Share};
+use super::filter::{Filter, Filtered};
+use super::memory::{Budget, Bytes, Share};
 use super::read::{self, Opened, Source};
 use super::report::{Outcome, Report};
+use super::tasks::Task;
 use super::write::{self, Format};
 use crate::error::{Error, Result};
+use crate::stop::Stop;
+
+/// Memory of a run that was given no bound.
+pub const USUAL_MEMORY: Bytes = Bytes(4 << 30);
 
 /// Most frames between being read and being written: one in each hand and one waiting between them.
 pub const MOST_IN_FLIGHT: u64 = 5;
-
-/// One frame, or a picture by itself.
-#[derive(Clone, Debug)]
-pub struct Task {
-    /// Its number in a sequence.
-    pub frame: Option<i64>,
-    /// What is read.
-    pub input: PathBuf,
-    /// What is written.
-    pub output: PathBuf,
-}
 
 /// How a run is done.
 #[derive(Debug)]
@@ -46,7 +38,7 @@ pub struct Run<'a> {
     /// Who is told.
     pub report: &'a Report,
     /// Set when the run shall end early.
-    pub stop: &'a AtomicBool,
+    pub stop: &'a Stop,
 }
 
 /// A frame that was read.
@@ -85,7 +77,7 @@ impl Run<'_> {
     fn read<'a>(&'a self, mut first: Option<Opened>, send: &SyncSender<Ready<'a>>) -> Result<()> {
         for task in self.tasks {
             let early = first.take();
-            if self.stop.load(Ordering::Relaxed) {
+            if self.stop.is_requested() {
                 break;
             }
             if self.skip_existing && read::is_whole(&task.output) {
@@ -117,7 +109,7 @@ impl Run<'_> {
         finished: SyncSender<Done<'a>>,
     ) -> Result<()> {
         for ready in decoded {
-            if self.stop.load(Ordering::Relaxed) {
+            if self.stop.is_requested() {
                 break;
             }
             let name = ready.task.input.display().to_string();

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::report::Entry;
+use super::entry::Entry;
 use crate::error::{Error, Result};
 
 /// Most bytes of a saved run; real ones have some hundred thousands.
@@ -94,7 +94,7 @@ pub fn mean(ratios: &[f64]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::report::PassEntry;
+    use super::super::entry::PassEntry;
     use super::*;
 
     const SAVED: &str = r#"{"threads": 4, "results": [

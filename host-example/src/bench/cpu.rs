@@ -1,6 +1,6 @@
 //! A node on the CPU, through the library's `process`.
 
-use super::report::{Entry, PassEntry};
+use super::entry::{Entry, PassEntry};
 use super::{Subject, median};
 use crate::error::Result;
 use crate::loader::process::PassTime;

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use isophote_engine::gpu::{Device, Executor, Prepared};
 
-use super::report::{Entry, PassEntry};
+use super::entry::{Entry, PassEntry};
 use super::{Subject, median};
 use crate::error::{Error, Result};
 use crate::loader::Library;

@@ -1,124 +1,31 @@
-//! `isophote bench`: what each node and each of its passes takes, on the CPU and on the GPU.
-//!
-//! Every number is the median of warm runs: plans are made, memory is allocated and shaders are compiled
-//! before. The CPU's are set against what the machine can do at most, measured in the same run; a small picture
-//! that stays in the caches may be copied faster than that.
+//! Measuring what each node and each of its passes takes, on the CPU and on the GPU.
 
-mod compare;
-mod cpu;
-mod gpu;
-mod peak;
+pub mod compare;
+pub mod cpu;
+mod entry;
+pub mod gpu;
+pub mod peak;
 mod peers;
-mod report;
-mod sequence;
+pub mod report;
+pub mod sequence;
+mod throughput;
 
-use std::path::Path;
-
-use isophote_engine::cpu::Pool;
-use isophote_engine::fearless_simd::Level;
-
-use self::compare::Saved;
-use self::report::{Machine, Report, Shown};
-use crate::cli::{BenchArgs, BenchBackend};
-use crate::error::{Error, Result};
-use crate::loader::Library;
 use crate::pixels::{Pixels, Samples};
-use crate::render::gpu::Gpu;
 use crate::stylize::style::Setting;
-
-/// Sizes that are measured when none is given.
-const SIZES: [(u32, u32); 2] = [(1280, 720), (1920, 1080)];
-
-/// Runs the verb.
-///
-/// # Errors
-/// [`Error::Failure`] without a library, and without an adapter when the GPU was asked for;
-/// [`Error::Input`] for nodes that do not exist.
-pub fn run(args: &BenchArgs) -> Result<()> {
-    let library = Library::open()?;
-    if let Some(frames) = args.sequence {
-        let usual = ["cartoon".to_owned()];
-        let subjects = subjects(&library, if args.node.is_empty() { &usual } else { &args.node })?;
-        return sequence::run(&subjects, &picture(args.size.unwrap_or(SIZES[1])), frames, args.json);
-    }
-    let subjects = subjects(&library, &args.node)?;
-    let before = args.compare.as_deref().map(Saved::read).transpose()?;
-    let gpu = match args.backend {
-        Some(BenchBackend::Cpu) => None,
-        Some(BenchBackend::Gpu) => Some(Gpu::open()?),
-        None => Gpu::open().map_err(|e| eprintln!("warning: the GPU is left out: {e}")).ok(),
-    };
-    let mut gpu = gpu.map(gpu::Bench::new);
-    let on_cpu = args.backend != Some(BenchBackend::Gpu);
-    let pool = Pool::new(0).map_err(|e| Error::failure(e, "close other programs"))?;
-    let machine = Machine::new(
-        isophote_engine::cpu::Threads::count(&pool),
-        on_cpu.then(|| peak::measure(Level::new(), &pool)),
-        gpu.as_ref().map(gpu::Bench::adapter),
-    );
-    drop(pool);
-    let shown = match (args.json, args.markdown) {
-        (true, _) => Shown::Json,
-        (_, true) => Shown::Markdown,
-        _ => Shown::Table,
-    };
-    let mut report = Report::new(&library, machine, args.runs, shown, before);
-    report.print_heading();
-    let sizes = args.size.map_or(SIZES.to_vec(), |size| vec![size]);
-    for size in sizes {
-        let picture = picture(size);
-        for subject in &subjects {
-            if on_cpu {
-                report.add(cpu::run(&library, subject, &picture, args.runs)?);
-            }
-            if let Some(gpu) = &mut gpu {
-                report.add(gpu.run(&library, subject, &picture, args.runs)?);
-            }
-        }
-    }
-    if let Some(path) = &args.save {
-        save(path, &report)?;
-    }
-    report.print_end()
-}
-
-fn save(path: &Path, report: &Report) -> Result<()> {
-    std::fs::write(path, report.json()?).map_err(|e| Error::file(path, e, "choose another file"))
-}
 
 /// What is measured: a node, with other values than the defaults where they are given.
 #[derive(Debug)]
 pub struct Subject {
     /// As it was written.
-    label: String,
+    pub label: String,
     /// Id of the node.
-    node: String,
-    settings: Vec<Setting>,
-}
-
-/// The nodes asked for, or all.
-fn subjects(library: &Library, wanted: &[String]) -> Result<Vec<Subject>> {
-    let mut subjects = Vec::new();
-    for label in wanted {
-        let fail = |e: String| Error::input(format!("--node {label}"), e, "such as gaussian,sigma=3");
-        let mut parts = label.split(',');
-        let id = parts.next().unwrap_or_default();
-        let node = library
-            .find_node(id)
-            .map_err(|e| e.at(format!("--node {label}"), "`isophote nodes` lists all"))?;
-        let settings = parts.map(str::parse).collect::<std::result::Result<_, String>>().map_err(fail)?;
-        subjects.push(Subject { label: label.clone(), node: node.id.to_owned(), settings });
-    }
-    if subjects.is_empty() {
-        let catalogue = library.catalogue().map_err(|e| e.at("the catalogue", "use another library"))?;
-        let plain = |id: &str| Subject { label: id.to_owned(), node: id.to_owned(), settings: Vec::new() };
-        subjects.extend(catalogue.nodes.iter().map(|n| plain(n.id)));
-    }
-    Ok(subjects)
+    pub node: String,
+    /// Parameters that are not at their defaults.
+    pub settings: Vec<Setting>,
 }
 
 /// A picture that has what pictures have: slow changes, edges in all directions, fine detail.
-fn picture((width, height): (u32, u32)) -> Pixels {
+pub fn picture((width, height): (u32, u32)) -> Pixels {
     let mut samples = Vec::with_capacity(width as usize * height as usize * 4);
     for y in 0..height {
         for x in 0..width {

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::compare::{self, Saved};
+use super::entry::Entry;
 use super::peak::Peak;
 use super::peers;
 use crate::error::{Error, Result};
@@ -21,36 +22,6 @@ impl Machine {
     pub fn new(threads: usize, peak: Option<Peak>, adapter: Option<String>) -> Self {
         Self { threads, peak, adapter }
     }
-}
-
-/// One node on one backend.
-#[derive(Debug)]
-pub struct Entry {
-    /// Id of the node.
-    pub node: String,
-    /// `cpu` or `gpu`.
-    pub backend: &'static str,
-    /// Size of the picture in pixels.
-    pub size: (u32, u32),
-    /// All passes together.
-    pub seconds: f64,
-    /// The whole call with the conversion of pixels in and out, where there is any.
-    pub call_seconds: Option<f64>,
-    /// The passes; empty where they cannot be told apart.
-    pub passes: Vec<PassEntry>,
-}
-
-/// One pass.
-#[derive(Debug)]
-pub struct PassEntry {
-    /// The kernel.
-    pub kernel: String,
-    /// How long it took.
-    pub seconds: f64,
-    /// Pixels written.
-    pub pixels: u64,
-    /// Multiply-adds and bytes, on the CPU.
-    pub work: Option<(f64, f64)>,
 }
 
 /// How measurements are printed.
@@ -80,21 +51,6 @@ pub struct Report {
 fn shares(peak: Option<Peak>, seconds: f64, work: Option<(f64, f64)>) -> Option<[f64; 2]> {
     let (peak, (operations, bytes)) = (peak?, work?);
     (seconds > 0.0).then(|| [operations / seconds / peak.multiply_adds, bytes / seconds / peak.copied])
-}
-
-impl Entry {
-    fn megapixels(&self) -> f64 {
-        f64::from(self.size.0) * f64::from(self.size.1) / 1e6
-    }
-
-    /// Work of all passes together.
-    fn work(&self) -> Option<(f64, f64)> {
-        self.passes
-            .iter()
-            .map(|p| p.work)
-            .try_fold((0.0, 0.0), |sum, work| work.map(|w| (sum.0 + w.0, sum.1 + w.1)))
-            .filter(|_| !self.passes.is_empty())
-    }
 }
 
 impl Report {

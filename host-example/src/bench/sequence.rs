@@ -1,16 +1,14 @@
 //! A sequence of frames from file to file, against filtering alone.
 
 use super::Subject;
-use crate::apply::Bytes;
-use crate::apply::throughput::{Throughput, measure};
+use super::throughput::{Throughput, measure};
+use crate::apply::memory::Bytes;
+use crate::apply::sequence::USUAL_MEMORY;
 use crate::error::{Error, Result};
 use crate::loader::Library;
 use crate::output;
 use crate::pixels::Pixels;
 use crate::stylize::style::Style;
-
-/// The bound that `apply` keeps to unless it is told otherwise.
-const BOUND: u64 = 4 << 30;
 
 /// Measures every subject on so many frames that show `picture`, and prints what came out.
 ///
@@ -21,7 +19,7 @@ pub fn run(subjects: &[Subject], picture: &Pixels, frames: u32, json: bool) -> R
     for subject in subjects {
         let library = Library::open()?;
         let style = Style::load(&library, &subject.node, &subject.settings)?;
-        let result = measure(library, style, picture, frames, BOUND)?;
+        let result = measure(library, style, picture, frames, USUAL_MEMORY.0)?;
         if !json {
             output::print(&text(subject, picture, &result))?;
         }

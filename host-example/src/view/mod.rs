@@ -1,4 +1,4 @@
-//! `isophote view`: a window that renders a scene and stylizes every frame.
+//! The viewer: a window that renders a scene and stylizes every frame.
 //!
 //! | input | does |
 //! |---|---|
@@ -12,28 +12,26 @@
 mod app;
 mod present;
 mod stage;
-mod viewer;
+pub mod viewer;
 
 use winit::event_loop::EventLoop;
 
-use crate::cli::ViewArgs;
 use crate::error::{Error, Result};
 use app::App;
 use viewer::Viewer;
 
-/// Runs the verb until the window is closed.
+/// Opens the window, returns when it is closed, and prints a report of what was shown if asked to.
 ///
 /// # Errors
-/// [`Error::Input`] for scenes and styles that cannot be shown, [`Error::Failure`] without a display or a
-/// graphics device.
-pub fn run(args: &ViewArgs) -> Result<()> {
-    let viewer = Viewer::new(args)?;
+/// [`Error::Failure`] without a display or a graphics device; [`Error::Input`] for scenes and styles that
+/// cannot be shown.
+pub fn show(viewer: Viewer, with_report: bool) -> Result<()> {
     let failed =
         |e| Error::failure(format!("no window can be opened: {e}"), "start the viewer in a desktop session");
     let event_loop = EventLoop::new().map_err(|e| failed(e.to_string()))?;
     let mut app = App::new(viewer);
     event_loop.run_app(&mut app).map_err(|e| failed(e.to_string()))?;
-    if args.report {
+    if with_report {
         report(app.viewer());
     }
     app.failure.map_or(Ok(()), Err)

@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use crate::cli::ViewArgs;
 use crate::error::Result;
 use crate::loader::Library;
 use crate::render::look::Look;
@@ -58,41 +57,52 @@ pub struct Stretch {
     pub times: Vec<Duration>,
 }
 
+/// What a viewer shows besides the scene.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Name of the scene in the window's title.
+    pub name: String,
+    /// Styles in the order of the keys 1, 2, ..., as [`usable_styles`] returns them.
+    pub styles: Vec<String>,
+    /// Parameters for the styles that have them.
+    pub settings: Vec<Setting>,
+    /// Size of the window in pixels.
+    pub size: (u32, u32),
+    /// Closes the window after so many frames.
+    pub frames: Option<u32>,
+}
+
+/// The styles `wanted`, or no style and every node of the group styles where none is; checked to be usable.
+///
+/// # Errors
+/// As [`Style::load`]; also for a parameter that no style has.
+pub fn usable_styles(library: &Library, wanted: &[String], settings: &[Setting]) -> Result<Vec<String>> {
+    let mut styles = wanted.to_vec();
+    if styles.is_empty() {
+        styles.push(PLAIN.to_owned());
+        let catalogue = library.catalogue().map_err(|e| e.at("the library", "install it again"))?;
+        styles.extend(catalogue.nodes.iter().filter(|n| n.group == "styles").map(|n| n.id.to_owned()));
+    }
+    let loaded: Vec<Style> =
+        styles.iter().filter(|s| *s != PLAIN).map(|s| Style::load(library, s, &[])).collect::<Result<_>>()?;
+    for setting in settings {
+        let mut refusals = loaded.iter().map(|s| s.set(setting));
+        if let Some(refusal) = refusals.next().filter(|_| !refusals.any(|r| r.is_ok())) {
+            refusal?;
+        }
+    }
+    Ok(styles)
+}
+
 impl Viewer {
-    /// Loads scene and library and checks the styles.
-    ///
-    /// # Errors
-    /// As [`Scene::load`], [`Library::open`] and [`Style::load`]; also for a parameter that no style has.
-    pub fn new(args: &ViewArgs) -> Result<Self> {
-        let library = Library::open()?;
-        let mut styles = args.style.clone();
-        if styles.is_empty() {
-            styles.push(PLAIN.to_owned());
-            let catalogue = library.catalogue().map_err(|e| e.at("the library", "install it again"))?;
-            styles.extend(catalogue.nodes.iter().filter(|n| n.group == "styles").map(|n| n.id.to_owned()));
-        }
-        let loaded: Vec<Style> = styles
-            .iter()
-            .filter(|s| *s != PLAIN)
-            .map(|s| Style::load(&library, s, &[]))
-            .collect::<Result<_>>()?;
-        for setting in &args.set {
-            let mut refusals = loaded.iter().map(|s| s.set(setting));
-            if let Some(refusal) = refusals.next().filter(|_| !refusals.any(|r| r.is_ok())) {
-                refusal?;
-            }
-        }
-        let scene = Scene::load(&args.scene, args.texture.as_deref())?;
-        for warning in &scene.warnings {
-            eprintln!("warning: {}: {warning}", args.scene.display());
-        }
+    /// A viewer of `scene`, at rest.
+    pub fn new(library: Library, scene: Scene, options: Options) -> Self {
+        let Options { name, styles, settings, size, frames } = options;
         let pose = Pose::at_rest(&scene);
         let look = Look::for_scene(&scene, &pose);
-        let aspect = args.size.0 as f32 / args.size.1 as f32;
+        let aspect = size.0 as f32 / size.1 as f32;
         let file_camera = camera::file_camera(&scene);
-        let name =
-            Path::new(&args.scene).file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-        Ok(Self {
+        Self {
             orbit: Orbit::framing(&scene, aspect, Direction::default()),
             from_file: file_camera.is_some(),
             playing: !scene.animations.is_empty(),
@@ -100,8 +110,8 @@ impl Viewer {
             pose,
             look,
             styles,
-            settings: args.set.clone(),
-            size: args.size,
+            settings,
+            size,
             adapter: String::new(),
             name,
             current: 0,
@@ -111,8 +121,8 @@ impl Viewer {
             ticked: Instant::now(),
             frames: 0,
             stretches: Vec::new(),
-            limit: args.frames,
-        })
+            limit: frames,
+        }
     }
 
     /// The style that is shown.

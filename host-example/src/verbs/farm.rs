@@ -5,25 +5,57 @@
 //! be run again, also twice at once.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use clap::Parser;
+use clap::{Args, FromArgMatches, Subcommand};
 use serde_json::{Value, json};
 
-use crate::apply;
-use crate::cli::{ApplyArgs, Cli, Command, FarmCommand, OpenJdArgs};
+use super::apply::ApplyArgs;
 use crate::error::{Error, Result};
+use crate::frames::range_expression;
 use crate::output;
 
 /// Longest name of a job.
 const LONGEST_NAME: usize = 128;
 
+/// Options of `farm`.
+#[derive(Args, Debug)]
+pub struct FarmArgs {
+    /// What to do.
+    #[command(subcommand)]
+    command: FarmCommand,
+}
+
+/// What `farm` does.
+#[derive(Debug, Subcommand)]
+enum FarmCommand {
+    /// Writes an Open Job Description template (jobtemplate-2023-09) of an apply command.
+    Openjd(OpenJdArgs),
+}
+
+/// Options of `farm openjd`.
+#[derive(Args, Debug)]
+struct OpenJdArgs {
+    /// The template: .json; on standard output without.
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Name of the job.
+    #[arg(long)]
+    name: Option<String>,
+    /// Frames of a task, by the extension TASK_CHUNKING; one without.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    chunk: Option<u32>,
+    /// The command: apply with its arguments, after --.
+    #[arg(last = true, required = true)]
+    command: Vec<String>,
+}
+
 /// Runs the verb.
 ///
 /// # Errors
 /// [`Error::Input`] for commands that are none of `apply` on a sequence, and places that cannot be written.
-pub fn run(command: &FarmCommand) -> Result<()> {
-    let FarmCommand::Openjd(args) = command;
+pub fn run(args: &FarmArgs) -> Result<()> {
+    let FarmCommand::Openjd(args) = &args.command;
     let template = template(args)?;
     let text = serde_json::to_string_pretty(&template)
         .map_err(|e| Error::failure(e, "this is a mistake in the program; please report it"))?;
@@ -36,22 +68,28 @@ pub fn run(command: &FarmCommand) -> Result<()> {
     }
 }
 
-fn template(args: &OpenJdArgs) -> Result<Value> {
+/// The arguments of an apply command.
+fn parsed(command: &[String]) -> Result<ApplyArgs> {
     let wrong = |problem: String| Error::input("the command", problem, "write farm openjd -- apply ...");
-    let cli = Cli::try_parse_from(std::iter::once("isophote").chain(args.command.iter().map(String::as_str)));
-    let parsed = match cli.map(|cli| cli.command) {
-        Ok(Command::Apply(parsed)) => parsed,
-        Ok(_) => return Err(wrong("is not apply".into())),
-        Err(e) => {
-            let text = e.render().to_string();
-            return Err(wrong(format!("is wrong: {}", text.lines().next().unwrap_or_default())));
-        }
-    };
-    if let Some(bad) = args.command.iter().find(|a| a.contains("{{")) {
-        return Err(wrong(format!("holds '{bad}', and {{{{ begins a variable in a template")));
+    if command.first().is_none_or(|verb| verb != "apply") {
+        return Err(wrong("is not apply".into()));
     }
-    let frames = apply::frames_of(&parsed)?;
-    let range = range(&frames);
+    let parser = ApplyArgs::augment_args(clap::Command::new("isophote apply"));
+    let parsed =
+        parser.try_get_matches_from(command).and_then(|matches| ApplyArgs::from_arg_matches(&matches));
+    let parsed = parsed.map_err(|e| {
+        let text = e.render().to_string();
+        wrong(format!("is wrong: {}", text.lines().next().unwrap_or_default()))
+    })?;
+    match command.iter().find(|a| a.contains("{{")) {
+        Some(bad) => Err(wrong(format!("holds '{bad}', and {{{{ begins a variable in a template"))),
+        None => Ok(parsed),
+    }
+}
+
+fn template(args: &OpenJdArgs) -> Result<Value> {
+    let parsed = parsed(&args.command)?;
+    let range = range_expression(&parsed.frame_numbers()?);
     let mut words = words(&args.command, &parsed)?;
     words.extend(["--frames".into(), "{{Task.Param.Frame}}".into()]);
     if !parsed.skip_existing {
@@ -119,42 +157,4 @@ fn words(command: &[String], parsed: &ApplyArgs) -> Result<Vec<String>> {
         }
     }
     Ok(words)
-}
-
-/// Frames as a range expression: `1001-1099:2,1200`.
-fn range(frames: &[i64]) -> String {
-    let mut sorted = frames.to_vec();
-    sorted.sort_unstable();
-    let mut parts: Vec<(i64, i64, i64)> = Vec::new();
-    for frame in sorted {
-        match parts.last_mut() {
-            Some((first, last, step)) if *first == *last => {
-                *step = frame - *last;
-                *last = frame;
-            }
-            Some((_, last, step)) if *last + *step == frame => *last = frame,
-            _ => parts.push((frame, frame, 1)),
-        }
-    }
-    let text = |(first, last, step): &(i64, i64, i64)| match (last - first, *step) {
-        (0, _) => first.to_string(),
-        (_, 1) => format!("{first}-{last}"),
-        (length, step) if length == step => format!("{first},{last}"),
-        (_, step) => format!("{first}-{last}:{step}"),
-    };
-    parts.iter().map(text).collect::<Vec<_>>().join(",")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ranges_are_short() {
-        assert_eq!(range(&[1, 3, 5, 7, 20]), "1-7:2,20");
-        assert_eq!(range(&[3, 2, 1]), "1-3");
-        assert_eq!(range(&[1, 9]), "1,9");
-        assert_eq!(range(&[-2, -1, 5]), "-2--1,5");
-        assert_eq!(range(&[4]), "4");
-    }
 }

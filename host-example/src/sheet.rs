@@ -1,9 +1,9 @@
-//! `isophote sheet`: pictures side by side with their names under them, to be looked at.
+//! Contact sheets: pictures side by side with their names under them.
 //!
 //! Everything is shown as displays show it: light is encoded for sRGB, what is brighter than white is white, and
 //! transparent parts show the sheet.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use embedded_graphics::Drawable;
 use embedded_graphics::draw_target::DrawTarget;
@@ -15,13 +15,13 @@ use embedded_graphics::text::{Baseline, Text};
 use image::imageops::{FilterType, resize};
 use image::{ImageBuffer, Rgb, RgbImage, Rgba};
 
-use super::convert;
-use super::exr::Selection;
-use super::frame::Light;
-use super::read::{self, Family};
-use crate::cli::SheetArgs;
+use crate::apply::convert;
+use crate::apply::exr::Selection;
+use crate::apply::filter::Light;
+use crate::apply::read::{self, Family};
+use crate::apply::space::srgb_encode;
 use crate::error::{Error, Result};
-use crate::output;
+use crate::pixels::MOST_PIXELS;
 
 /// Pixels between and around pictures.
 const GAP: u32 = 12;
@@ -31,53 +31,18 @@ const LINE: u32 = 26;
 const LETTER: u32 = FONT_9X18.character_size.width;
 /// The sheet: dark enough to let pictures glow, light enough for black ones to have a border.
 const GROUND: [u8; 3] = [46, 46, 48];
-/// Most pixels of a sheet.
-const MOST_PIXELS: u64 = 1 << 28;
-
-/// Runs the verb.
-///
-/// # Errors
-/// [`Error::Input`] for pictures that cannot be read, and sheets that are too large or cannot be written.
-pub fn run(args: &SheetArgs) -> Result<()> {
-    if !args.sheet.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
-        return Err(Error::file(&args.sheet, "is not a kind of sheet that is written", "name a .png file"));
-    }
-    if args.label.len() > args.pictures.len() {
-        let problem = format!("{} labels for {} pictures", args.label.len(), args.pictures.len());
-        return Err(Error::input("--label", problem, "give one for each picture, in their order"));
-    }
-    output::check_writable(&args.sheet)?;
-    let mut cells = Vec::new();
-    for (index, path) in args.pictures.iter().enumerate() {
-        let label = args.label.get(index).cloned().unwrap_or_else(|| name(&args.pictures, path));
-        cells.extend(pictures(path, &label, args.width)?);
-    }
-    // As many across as there are, up to four: before and after stand beside each other.
-    let columns = args.columns.map_or(cells.len().min(4), |columns| columns as usize);
-    let sheet = arranged(&cells, columns, args.width).ok_or_else(|| {
-        Error::input("the sheet", "would be too large", "choose a smaller --width or fewer pictures")
-    })?;
-    output::write_beside(&args.sheet, |file| {
-        let encoder = image::codecs::png::PngEncoder::new(file);
-        sheet.write_with_encoder(encoder).map_err(|e| e.to_string())
-    })
-}
-
-/// The name of a file, with its folder where others have the same.
-fn name(all: &[PathBuf], path: &Path) -> String {
-    let alike = all.iter().filter(|other| other.file_name() == path.file_name()).count();
-    let name = path.file_name().filter(|_| alike == 1).map_or(path.as_os_str(), |name| name);
-    name.to_string_lossy().into_owned()
-}
 
 /// A picture with its label.
-struct Cell {
+pub struct Cell {
     picture: RgbImage,
     label: String,
 }
 
 /// The picture of a file, or those of its views, `width` pixels wide.
-fn pictures(path: &Path, label: &str, width: u32) -> Result<Vec<Cell>> {
+///
+/// # Errors
+/// [`Error::Input`] for pictures that cannot be read.
+pub fn cells(path: &Path, label: &str, width: u32) -> Result<Vec<Cell>> {
     let source = read::read(path, &Selection::default())?;
     let several = source.pictures.len() > 1;
     let mut cells = Vec::with_capacity(source.pictures.len());
@@ -95,7 +60,7 @@ fn pictures(path: &Path, label: &str, width: u32) -> Result<Vec<Cell>> {
                 [r, g, b, a] => ([r, g, b], a.clamp(0.0, 1.0)),
                 [r, g, b] => ([r, g, b], 1.0),
                 // Numbers of light have no colours to convert.
-                [v, ..] if source.family == Family::Light => ([output::srgb_encode(v.max(0.0)); 3], 1.0),
+                [v, ..] if source.family == Family::Light => ([srgb_encode(v.max(0.0)); 3], 1.0),
                 [v, ..] => ([v; 3], 1.0),
                 [] => continue,
             };
@@ -121,8 +86,8 @@ fn pictures(path: &Path, label: &str, width: u32) -> Result<Vec<Cell>> {
     Ok(cells)
 }
 
-/// All cells in rows; nothing when that would be too large.
-fn arranged(cells: &[Cell], columns: usize, width: u32) -> Option<RgbImage> {
+/// All cells in rows of `columns`, each `width` pixels wide; nothing when that would be too large.
+pub fn arranged(cells: &[Cell], columns: usize, width: u32) -> Option<RgbImage> {
     let rows: Vec<&[Cell]> = cells.chunks(columns.max(1)).collect();
     let heights: Vec<u32> =
         rows.iter().map(|row| row.iter().map(|c| c.picture.height()).max().unwrap_or(1)).collect();
@@ -195,11 +160,5 @@ mod tests {
         assert_eq!(fitting("a.1001.exr", 10), "a.1001.exr");
         assert_eq!(fitting("long.name.1001.exr", 11), "...1001.exr");
         assert_eq!(fitting("abcdef", 2), "..");
-    }
-
-    #[test]
-    fn folders_tell_files_of_one_name_apart() {
-        let all = ["in/a.exr", "out/a.exr", "b.exr"].map(PathBuf::from);
-        assert_eq!(all.each_ref().map(|path| name(&all, path)), ["in/a.exr", "out/a.exr", "b.exr"]);
     }
 }

@@ -2,7 +2,6 @@
 
 use std::fs;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use exr::prelude::{
@@ -12,17 +11,19 @@ use exr::prelude::{
 use half::f16;
 use serde::Serialize;
 
-use super::exr::Selection;
-use super::frame::{self, Filter};
-use super::memory::Budget;
-use super::read;
-use super::report::Report;
-use super::sequence::{Run, Task};
-use super::write::Format;
-use crate::cli::Backend;
+use crate::apply::backend::Backend;
+use crate::apply::exr::Selection;
+use crate::apply::filter::{self, Filter};
+use crate::apply::memory::Budget;
+use crate::apply::read;
+use crate::apply::report::Report;
+use crate::apply::sequence::Run;
+use crate::apply::tasks::Task;
+use crate::apply::write::Format;
 use crate::error::{Error, Result};
 use crate::loader::Library;
 use crate::pixels::Pixels;
+use crate::stop::Stop;
 use crate::stylize::style::Style;
 
 /// What was measured.
@@ -63,7 +64,7 @@ pub fn measure(
     for task in &tasks {
         save(&task.input, picture)?;
     }
-    let selection = Selection { wanted: frame::usable_guides(&style)?, ..Selection::default() };
+    let selection = Selection { wanted: filter::usable_guides(&style)?, ..Selection::default() };
     let mut filter = Filter::new(library, style, Backend::Cpu, None, 0)?;
     let mut filter_seconds = 0.0;
     // The first of these runs makes the plan and is not counted.
@@ -78,7 +79,7 @@ pub fn measure(
     let working = filter.working_memory("a frame", (picture.width(), picture.height()), &selection.wanted)?;
     let (budget, report) =
         (Budget::new(bound.saturating_sub(working)), Report::new(tasks.len(), false, false));
-    let stop = AtomicBool::new(false);
+    let stop = Stop::default();
     let run = Run {
         tasks: &tasks,
         selection: &selection,

@@ -1,12 +1,23 @@
 //! `isophote nodes`: what the library can do, for people and for programs.
 
-use crate::cli::NodesArgs;
+use clap::Args;
+
 use crate::error::{Error, Result};
 use crate::loader::Library;
 use crate::loader::catalogue::{Catalogue, Node, Param, ParamKind, Port};
 
 /// Columns of running text.
 const WIDTH: usize = 90;
+
+/// Options of `nodes`.
+#[derive(Args, Debug)]
+pub struct NodesArgs {
+    /// A node, to be shown with its parameters.
+    node: Option<String>,
+    /// Everything, as JSON.
+    #[arg(long)]
+    json: bool,
+}
 
 /// Runs the verb.
 ///

@@ -3,13 +3,58 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::cli::{PresetArgs, PresetCommand};
+use clap::{Args, Subcommand};
+
 use crate::error::{Error, Result};
 use crate::loader::Library;
 use crate::loader::catalogue::ParamKind;
 use crate::output;
 use crate::stylize::preset::{self, Preset, Track};
 use crate::stylize::style::{Setting, Style};
+
+/// Options of `preset`.
+#[derive(Args, Debug)]
+pub struct PresetArgs {
+    /// What to do.
+    #[command(subcommand)]
+    command: PresetCommand,
+}
+
+/// What can be done to presets. Parameters in them may have keyframes instead of a value:
+/// `"sigma_d": {"1001": 2, "1050": 6}`, with `"between": "step"` for values that hold until the next key.
+#[derive(Debug, Subcommand)]
+enum PresetCommand {
+    /// Writes a style with its parameters to a file.
+    Save {
+        /// The id of a node, a graph file or another preset.
+        style: String,
+        /// The file: .json.
+        file: PathBuf,
+        /// Sets a parameter; node.id=value for one node of a graph. May be repeated.
+        #[arg(long, value_name = "ID=VALUE")]
+        set: Vec<Setting>,
+        /// Writes the parameters that are not set too, so that other defaults would change nothing.
+        #[arg(long)]
+        all: bool,
+        /// Replaces the file if there is one.
+        #[arg(long)]
+        force: bool,
+    },
+    /// Prints the parameters of a preset.
+    Show {
+        /// The preset.
+        file: PathBuf,
+        /// With the values at this frame instead of keyframes.
+        #[arg(long, value_name = "N", allow_negative_numbers = true)]
+        frame: Option<i64>,
+    },
+    /// Tells whether presets can be used as they are, and what is wrong with those that cannot.
+    Check {
+        /// The presets.
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+    },
+}
 
 /// Runs the verb.
 ///

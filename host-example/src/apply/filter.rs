@@ -1,17 +1,20 @@
 //! What is done to every frame: the graph on each of its pictures.
 
+use std::path::Path;
+
+use super::backend::Backend;
 use super::convert;
 use super::exr::{Guide, Picture};
 use super::primaries::{AP1, Change, REC709, same};
-use super::read::{Family, Source};
+use super::read::{Family, Opened, Source};
+use super::space::Space;
 use super::write::Format;
-use crate::cli::{Backend, Space};
 use crate::error::Result;
 use crate::loader::catalogue::Kind;
 use crate::loader::contract::{
     ISOPHOTE_ALPHA_PREMULTIPLIED, ISOPHOTE_ALPHA_STRAIGHT, ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_NORMAL,
-    ISOPHOTE_GUIDE_OBJECT_ID, ISOPHOTE_NO_DEVICE, ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR,
-    ISOPHOTE_SPACE_SRGB, IsophoteRequest,
+    ISOPHOTE_GUIDE_OBJECT_ID, ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR, ISOPHOTE_SPACE_SRGB,
+    IsophoteRequest,
 };
 use crate::loader::{Control, Device, Input, Library};
 use crate::pixels::{Pixels, Precision};
@@ -36,6 +39,15 @@ pub struct Filtered {
     pub mended: u64,
 }
 
+/// Memory that a run needs, in bytes.
+#[derive(Clone, Copy, Debug)]
+pub struct Needs {
+    /// Of a frame from being read to being written.
+    pub frame: u64,
+    /// Of filtering.
+    pub filter: u64,
+}
+
 impl Filter {
     /// A style on the device that `backend` asks for.
     ///
@@ -48,7 +60,7 @@ impl Filter {
         space: Option<Space>,
         threads: u32,
     ) -> Result<Self> {
-        let device = device(&library, backend)?;
+        let device = backend.device(&library)?;
         Ok(Self { library, style, device, space, threads })
     }
 
@@ -72,6 +84,16 @@ impl Filter {
             u64::from(width.unsigned_abs()) * u64::from(height.unsigned_abs()) * u64::from(t.channels) * 4
         };
         Ok(program.textures.iter().map(bytes).sum())
+    }
+
+    /// What the frame `file` needs; nothing when it will be refused, which is reported when its turn comes.
+    ///
+    /// # Errors
+    /// As [`Filter::working_memory`].
+    pub fn needs(&self, file: &Path, opened: &Opened, guides: &[Guide]) -> Result<Option<Needs>> {
+        let Some(size) = opened.size() else { return Ok(None) };
+        let filter = self.working_memory(&file.display().to_string(), size, guides)?;
+        Ok(Some(Needs { frame: opened.weight(), filter }))
     }
 
     /// Filters all pictures of `source`, or the first where `format` holds one.
@@ -166,7 +188,7 @@ impl Light {
     pub fn of(space: Option<Space>, family: Family, picture: &Picture) -> Self {
         let told = |space| Self { space, change: None };
         let primaries = match (space, family) {
-            (Some(Space::P3 | Space::Rec2020), _) => space.and_then(convert::primaries),
+            (Some(Space::P3 | Space::Rec2020), _) => space.and_then(Space::primaries),
             (Some(space), _) => return told(space),
             (None, Family::Display) => return told(Space::Srgb),
             (None, Family::Light) => picture.chromaticities,
@@ -200,19 +222,4 @@ pub fn usable_guides(style: &Style) -> Result<Vec<Guide>> {
         }
     }
     Ok(guides)
-}
-
-/// The library's own device, or nothing for the CPU.
-fn device(library: &Library, backend: Backend) -> Result<Option<Device>> {
-    let place = "--backend";
-    match backend {
-        Backend::Cpu => Ok(None),
-        Backend::Gpu => library.device(None).map(Some).map_err(|e| e.at(place, "use --backend cpu")),
-        // A driver that computes on the CPU is slower there than the library itself.
-        Backend::Auto => match library.device(Some("gpu")) {
-            Ok(device) => Ok(Some(device)),
-            Err(refused) if refused.status == ISOPHOTE_NO_DEVICE => Ok(None),
-            Err(refused) => Err(refused.at(place, "use --backend cpu")),
-        },
-    }
 }

@@ -1,0 +1,289 @@
+//! `isophote apply`: a node, graph or preset on a picture or a sequence of frames, without any scene.
+
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use crate::apply::backend::Backend;
+use crate::apply::exr::{GuideChoice, Selection};
+use crate::apply::filter::{self, Filter};
+use crate::apply::memory::{Budget, Bytes};
+use crate::apply::read::{self, Opened};
+use crate::apply::report::{Counts, Outcome, Report};
+use crate::apply::sequence::{self, Run};
+use crate::apply::space::Space;
+use crate::apply::tasks::{OnMissing, Task, Tasks};
+use crate::apply::write::Format;
+use crate::error::{Error, Result};
+use crate::frames::FrameList;
+use crate::loader::Library;
+use crate::output;
+use crate::stop::Stop;
+use crate::stylize::style::{Setting, Style};
+
+/// Options of `apply`.
+#[derive(Args, Debug)]
+pub struct ApplyArgs {
+    /// The id of a node, or a graph file or preset (.json); left out with --preset.
+    pub style: PathBuf,
+    /// The picture: PNG, JPEG, TIFF, WebP, HDR or EXR; shot.####.exr, shot.@@@@.exr or shot.%04d.exr for a sequence.
+    pub input: PathBuf,
+    /// The result: .png, .jpg, .tif or .exr; may be the same file. Of a sequence with a place for the number too.
+    #[arg(required_unless_present = "preset")]
+    pub output: Option<PathBuf>,
+    /// A preset file with the style and its parameters.
+    #[arg(long, value_name = "FILE")]
+    pub preset: Option<PathBuf>,
+    /// Frames of the sequence, such as 1001-1100x2,1200; without it all that are on disk.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub frames: Option<FrameList>,
+    /// What to do when frames of the sequence have no file.
+    #[arg(long, value_enum, default_value_t = OnMissing::Fail)]
+    pub on_missing: OnMissing,
+    /// Most memory, such as 4GiB; decides how many frames are in flight. At most 4GiB without.
+    #[arg(long, value_name = "SIZE")]
+    pub memory: Option<Bytes>,
+    /// Leaves results alone that are there already and whole.
+    #[arg(long)]
+    pub skip_existing: bool,
+    /// Says what would be done, and does nothing.
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Prints a line of JSON for every frame.
+    #[arg(long)]
+    pub json: bool,
+    /// Sets a parameter; node.id=value for one node of a graph. May be repeated.
+    #[arg(long, value_name = "ID=VALUE")]
+    pub set: Vec<Setting>,
+    /// Where the work is done; auto takes a graphics card if there is one, otherwise the CPU.
+    #[arg(long, value_enum, default_value_t = Backend::Auto)]
+    pub backend: Backend,
+    /// What the numbers of the picture mean, and the result's; without it sRGB for files of integers, what
+    /// its chromaticities say or else linear for EXR, linear for other floats.
+    #[arg(long, value_enum)]
+    pub space: Option<Space>,
+    /// The layer of an EXR file that is read and replaced; without it the main one.
+    #[arg(long, value_name = "LAYER")]
+    pub layer: Option<String>,
+    /// The view of an EXR file with several; without it all views are filtered, each by itself.
+    #[arg(long, value_name = "VIEW")]
+    pub view: Option<String>,
+    /// The channel of an EXR file that is the layer's alpha, or none; without it the layer's A.
+    #[arg(long, value_name = "CHANNEL")]
+    pub alpha: Option<String>,
+    /// Adds the result to the EXR file as a new layer, and leaves the one that was read as it was.
+    #[arg(long, value_name = "NEWLAYER")]
+    pub into: Option<String>,
+    /// The layer of an EXR file that is a guide: normal=LAYER, depth=LAYER or object_id=LAYER; =none for
+    /// no such guide. Without it guides are found by names such as N, normal, Z, depth, P and id. May be repeated.
+    #[arg(long, value_name = "GUIDE=LAYER")]
+    pub guide: Vec<GuideChoice>,
+    /// Threads on the CPU; 0 for one per core.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1024))]
+    pub threads: u32,
+}
+
+/// Runs the verb.
+///
+/// # Errors
+/// [`Error::Input`] for bad input, before anything is computed where it can be known then; [`Error::Failure`]
+/// when the library or the device fails. Each output is written as a whole or not at all.
+pub fn run(args: &ApplyArgs) -> Result<()> {
+    let files = args.files()?;
+    let format = Format::of(files.output)?;
+    let tasks = args.tasks()?;
+    let library = Library::open()?;
+    let style = Style::load(&library, &files.style, &args.set)?;
+    let selection = args.selection(&style, format)?;
+    let opened = args.open_first(&tasks, &selection)?;
+    if args.threads > 0 {
+        // It may have been set by an earlier run of this process.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(args.threads as usize).build_global();
+    }
+    let backend = if args.dry_run { Backend::Cpu } else { args.backend };
+    let mut filter = Filter::new(library, style, backend, args.space, args.threads)?;
+    let needs = match &opened {
+        Some(opened) => filter.needs(&tasks.ready[0].input, opened, &selection.wanted)?,
+        None => None,
+    };
+    if let (Some(memory), Some(needs)) = (args.memory, needs)
+        && needs.frame + needs.filter > memory.0
+    {
+        let least = Bytes(needs.frame + needs.filter);
+        return Err(Error::input("--memory", format!("a frame needs about {least}"), "give more"));
+    }
+    let most = args.memory.unwrap_or(sequence::USUAL_MEMORY).0;
+    if args.dry_run {
+        args.print_plan(&tasks, needs, most);
+        return Ok(());
+    }
+    let stop = Stop::on_signals();
+    let report = Report::new(tasks.count(), tasks.is_sequence, args.json);
+    for task in &tasks.missing {
+        report.frame(task, &Outcome::Missing);
+    }
+    let run = Run {
+        tasks: &tasks.ready,
+        selection: &selection,
+        format,
+        skip_existing: args.skip_existing,
+        budget: &Budget::new(most.saturating_sub(needs.map_or(0, |n| n.filter))),
+        report: &report,
+        stop: &stop,
+    };
+    let result = run.all(&mut filter, opened);
+    let counts = report.end(result.is_ok() && !stop.is_requested());
+    result?;
+    check_complete(files.input, &counts, tasks.ready.len(), &stop)
+}
+
+/// An error when the run was stopped, or frames failed.
+fn check_complete(input: &Path, counts: &Counts, frames: usize, stop: &Stop) -> Result<()> {
+    if stop.is_requested() {
+        return Err(Error::failure(
+            format!("stopped after {} frames were written", counts.written),
+            "start again with --skip-existing to go on",
+        ));
+    }
+    if counts.failed > 0 {
+        return Err(Error::file(
+            input,
+            format!("{} of {frames} frames could not be done", counts.failed),
+            "fix these files and start again with --skip-existing",
+        ));
+    }
+    Ok(())
+}
+
+/// The files that the command line names.
+struct Files<'a> {
+    style: Cow<'a, str>,
+    input: &'a Path,
+    output: &'a Path,
+}
+
+impl ApplyArgs {
+    /// With a preset the style is left out, and the other two move up.
+    fn files(&self) -> Result<Files<'_>> {
+        match (&self.output, &self.preset) {
+            (Some(output), None) => {
+                Ok(Files { style: self.style.to_string_lossy(), input: &self.input, output })
+            }
+            (None, Some(preset)) => {
+                Ok(Files { style: preset.to_string_lossy(), input: &self.style, output: &self.input })
+            }
+            _ => Err(Error::input(
+                "--preset",
+                "the preset names the style",
+                "give the picture and the result alone, or leave --preset out",
+            )),
+        }
+    }
+
+    /// The frames that are read and written.
+    ///
+    /// # Errors
+    /// As [`Tasks::find`]; [`Error::Input`] for an output that is a folder.
+    fn tasks(&self) -> Result<Tasks> {
+        let files = self.files()?;
+        let tasks = Tasks::find(files.input, files.output, self.frames.as_ref(), self.on_missing)?;
+        match tasks.ready.iter().find(|task| task.output.is_dir()) {
+            Some(task) => Err(Error::file(&task.output, "is a folder", "name a file")),
+            None => Ok(tasks),
+        }
+    }
+
+    /// Numbers of the frames, for jobs that split them.
+    ///
+    /// # Errors
+    /// As [`Tasks::find`]; [`Error::Input`] when the input is no sequence.
+    pub fn frame_numbers(&self) -> Result<Vec<i64>> {
+        let tasks = self.tasks()?;
+        if !tasks.is_sequence {
+            return Err(Error::file(self.files()?.input, "is no sequence", "write shot.####.exr"));
+        }
+        Ok(tasks.ready.iter().filter_map(|task| task.frame).collect())
+    }
+
+    /// Opens the first input and makes sure that the first output can be written.
+    fn open_first(&self, tasks: &Tasks, selection: &Selection) -> Result<Option<Opened>> {
+        let first = &tasks.ready[0];
+        let opened = match read::open(&first.input, selection) {
+            // A picture that cannot be read is reported before a folder that cannot be written.
+            Err(error) if !tasks.is_sequence && !self.skip_existing => return Err(error),
+            opened => opened.ok(),
+        };
+        output::check_writable(&first.output)?;
+        output::sweep(&first.output);
+        Ok(opened)
+    }
+
+    /// What `--dry-run` prints.
+    fn print_plan(&self, tasks: &Tasks, needs: Option<filter::Needs>, most: u64) {
+        let is_done = |task: &&Task| self.skip_existing && read::is_whole(&task.output);
+        if self.json {
+            for task in &tasks.ready {
+                let status = if is_done(&task) { "skipped" } else { "planned" };
+                println!(
+                    "{}",
+                    serde_json::json!({
+                        "event": "frame", "frame": task.frame, "status": status,
+                        "input": task.input.to_string_lossy(), "output": task.output.to_string_lossy(),
+                    })
+                );
+            }
+            return;
+        }
+        let done = tasks.ready.iter().filter(is_done).count();
+        for task in &tasks.ready {
+            let note = if is_done(&task) { " (there already)" } else { "" };
+            println!("{} -> {}{note}", task.input.display(), task.output.display());
+        }
+        let mut text = format!("{} frames to be written", tasks.ready.len() - done);
+        for (count, what) in [(done, "there already"), (tasks.missing.len(), "missing")] {
+            if count > 0 {
+                text += &format!(", {count} {what}");
+            }
+        }
+        if let Some(needs) = needs {
+            let at_once = most.saturating_sub(needs.filter).checked_div(needs.frame).unwrap_or(1);
+            text += &format!(
+                "; filtering takes about {}, a frame {}, {} at a time",
+                Bytes(needs.filter),
+                Bytes(needs.frame),
+                at_once.clamp(1, sequence::MOST_IN_FLIGHT)
+            );
+        }
+        println!("{text}");
+    }
+
+    /// What is read of EXR files.
+    fn selection(&self, style: &Style, format: Format) -> Result<Selection> {
+        if self.into.is_some() && format != Format::Exr {
+            return Err(Error::input(
+                "--into",
+                "only EXR files hold several layers",
+                "name a result that ends in .exr",
+            ));
+        }
+        let is_bad = |name: &&str| {
+            name.is_empty() || name.split('.').any(str::is_empty) || name.contains(char::is_control)
+        };
+        if let Some(bad) = self.into.as_deref().filter(is_bad) {
+            return Err(Error::input(
+                "--into",
+                format!("'{}' is no name of a layer", bad.escape_default()),
+                "name a layer such as cartoon",
+            ));
+        }
+        Ok(Selection {
+            layer: self.layer.clone(),
+            view: self.view.clone(),
+            alpha: self.alpha.clone(),
+            into: self.into.clone(),
+            guides: self.guide.clone(),
+            wanted: filter::usable_guides(style)?,
+        })
+    }
+}

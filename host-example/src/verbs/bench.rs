@@ -1,0 +1,145 @@
+//! `isophote bench`: what each node and each of its passes takes, on the CPU and on the GPU.
+//!
+//! Every number is the median of warm runs: plans are made, memory is allocated and shaders are compiled
+//! before. The CPU's are set against what the machine can do at most, measured in the same run; a small picture
+//! that stays in the caches may be copied faster than that.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use isophote_engine::cpu::{Pool, Threads};
+use isophote_engine::fearless_simd::Level;
+
+use super::shared::parse_size;
+use crate::bench::compare::Saved;
+use crate::bench::report::{Machine, Report, Shown};
+use crate::bench::{Subject, cpu, gpu, peak, picture, sequence};
+use crate::error::{Error, Result};
+use crate::loader::Library;
+use crate::render::gpu::Gpu;
+
+/// Sizes that are measured when none is given.
+const SIZES: [(u32, u32); 2] = [(1280, 720), (1920, 1080)];
+
+/// Options of `bench`. Times are medians of warm runs and leave out reading and writing of pixels.
+#[derive(Args, Debug)]
+pub struct BenchArgs {
+    /// Everything, as JSON.
+    #[arg(long)]
+    json: bool,
+    /// Where to measure; on both without.
+    #[arg(long, value_enum)]
+    backend: Option<BenchBackend>,
+    /// Size of the picture in pixels; without it 1280x720 and 1920x1080.
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    size: Option<(u32, u32)>,
+    /// Only this node, with other values than the defaults where they follow, such as
+    /// oriented_bilateral,iterations=1. May be repeated.
+    #[arg(long, value_name = "ID[,PARAM=VALUE]...")]
+    node: Vec<String>,
+    /// Also writes what is measured to this file, for --compare.
+    #[arg(long, value_name = "FILE")]
+    save: Option<PathBuf>,
+    /// Sets every time against that of a run saved before: x0.50 is twice as fast. Load of the machine
+    /// changes times as much as code does, so that both runs should find it idle.
+    #[arg(long, value_name = "FILE")]
+    compare: Option<PathBuf>,
+    /// Instead finishes a sequence of so many EXR frames (half floats, ZIP) on the CPU, from file to file, and
+    /// sets the time against that of filtering alone; cartoon at 1920x1080 without --node and --size.
+    #[arg(long, value_name = "FRAMES", conflicts_with_all = ["save", "compare", "markdown", "backend"],
+        value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    sequence: Option<u32>,
+    /// Prints a table in Markdown, beside what other programs take for the like where that was measured.
+    #[arg(long, conflicts_with = "json")]
+    markdown: bool,
+    /// Runs whose median counts, after one that does not.
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    runs: u32,
+}
+
+/// What `bench` measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum BenchBackend {
+    /// The CPU, against its own peak.
+    Cpu,
+    /// The best graphics device there is.
+    Gpu,
+}
+
+/// Runs the verb.
+///
+/// # Errors
+/// [`Error::Failure`] without a library, and without an adapter when the GPU was asked for;
+/// [`Error::Input`] for nodes that do not exist.
+pub fn run(args: &BenchArgs) -> Result<()> {
+    let library = Library::open()?;
+    if let Some(frames) = args.sequence {
+        let usual = ["cartoon".to_owned()];
+        let subjects = subjects(&library, if args.node.is_empty() { &usual } else { &args.node })?;
+        return sequence::run(&subjects, &picture(args.size.unwrap_or(SIZES[1])), frames, args.json);
+    }
+    let subjects = subjects(&library, &args.node)?;
+    let before = args.compare.as_deref().map(Saved::read).transpose()?;
+    let gpu = match args.backend {
+        Some(BenchBackend::Cpu) => None,
+        Some(BenchBackend::Gpu) => Some(Gpu::open()?),
+        None => Gpu::open().map_err(|e| eprintln!("warning: the GPU is left out: {e}")).ok(),
+    };
+    let mut gpu = gpu.map(gpu::Bench::new);
+    let on_cpu = args.backend != Some(BenchBackend::Gpu);
+    let pool = Pool::new(0).map_err(|e| Error::failure(e, "close other programs"))?;
+    let machine = Machine::new(
+        Threads::count(&pool),
+        on_cpu.then(|| peak::measure(Level::new(), &pool)),
+        gpu.as_ref().map(gpu::Bench::adapter),
+    );
+    drop(pool);
+    let shown = match (args.json, args.markdown) {
+        (true, _) => Shown::Json,
+        (_, true) => Shown::Markdown,
+        _ => Shown::Table,
+    };
+    let mut report = Report::new(&library, machine, args.runs, shown, before);
+    report.print_heading();
+    let sizes = args.size.map_or(SIZES.to_vec(), |size| vec![size]);
+    for size in sizes {
+        let picture = picture(size);
+        for subject in &subjects {
+            if on_cpu {
+                report.add(cpu::run(&library, subject, &picture, args.runs)?);
+            }
+            if let Some(gpu) = &mut gpu {
+                report.add(gpu.run(&library, subject, &picture, args.runs)?);
+            }
+        }
+    }
+    if let Some(path) = &args.save {
+        save(path, &report)?;
+    }
+    report.print_end()
+}
+
+fn save(path: &Path, report: &Report) -> Result<()> {
+    std::fs::write(path, report.json()?).map_err(|e| Error::file(path, e, "choose another file"))
+}
+
+/// The nodes asked for, or all.
+fn subjects(library: &Library, wanted: &[String]) -> Result<Vec<Subject>> {
+    let mut subjects = Vec::new();
+    for label in wanted {
+        let fail = |e: String| Error::input(format!("--node {label}"), e, "such as gaussian,sigma=3");
+        let mut parts = label.split(',');
+        let id = parts.next().unwrap_or_default();
+        let node = library
+            .find_node(id)
+            .map_err(|e| e.at(format!("--node {label}"), "`isophote nodes` lists all"))?;
+        let settings = parts.map(str::parse).collect::<std::result::Result<_, String>>().map_err(fail)?;
+        subjects.push(Subject { label: label.clone(), node: node.id.to_owned(), settings });
+    }
+    if subjects.is_empty() {
+        let catalogue = library.catalogue().map_err(|e| e.at("the catalogue", "use another library"))?;
+        let plain = |id: &str| Subject { label: id.to_owned(), node: id.to_owned(), settings: Vec::new() };
+        subjects.extend(catalogue.nodes.iter().map(|n| plain(n.id)));
+    }
+    Ok(subjects)
+}

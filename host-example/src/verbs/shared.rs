@@ -1,0 +1,54 @@
+//! Arguments that several verbs have.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::error::Result;
+use crate::pixels::MOST_PIXELS;
+use crate::scene::Scene;
+
+/// The scene of `render` and `view`.
+#[derive(Args, Debug)]
+pub struct SceneArgs {
+    /// The scene: .gltf, .glb or .obj.
+    pub scene: PathBuf,
+    /// Image that colours an OBJ without textures.
+    #[arg(long, value_name = "FILE")]
+    pub texture: Option<PathBuf>,
+}
+
+impl SceneArgs {
+    /// Loads the scene and prints its warnings.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn load(&self) -> Result<Scene> {
+        let scene = Scene::load(&self.scene, self.texture.as_deref())?;
+        for warning in &scene.warnings {
+            eprintln!("warning: {}: {warning}", self.scene.display());
+        }
+        Ok(scene)
+    }
+
+    /// Name of the file, without its folder.
+    pub fn name(&self) -> String {
+        self.scene.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+    }
+}
+
+/// Width and height in pixels, such as `1280x720`.
+///
+/// # Errors
+/// What to write instead.
+pub fn parse_size(text: &str) -> std::result::Result<(u32, u32), String> {
+    let parse = || {
+        let (width, height) = text.split_once(['x', 'X'])?;
+        Some((width.trim().parse::<u32>().ok()?, height.trim().parse::<u32>().ok()?))
+    };
+    parse()
+        .filter(|(width, height)| (1..=MOST_PIXELS).contains(&(u64::from(*width) * u64::from(*height))))
+        .ok_or_else(|| {
+            format!("write width and height such as 1280x720; at most {MOST_PIXELS} pixels in all")
+        })
+}

@@ -1,0 +1,52 @@
+//! `isophote view`: a window that renders a scene and stylizes every frame.
+
+use clap::Args;
+
+use super::shared::{SceneArgs, parse_size};
+use crate::error::Result;
+use crate::loader::Library;
+use crate::stylize::style::Setting;
+use crate::view;
+use crate::view::viewer::{Options, Viewer, usable_styles};
+
+/// Options of `view`.
+#[derive(Args, Debug)]
+pub struct ViewArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// A style for the keys 1, 2, ...: none, the id of a node or a graph file (.json); may be given several
+    /// times. Without it: none and every node of the group styles.
+    #[arg(long, value_name = "STYLE")]
+    style: Vec<String>,
+    /// Sets a parameter of the styles; may be given several times.
+    #[arg(long, value_name = "ID=VALUE")]
+    set: Vec<Setting>,
+    /// Size of the window in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
+    size: (u32, u32),
+    /// Closes after so many frames.
+    #[arg(long, value_name = "N")]
+    frames: Option<u32>,
+    /// Prints adapter, frames and milliseconds of each style when the window is closed.
+    #[arg(long)]
+    report: bool,
+}
+
+/// Runs the verb until the window is closed.
+///
+/// # Errors
+/// [`crate::error::Error::Input`] for scenes and styles that cannot be shown,
+/// [`crate::error::Error::Failure`] without a display or a graphics device.
+pub fn run(args: &ViewArgs) -> Result<()> {
+    let library = Library::open()?;
+    let styles = usable_styles(&library, &args.style, &args.set)?;
+    let scene = args.scene.load()?;
+    let options = Options {
+        name: args.scene.name(),
+        styles,
+        settings: args.set.clone(),
+        size: args.size,
+        frames: args.frames,
+    };
+    view::show(Viewer::new(library, scene, options), args.report)
+}
