@@ -532,7 +532,8 @@ typedef struct IsophotePass {
   const char *kernel;
   // Bytes of the uniform at binding 0.
   const void *grid;
-  // Bytes of the uniform at binding 1.
+  // Bytes of the uniform at binding 1; null for a kernel without parameters, whose shader has no
+  // binding 1.
   const void *params;
   // Indices of the textures read, at bindings 2, 3, ...
   const uint32_t *inputs;

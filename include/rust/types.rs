@@ -340,7 +340,8 @@ pub struct IsophotePass {
     pub kernel: *const c_char,
     /// Bytes of the uniform at binding 0.
     pub grid: *const c_void,
-    /// Bytes of the uniform at binding 1.
+    /// Bytes of the uniform at binding 1; null for a kernel without parameters, whose shader has no
+    /// binding 1.
     pub params: *const c_void,
     /// Indices of the textures read, at bindings 2, 3, ...
     pub inputs: *const u32,

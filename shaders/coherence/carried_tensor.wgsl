@@ -5,13 +5,13 @@
 #import gpu/grid
 
 struct Params {
-    // Cut-off of the Gaussian, pixels, 0..8.
+    /// Cut-off of the Gaussian, pixels, 0..=8.
     radius: i32,
-    // A tensor is valid above this lambda1 (2.164).
+    /// A tensor is valid above this lambda1 (2.164).
     threshold: f32,
-    // Weights of the derivative operator across the derivative: at the centre and beside it.
+    /// Weights of the derivative operator across the derivative: at the centre and beside it.
     smoothing: vec2f,
-    // Weights of the Gaussian at distance 0, 1, ...
+    /// Weights of the Gaussian at distance 0, 1, ...
     weights: array<vec4f, 3>,
 }
 

@@ -6,15 +6,15 @@
 #import shared/tensor
 
 struct Params {
-    // Standard deviation of the second derivative, pixels.
+    /// Standard deviation of the second derivative, pixels.
     sigma: f32,
-    // Distance of its last tap, pixels.
+    /// Distance of its last tap, pixels.
     reach: f32,
-    // Distance of the last pixel looked at, pixels of the full-size picture.
+    /// Distance of the last pixel looked at, pixels of the full-size picture.
     radius: f32,
-    // Pixels per pixel of the full-size picture.
+    /// Pixels per pixel of the full-size picture.
     scale: f32,
-    // Responses up to this leave a pixel alone.
+    /// Responses up to this leave a pixel alone.
     threshold: f32,
 }
 

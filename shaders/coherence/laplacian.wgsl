@@ -3,14 +3,8 @@
 // Cost: five loads.
 #import gpu/grid
 
-@group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
-
-struct Params {
-    // Factor on the result.
-    scale: f32,
-}
 
 // By how much a neighbour exceeds the centre; where it is transparent it stands for the centre.
 fn excess(p: vec2i, centre: vec3f) -> vec3f {
@@ -27,5 +21,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let c = fetch(source, 0u, p);
     let across = excess(p - vec2i(1, 0), c.rgb) + excess(p + vec2i(1, 0), c.rgb);
     let along = excess(p - vec2i(0, 1), c.rgb) + excess(p + vec2i(0, 1), c.rgb);
-    textureStore(target_image, vec2i(id.xy), vec4f(params.scale * (across + along), 0.0));
+    textureStore(target_image, vec2i(id.xy), vec4f(across + along, 0.0));
 }

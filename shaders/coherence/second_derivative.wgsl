@@ -4,12 +4,6 @@
 #import gpu/grid
 #import shared/tensor
 
-struct Params {
-    // Factor on the result.
-    scale: f32,
-}
-
-@group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var tensors: texture_2d<f32>;
 @group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
@@ -35,5 +29,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let falling = excess(p + vec2i(1, -1), c) + excess(p + vec2i(-1, 1), c);
     let xy = 0.25 * (rising - falling);
     let second = n.x * n.x * xx + 2.0 * n.x * n.y * xy + n.y * n.y * yy;
-    textureStore(target_image, vec2i(id.xy), vec4f(params.scale * second, 0.0));
+    textureStore(target_image, vec2i(id.xy), vec4f(second, 0.0));
 }

@@ -4,9 +4,9 @@
 #import gpu/grid
 
 struct Params {
-    // Time step, at most 1/2.
+    /// Time step, at most 1/2.
     time_step: f32,
-    // The sign of the detector is soft below 1 / steepness.
+    /// The sign of the detector is soft below 1 / steepness.
     steepness: f32,
 }
 

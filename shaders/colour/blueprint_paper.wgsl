@@ -6,18 +6,22 @@
 #import gpu/grid
 
 struct Params {
+    /// RGB and opacity of the lines.
     line: vec4f,
+    /// RGB of the paper.
     paper: vec4f,
-    // Pixels between grid lines; 0 for none.
+    /// Pixels between grid lines; 0 for none.
     spacing: f32,
-    // Rendered size over full size, and its reciprocal.
+    /// Rendered size over full size.
     scale: f32,
+    /// 1 / scale.
     inverse_scale: f32,
+    /// Strength of the paper's texture, 0..=1.
     texture_amount: f32,
+    /// How much of the picture's tones shows, 0..=1.
     fill: f32,
-    // Nonzero: the sheet is opaque also where the picture is not.
+    /// Nonzero: the sheet is opaque also where the picture is not.
     cover: u32,
-    reserved: vec2i,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;

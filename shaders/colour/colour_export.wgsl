@@ -4,8 +4,9 @@
 #import shared/colour
 
 struct Params {
-    // 0 sRGB, 1 linear Rec. 709, 2 ACEScg.
+    /// 0 sRGB, 1 linear Rec. 709, 2 ACEScg.
     space: u32,
+    /// Nonzero when colour leaves multiplied by alpha.
     premultiplied: u32,
 }
 

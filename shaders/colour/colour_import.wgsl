@@ -5,8 +5,9 @@
 #import shared/host_colour
 
 struct Params {
-    // 0 sRGB, 1 linear Rec. 709, 2 ACEScg.
+    /// 0 sRGB, 1 linear Rec. 709, 2 ACEScg.
     space: u32,
+    /// Nonzero when colour comes multiplied by alpha.
     premultiplied: u32,
 }
 

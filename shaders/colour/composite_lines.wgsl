@@ -3,9 +3,9 @@
 #import gpu/grid
 
 struct Params {
-    // RGB and opacity of the lines.
+    /// RGB and opacity of the lines.
     line: vec4f,
-    // RGB of the paper and how much of it covers the picture.
+    /// RGB of the paper and how much of it covers the picture.
     paper: vec4f,
 }
 

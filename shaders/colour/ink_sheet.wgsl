@@ -6,29 +6,33 @@
 #import shared/value_noise
 
 struct Params {
-    // RGB and opacity of the ink; RGB of the paper.
+    /// RGB and opacity of the ink.
     line: vec4f,
+    /// RGB of the paper.
     paper: vec4f,
-    // Response from which on there is no ink, units of L, and the steepness of the ramp, per unit of L.
+    /// Response from which on there is no ink, units of L.
     epsilon: f32,
+    /// Steepness of the ramp to ink, per unit of L.
     phi: f32,
-    // Units of L by which strokes raise and lower the response.
+    /// Units of L by which strokes raise and lower the response.
     carving: f32,
-    // How dark shading is, and how much of it is hatched.
+    /// How dark shading is, 0..=2.
     shading: f32,
+    /// How much of the shading is hatched, 0..=1; the rest is rubbed in.
     hatching: f32,
-    // How deep the paper's grain is, 0..1, and cells of it per pixel.
+    /// How deep the paper's grain is, 0..=2.
     grain: f32,
+    /// Cells of grain per pixel of the full-size picture.
     grain_frequency: f32,
-    // Pixels of the full-size picture per pixel.
+    /// Pixels of the full-size picture per pixel.
     inverse_scale: f32,
-    // How much of the picture's own colours shows.
+    /// How much of the picture's own colours shows, 0..=1.
     colour: f32,
-    // Strength of the paper's texture.
+    /// Strength of the paper's texture, 0..=1.
     texture_amount: f32,
-    // Nonzero: the sheet is opaque also where the picture is not.
+    /// Nonzero: the sheet is opaque also where the picture is not.
     cover: u32,
-    // How much of the grain follows the strokes instead of the paper.
+    /// How much of the grain follows the strokes instead of the paper, 0..=1.
     follow: f32,
 }
 

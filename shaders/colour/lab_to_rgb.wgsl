@@ -4,7 +4,7 @@
 #import shared/colour
 
 struct Params {
-    // Factor on the colour axes: 0 is grey, 1 leaves the saturation alone.
+    /// Factor on the colour axes: 0 is grey, 1 leaves the saturation alone.
     chroma: f32,
 }
 

@@ -6,11 +6,11 @@
 #import shared/host_colour
 
 struct Params {
-    // 0 working colour, 1 Lab, 2 the host's colour.
+    /// 0 working colour, 1 Lab, 2 the host's colour.
     source_space: u32,
-    // The host's colour space: 0 sRGB, 1 linear Rec. 709, 2 ACEScg.
+    /// The host's colour space: 0 sRGB, 1 linear Rec. 709, 2 ACEScg.
     space: u32,
-    // Nonzero when the host's colour comes multiplied by alpha.
+    /// Nonzero when the host's colour comes multiplied by alpha.
     premultiplied: u32,
 }
 

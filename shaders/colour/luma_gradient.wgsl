@@ -3,7 +3,7 @@
 #import gpu/grid
 
 struct Params {
-    // Weights across the derivative: at the centre and beside it; they sum to 1.
+    /// Weights across the derivative: at the centre and beside it; they sum to 1.
     weights: vec2f,
 }
 

@@ -3,6 +3,7 @@
 #import gpu/grid
 
 struct Params {
+    /// Share of the second picture, 0..=1.
     amount: f32,
 }
 

@@ -3,11 +3,10 @@
 #import gpu/grid
 
 struct Params {
-    // Direction from where the light comes, times the strength of the shine per unit of slope.
+    /// Direction from where the light comes, times the strength of the shine per unit of slope.
     light: vec2f,
-    // Lightness per unit of height.
+    /// Lightness per unit of height.
     bristle: f32,
-    reserved: f32,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;

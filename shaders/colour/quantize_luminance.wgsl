@@ -3,17 +3,21 @@
 #import gpu/grid
 
 struct Params {
-    // Width of a bin, units of L, and its reciprocal.
+    /// Width of a bin, units of L.
     width: f32,
+    /// 1 / width.
     inverse_width: f32,
-    // Steepness at the middle of a bin, where the output steps; used when not adaptive.
+    /// Steepness at the middle of a bin, where the output steps, per unit of L; used when not adaptive.
     phi: f32,
-    // Nonzero: steepness from the gradient of L, clamped to lambda_delta..omega_delta.
+    /// Nonzero: steepness from the gradient of L, cut to lambda_delta..omega_delta.
     adaptive: u32,
+    /// Gradient, in L per pixel, that has steepness `lambda_phi`.
     lambda_delta: f32,
-    // 1 / (omega_delta - lambda_delta).
+    /// 1 / (omega_delta - lambda_delta).
     inverse_delta: f32,
+    /// Least steepness, per unit of L.
     lambda_phi: f32,
+    /// Greatest steepness, per unit of L.
     omega_phi: f32,
 }
 

@@ -4,7 +4,7 @@
 #import shared/colour
 
 struct Params {
-    // Share of the perceptual colour axes that is kept; 1 for CIELAB as it is.
+    /// Factor on the colour axes: 0 is grey, 1 leaves the saturation alone.
     chroma: f32,
 }
 

@@ -4,8 +4,9 @@
 #import gpu/grid
 
 struct Params {
-    // Signed, -1..1: how far dark and light tones are raised.
+    /// How far dark tones are raised, -1..=1.
     darks: f32,
+    /// How far light tones are raised, -1..=1.
     lights: f32,
 }
 

@@ -3,9 +3,9 @@
 #import shared/coverage
 
 struct Params {
-    // Pixels moved per unit of the gradient.
+    /// Pixels moved per unit of the gradient.
     amount: f32,
-    // Largest move, pixels.
+    /// Largest move, pixels.
     limit: f32,
 }
 

@@ -6,16 +6,17 @@
 #import gpu/grid
 
 struct Params {
-    // Pixels of the full-size picture per pixel.
+    /// Pixels of the full-size picture per pixel.
     inverse_scale: f32,
-    // How much pigment there is: 1 leaves the colours alone.
+    /// How much pigment there is: 1 leaves the colours alone.
     pigment: f32,
-    // Density gained per unit that the surroundings are lighter.
+    /// Density gained per unit of lightness by which the neighbourhood is lighter.
     edges: f32,
-    // Density gained and lost in clouds and in the paper's grain.
+    /// Density gained and lost in clouds.
     clouds: f32,
+    /// Density gained and lost in the paper's grain.
     grain: f32,
-    // Cells of the grain per pixel of the full-size picture.
+    /// Cells of the grain per pixel of the full-size picture.
     grain_frequency: f32,
 }
 

@@ -3,12 +3,6 @@
 // Cost: two loads and a multiplication.
 #import gpu/grid
 
-struct Params {
-    // Share of the edge image that is multiplied in.
-    amount: f32,
-}
-
-@group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var lightness: texture_2d<f32>;
 @group(0) @binding(3) var edges: texture_2d<f32>;
 @group(0) @binding(4) var target_image: texture_storage_2d<rg32float, write>;
@@ -19,7 +13,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let v = fetch(lightness, 0u, pixel(id));
-    let e = clamp(fetch(edges, 1u, pixel(id)).x, 0.0, 1.0);
-    let factor = 1.0 - params.amount * (1.0 - e);
-    textureStore(target_image, vec2i(id.xy), vec4f(v.x * factor, v.y, 0.0, 0.0));
+    let ink = 1.0 - clamp(fetch(edges, 1u, pixel(id)).x, 0.0, 1.0);
+    textureStore(target_image, vec2i(id.xy), vec4f(v.x * (1.0 - ink), v.y, 0.0, 0.0));
 }

@@ -5,16 +5,21 @@
 #import shared/edge_threshold
 
 struct Params {
+    /// Taps on each side of the centre.
     radius: i32,
-    // How the response becomes an edge image, see edge_threshold.
+    /// How the response becomes an edge image: 0 not at all, 1 binary (4.6), 2 tanh (4.8), 3 smoothstep.
     threshold: u32,
-    // Weights of the smoothed lightness and of the difference of Gaussians.
+    /// Weight of the smoothed lightness.
     base: f32,
+    /// Weight of the difference of Gaussians.
     edge: f32,
+    /// Response from which on there is no line, units of L.
     epsilon: f32,
+    /// Steepness of the ramp, per unit of L.
     phi: f32,
-    reserved_pair: vec2i,
+    /// Weights at distance 0, 1, ... for standard deviation sigma.
     narrow: array<vec4f, 64>,
+    /// Weights for standard deviation k sigma.
     wide: array<vec4f, 64>,
 }
 

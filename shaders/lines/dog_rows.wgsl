@@ -5,12 +5,11 @@
 #import gpu/window
 
 struct Params {
-    // Taps on each side of the centre.
+    /// Taps on each side of the centre.
     radius: i32,
-    reserved: i32,
-    reserved_pair: vec2i,
-    // Weights at distance 0, 1, ...: standard deviations sigma and k sigma.
+    /// Weights at distance 0, 1, ... for standard deviation sigma.
     narrow: array<vec4f, 64>,
+    /// Weights for standard deviation k sigma.
     wide: array<vec4f, 64>,
 }
 

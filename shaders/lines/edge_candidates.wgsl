@@ -5,10 +5,11 @@
 #import gpu/grid
 
 struct Params {
-    // 0: maxima of the gradient; 1: zero crossings of the Laplacian; 2: the magnitude itself.
+    /// 0: maxima of the gradient; 1: zero crossings of the Laplacian; 2: the magnitude itself.
     method: u32,
-    // Heights from which on a candidate is weak and strong, units of L.
+    /// Height from which on a candidate is weak, units of L.
     low: f32,
+    /// Height from which on a candidate is strong, units of L.
     high: f32,
 }
 

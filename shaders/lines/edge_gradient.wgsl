@@ -5,10 +5,11 @@
 #import gpu/grid
 
 struct Params {
-    // Weights across the derivative: of the pixel's own row or column, and of the two beside it.
+    /// Weight across the derivative of the pixel's own row or column.
     centre: f32,
+    /// Weight of each of the two beside it.
     side: f32,
-    // From L per pixel to the height of a step.
+    /// From L per pixel to the height of a step.
     scale: f32,
 }
 

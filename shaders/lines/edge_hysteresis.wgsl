@@ -6,11 +6,13 @@
 #import gpu/grid
 
 struct Params {
-    // Length of the chains, pixels; at most 12.
+    /// Length of the chains, pixels; at most 12.
     steps: u32,
-    // What is written where there is no candidate, a weak one and a strong one.
+    /// What is written where there is no candidate.
     none: f32,
+    /// What is written for a weak candidate.
     weak: f32,
+    /// What is written for a strong candidate.
     strong: f32,
 }
 

@@ -9,13 +9,15 @@
 #import shared/edge_threshold
 
 struct Params {
-    // -1 / (2 sigma^2) of the narrower and of the wider Gaussian.
+    /// -1 / (2 sigma^2) of the narrower Gaussian.
     narrow: f32,
+    /// The same of the wider Gaussian.
     wide: f32,
-    // Cut-off, in pixels.
+    /// Cut-off, in pixels.
     halfwidth: f32,
-    // Weights of the smoothed lightness and of the difference of Gaussians.
+    /// Weight of the smoothed lightness.
     base: f32,
+    /// Weight of the difference of Gaussians.
     edge: f32,
 }
 

@@ -6,13 +6,15 @@
 #import shared/edge_threshold
 
 struct Params {
-    // Standard deviation along the line, pixels.
+    /// Standard deviation along the line, pixels.
     sigma: f32,
-    // 0: Euler; 1: second-order Runge-Kutta; 2: two-step.
+    /// 0: Euler; 1: second-order Runge-Kutta; 2: two-step.
     integrator: u32,
-    // How the response becomes an edge image, see edge_threshold.
+    /// How the response becomes an edge image: 0 not at all, 1 binary (4.6), 2 tanh (4.8), 3 smoothstep.
     threshold: u32,
+    /// Response from which on there is no line, units of L.
     epsilon: f32,
+    /// Steepness of the ramp, per unit of L.
     phi: f32,
 }
 

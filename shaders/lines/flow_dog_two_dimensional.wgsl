@@ -8,21 +8,25 @@
 #import shared/edge_threshold
 
 struct Params {
-    // -1 / (2 sigma^2) of the narrower and of the wider Gaussian across the line.
+    /// -1 / (2 sigma^2) of the narrower Gaussian across the line.
     narrow: f32,
+    /// The same of the wider Gaussian.
     wide: f32,
-    // Cut-off across the line, in pixels.
+    /// Cut-off across the line, in pixels.
     halfwidth: f32,
-    // Weights of the smoothed lightness and of the difference of Gaussians.
+    /// Weight of the smoothed lightness.
     base: f32,
+    /// Weight of the difference of Gaussians.
     edge: f32,
-    // Standard deviation along the line, pixels.
+    /// Standard deviation along the line, pixels.
     sigma: f32,
-    // 0: Euler; 1: second-order Runge-Kutta; 2: two-step; 3: Cabral-Leedom.
+    /// 0: Euler; 1: second-order Runge-Kutta; 2: two-step; 3: Cabral-Leedom.
     stepping: u32,
-    // How the response becomes an edge image, see edge_threshold.
+    /// How the response becomes an edge image: 0 not at all, 1 binary (4.6), 2 tanh (4.8), 3 smoothstep.
     threshold: u32,
+    /// Response from which on there is no line, units of L.
     epsilon: f32,
+    /// Steepness of the ramp, per unit of L.
     phi: f32,
 }
 

@@ -11,15 +11,17 @@
 #import shared/tensor
 
 struct Params {
-    // -1 / (2 sigma^2) of the narrower and of the wider Gaussian.
+    /// -1 / (2 sigma^2) of the narrower Gaussian.
     narrow: f32,
+    /// The same of the wider Gaussian.
     wide: f32,
-    // Cut-off, in pixels, and steps on each side that it takes at most.
+    /// Cut-off, in pixels.
     halfwidth: f32,
+    /// Steps on each side that the cut-off takes at most.
     steps: i32,
-    // Units of response that a unit of the difference takes off.
+    /// Units of response that a unit of the difference takes off.
     amount: f32,
-    // Bit 0: normal, bit 1: depth, bit 2: object id are there.
+    /// Bit 0: normal, bit 1: depth, bit 2: object id are there.
     guides: u32,
 }
 

@@ -3,12 +3,6 @@
 // Cost: one load.
 #import gpu/grid
 
-struct Params {
-    // Factor on both; eigenvectors have none.
-    scale: f32,
-}
-
-@group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var tensor: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rg32float, write>;
 
@@ -18,5 +12,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let t = fetch(tensor, 0u, pixel(id));
-    textureStore(target_image, vec2i(id.xy), vec4f(params.scale * (t.x - t.z), params.scale * t.y, 0.0, 0.0));
+    textureStore(target_image, vec2i(id.xy), vec4f(t.x - t.z, t.y, 0.0, 0.0));
 }

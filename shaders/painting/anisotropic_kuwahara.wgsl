@@ -12,21 +12,21 @@
 #import shared/tensor
 
 struct Params {
-    // Radius of the disc that the ellipse is made of, pixels.
+    /// Radius of the disc that the ellipse is made of, pixels.
     radius: f32,
-    // 1 / alpha of (5.22).
+    /// 1 / alpha of (5.22).
     elongation: f32,
-    // Overlap of the sectors at the centre (5.40).
+    /// Overlap of the sectors at the centre (5.40).
     zeta: f32,
-    // Overlap of the sectors at their sides (5.42).
+    /// Overlap of the sectors at their sides (5.42).
     eta: f32,
-    // tau_s of (5.15).
+    /// tau_s of (5.15).
     threshold: f32,
-    // Exponent q.
+    /// Exponent q.
     q: f32,
-    // tau_w: least standard deviation of a sector in the second output.
+    /// tau_w: least standard deviation of a sector in the second output.
     deviation_floor: f32,
-    // 4 or 8.
+    /// 4 or 8.
     sectors: u32,
 }
 

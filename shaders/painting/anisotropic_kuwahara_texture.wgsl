@@ -8,20 +8,19 @@
 #import shared/tensor
 
 struct Params {
-    // Radius of the disc that the ellipse is made of, pixels.
+    /// Radius of the disc that the ellipse is made of, pixels.
     radius: f32,
-    // 1 / alpha of (5.22).
+    /// 1 / alpha of (5.22).
     elongation: f32,
-    // tau_s of (5.15).
+    /// tau_s of (5.15).
     threshold: f32,
-    // Exponent q.
+    /// Exponent q.
     q: f32,
-    // tau_w: least standard deviation of a sector in the second output.
+    /// tau_w: least standard deviation of a sector in the second output.
     deviation_floor: f32,
-    // 4 or 8.
+    /// 4 or 8.
     sectors: u32,
-    reserved: vec2u,
-    // h_0 and its quarter turns at 43 x 22 nodes over the half y >= 0 of the disc's bounding square.
+    /// h_0 and its quarter turns at 43 x 22 nodes over the half y >= 0 of the disc's bounding square.
     weights: array<vec4f, 960>,
 }
 

@@ -8,20 +8,19 @@
 #import shared/sampled_sectors
 
 struct Params {
-    // 1 / radius, per pixel.
+    /// 1 / radius, per pixel.
     scale: f32,
-    // Pixels from the centre to the border along an axis.
+    /// Pixels from the centre to the border along an axis.
     reach: i32,
-    // tau_s of (5.15).
+    /// tau_s of (5.15).
     threshold: f32,
-    // Exponent q.
+    /// Exponent q.
     q: f32,
-    // 4 or 8.
+    /// 4 or 8.
     sectors: u32,
-    // Side of the blocks that the CPU transforms; 0 for none.
+    /// Side of the blocks that the CPU transforms; 0 for none.
     block: u32,
-    reserved: vec2u,
-    // h_0 and its quarter turns at 43 x 22 nodes over the half y >= 0 of the disc's bounding square.
+    /// h_0 and its quarter turns at 43 x 22 nodes over the half y >= 0 of the disc's bounding square.
     weights: array<vec4f, 960>,
 }
 

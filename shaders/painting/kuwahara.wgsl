@@ -4,14 +4,15 @@
 #import gpu/window
 
 struct Params {
-    // Offset of the first weight from the pixel, towards the side.
+    /// Offset of the first weight from the pixel, towards the side.
     first: i32,
-    // Weights.
+    /// Number of weights.
     count: u32,
-    // 1: all weights are equal.
+    /// 1: all weights are equal.
     flat_weights: u32,
-    // Differences of variance up to this share are none.
+    /// Differences of variance up to this share are none.
     tie: f32,
+    /// Weights from offset `first` on.
     weights: array<vec4f, 32>,
 }
 

@@ -8,8 +8,9 @@
 #import gpu/group
 
 struct Params {
-    // Weights at distances 1/2, 3/2, ... 11/2 pixels.
+    /// Weights at distances 1/2, 3/2, 5/2, 7/2 pixels.
     near: vec4f,
+    /// Weights at distances 9/2, 11/2 pixels.
     far: vec4f,
 }
 

@@ -5,9 +5,9 @@
 #import shared/coverage
 
 struct Params {
-    // p_s p_d^k at this level.
+    /// p_s p_d^k at this level.
     gain: f32,
-    // tau_v: deviations up to this, times the gain, count for nothing.
+    /// tau_v: deviations up to this, times the gain, count for nothing.
     threshold: f32,
 }
 

@@ -5,7 +5,7 @@
 #import shared/tensor
 
 struct Params {
-    // Least anisotropy that counts.
+    /// Least anisotropy that counts.
     floor: f32,
 }
 

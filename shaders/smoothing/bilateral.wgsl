@@ -6,10 +6,11 @@
 #import gpu/window
 
 struct Params {
-    // Pixels on each side of the centre, along x and along y; the larger one is the window's radius.
+    /// Pixels on each side of the centre, along x and along y; the larger one is the window's radius.
     extent: vec2i,
-    // Exponents, base 2, per squared pixel of distance and per squared difference in range.
+    /// Exponent, base 2, per squared pixel of distance.
     domain: f32,
+    /// Exponent, base 2, per squared difference in range.
     range: f32,
 }
 

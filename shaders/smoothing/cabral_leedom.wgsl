@@ -5,11 +5,11 @@
 #import shared/pixel_line
 
 struct Params {
-    // Standard deviation along the line, pixels.
+    /// Standard deviation along the line, pixels.
     sigma: f32,
-    // A side ends at a pixel boundary where it turns by more than the angle of this cosine.
+    /// A side ends at a pixel boundary where it turns by more than the angle of this cosine.
     least_turn: f32,
-    // 0: none; 1: anisotropy; 2: angle.
+    /// 0: none; 1: anisotropy; 2: angle.
     adapt: u32,
 }
 

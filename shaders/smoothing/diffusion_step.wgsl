@@ -3,6 +3,7 @@
 #import gpu/group
 
 struct Params {
+    /// Time step, up to 1/4.
     time_step: f32,
 }
 

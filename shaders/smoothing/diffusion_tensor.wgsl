@@ -5,9 +5,9 @@
 #import gpu/grid
 
 struct Params {
-    // 1 / lambda^2 (edge-enhancing) or 1 / contrast^2 (coherence-enhancing).
+    /// 1 / lambda^2 (edge-enhancing) or 1 / contrast^2 (coherence-enhancing).
     falloff: f32,
-    // 1: coherence-enhancing; 0: edge-enhancing.
+    /// 1: coherence-enhancing; 0: edge-enhancing.
     coherence: u32,
 }
 

@@ -4,11 +4,11 @@
 #import gpu/window
 
 struct Params {
-    // Rows on each side of the centre.
+    /// Rows on each side of the centre.
     extent: i32,
-    // Pixels of the disc lie at most the square root of this away.
+    /// Pixels of the disc lie at most the square root of this away.
     limit: i32,
-    // 1: greatest; -1: least.
+    /// 1: greatest; -1: least.
     sign: f32,
 }
 

@@ -6,17 +6,17 @@
 #import shared/stream
 
 struct Params {
-    // Standard deviation along the line, pixels.
+    /// Standard deviation along the line, pixels.
     sigma_d: f32,
-    // Standard deviation of the range, in the unit of the colour.
+    /// Standard deviation of the range, in the unit of the colour.
     sigma_r: f32,
-    // Length of a side of the line, whole pixels.
+    /// Length of a side of the line, whole pixels.
     radius: f32,
-    // 1: second-order Runge-Kutta; 0: Euler.
+    /// 1: second-order Runge-Kutta; 0: Euler.
     midpoint: u32,
-    // 1: range weights before the interpolation (3.9); 0: after it.
+    /// 1: range weights before the interpolation (3.9); 0: after it.
     manual: u32,
-    // 1: samples where lines cross the centres of rows or columns; 0: at equal distances.
+    /// 1: samples where lines cross the centres of rows or columns; 0: at equal distances.
     centres: u32,
 }
 

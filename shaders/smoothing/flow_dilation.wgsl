@@ -5,7 +5,7 @@
 #import shared/stream
 
 struct Params {
-    // Arc length of each side of the line where the orientation is certain, pixels.
+    /// Arc length of each side of the line where the orientation is certain, pixels.
     length: f32,
 }
 

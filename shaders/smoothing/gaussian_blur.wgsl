@@ -4,11 +4,13 @@
 #import gpu/window
 
 struct Params {
-    // (1, 0) for rows, (0, 1) for columns.
+    /// (1, 0) for rows, (0, 1) for columns.
     axis: vec2i,
+    /// Pixels on each side of the centre.
     radius: i32,
-    // Bit 0: multiply colour by alpha on reading. Bit 1: divide by alpha on writing.
+    /// Bit 0: multiply colour by alpha on reading. Bit 1: divide by alpha on writing.
     coverage: u32,
+    /// Weights at distance 0, 1, ...
     weights: array<vec4f, 64>,
 }
 

@@ -6,17 +6,17 @@
 #import shared/stream
 
 struct Params {
-    // Standard deviation along the line, pixels.
+    /// Standard deviation along the line, pixels.
     sigma: f32,
-    // Step size h, pixels.
+    /// Step size h, pixels.
     step: f32,
-    // Most by which steps may be stretched, at least 1.
+    /// Most by which steps may be stretched, at least 1.
     stretch: f32,
-    // A side ends at a step that turns by more than the angle of this cosine.
+    /// A side ends at a step that turns by more than the angle of this cosine.
     least_turn: f32,
-    // 0: Euler; 1: second-order Runge-Kutta; 2: two-step.
+    /// 0: Euler; 1: second-order Runge-Kutta; 2: two-step.
     integrator: u32,
-    // 0: none; 1: anisotropy; 2: angle.
+    /// 0: none; 1: anisotropy; 2: angle.
     adapt: u32,
 }
 

@@ -5,8 +5,9 @@
 #import gpu/window
 
 struct Params {
+    /// Time step.
     time_step: f32,
-    // r of 6.2; with 0 the tensors are not read.
+    /// r of 6.2; with 0 the tensors are not read.
     constraint: f32,
 }
 

@@ -5,17 +5,17 @@
 #import shared/tensor
 
 struct Params {
-    // Standard deviation along the line, pixels.
+    /// Standard deviation along the line, pixels.
     sigma_d: f32,
-    // Standard deviation of the range, in the unit of the colour.
+    /// Standard deviation of the range, in the unit of the colour.
     sigma_r: f32,
-    // Distance of the last tap, pixels.
+    /// Distance of the last tap, pixels.
     cutoff: f32,
-    // Growth of the tangent's scale, and shrinking of the gradient's, per unit of anisotropy.
+    /// Growth of the tangent's scale, and shrinking of the gradient's, per unit of anisotropy.
     elongation: f32,
-    // 1: along the tangent; 0: along the gradient.
+    /// 1: along the tangent; 0: along the gradient.
     tangential: u32,
-    // 1: range weights before the interpolation (3.9); 0: after it.
+    /// 1: range weights before the interpolation (3.9); 0: after it.
     manual: u32,
 }
 

@@ -3,10 +3,11 @@
 #import gpu/grid
 
 struct Params {
+    /// Time step, up to 1/4.
     time_step: f32,
-    // 1 / K^2 or 1 / lambda^2 of 3.2.
+    /// 1 / K^2 or 1 / lambda^2 of 3.2.
     falloff: f32,
-    // 1: the exponential diffusivity of 3.2; 0: the rational one.
+    /// 1: the exponential diffusivity of 3.2; 0: the rational one.
     exponential: u32,
 }
 

@@ -5,11 +5,11 @@
 #import shared/coverage
 
 struct Params {
-    // Pixels of the full-size picture per pixel.
+    /// Pixels of the full-size picture per pixel.
     inverse_scale: f32,
-    // Farthest that a pixel is fetched from on each axis, pixels.
+    /// Farthest that a pixel is fetched from on each axis, pixels.
     amount: f32,
-    // Waves per pixel of the full-size picture.
+    /// Waves per pixel of the full-size picture.
     frequency: f32,
 }
 

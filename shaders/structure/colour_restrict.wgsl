@@ -2,7 +2,7 @@
 #import shared/coverage
 
 struct Params {
-    // Coverage below this is none.
+    /// Coverage below this is none.
     least: f32,
 }
 

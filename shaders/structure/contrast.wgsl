@@ -2,6 +2,7 @@
 #import gpu/grid
 
 struct Params {
+    /// Factor on the distance to middle grey.
     gain: f32,
 }
 

@@ -7,13 +7,13 @@
 #import shared/tensor
 
 struct Params {
-    // Largest distance in x and in y, pixels.
+    /// Largest distance in x and in y, pixels.
     reach: vec2i,
-    // Neighbours lie nearer than this: squared radius.
+    /// Neighbours lie nearer than this: squared radius.
     limit: f32,
-    // 1: the last pass writes w, not the magnitude.
+    /// 1: the last pass writes w, not the magnitude.
     last: u32,
-    // Spatial weight at distance 0, 1, ... along each axis.
+    /// Spatial weight at distance 0, 1, ... along each axis.
     weights: array<vec4f, 6>,
 }
 

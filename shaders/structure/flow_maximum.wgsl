@@ -2,7 +2,7 @@
 #import gpu/grid
 
 struct Params {
-    // The channel to look at.
+    /// The channel to look at.
     channel: u32,
 }
 

@@ -4,7 +4,7 @@
 #import shared/tensor
 
 struct Params {
-    // A magnitude below this is no gradient.
+    /// A magnitude below this is no gradient.
     least: f32,
 }
 

@@ -6,16 +6,18 @@
 #import shared/outer_product
 
 struct Params {
+    /// Pixels on each side of the centre.
     radius: i32,
-    // Bit 0: the gradient of the luma alone. Bit 1: divide each channel's tensor by its gradient's
-    // magnitude (2.133).
+    /// Bit 0: the gradient of the luma alone. Bit 1: divide each channel's tensor by its
+    /// gradient's magnitude (2.133).
     flags: u32,
-    // Factor on the colours.
+    /// Factor on the colours.
     scale: f32,
-    // A tensor is valid above this lambda1 (2.164).
+    /// A tensor is valid (w = 1) above this lambda1 (2.164).
     threshold: f32,
-    // Weights at distance 0, 1, ... across the derivative and along it.
+    /// Weights at distance 0, 1, ... across the derivative.
     smoothing: array<vec4f, 5>,
+    /// Weights at distance 0, 1, ... along the derivative.
     derivative: array<vec4f, 5>,
 }
 

@@ -4,10 +4,11 @@
 #import shared/tensor
 
 struct Params {
-    // 0 normal, 1 depth, 2 object id.
+    /// 0 normal, 1 depth, 2 object id.
     kind: u32,
+    /// Factor on the guide's tensor.
     weight: f32,
-    // A tensor is valid above this lambda1 (2.164).
+    /// A tensor is valid (w = 1) above this lambda1 (2.164).
     threshold: f32,
 }
 

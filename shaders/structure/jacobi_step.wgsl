@@ -2,12 +2,6 @@
 // their four neighbours (2.171, Listing 2.3). Cost: up to 5 loads.
 #import gpu/grid
 
-struct Params {
-    // A tensor is valid from this w on.
-    kept: f32,
-}
-
-@group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
 
@@ -18,7 +12,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let p = pixel(id);
     var t = fetch(source, 0u, p);
-    if t.w < params.kept {
+    if t.w < 1.0 {
         let across = fetch(source, 0u, p + vec2i(1, 0)) + fetch(source, 0u, p - vec2i(1, 0));
         let along = fetch(source, 0u, p + vec2i(0, 1)) + fetch(source, 0u, p - vec2i(0, 1));
         t = vec4f((across + along).xyz * 0.25, 0.0);

@@ -4,12 +4,13 @@
 #import gpu/grid
 
 struct Params {
-    // Grains per pixel, each way.
+    /// Grains per pixel, each way.
     pixel_size: f32,
-    // Pixels of the full-size picture per grain.
+    /// Pixels of the full-size picture per grain.
     grain: f32,
-    // Grains that a pixel can touch, each way.
+    /// Grains that a pixel can touch, each way.
     count: i32,
+    /// Another number gives another noise.
     seed: u32,
 }
 

@@ -6,16 +6,18 @@
 #import shared/outer_product
 
 struct Params {
+    /// Pixels of the picture on each side of the centre.
     radius: i32,
-    // Bit 0: the gradient of the luma alone. Bit 1: divide each channel's tensor by its gradient's
-    // magnitude (2.133).
+    /// Bit 0: the gradient of the luma alone. Bit 1: divide each channel's tensor by its
+    /// gradient's magnitude (2.133).
     flags: u32,
-    // Factor on the colours.
+    /// Factor on the colours.
     scale: f32,
-    // A tensor is valid above this lambda1 (2.164).
+    /// A tensor is valid (w = 1) above this lambda1 (2.164).
     threshold: f32,
-    // Weights of the pixels from -radius on for a position 1/4 pixel beyond the centre's.
+    /// Weights of the pixels from -radius on for a position 1/4 pixel beyond the centre's.
     smoothing: array<vec4f, 10>,
+    /// The same of the derivative.
     derivative: array<vec4f, 10>,
 }
 

@@ -5,7 +5,7 @@
 #import shared/tensor
 
 struct Params {
-    // Where both anisotropies together are not above this, the finer tensor stays.
+    /// Where both anisotropies together are not above this, the finer tensor stays.
     least: f32,
 }
 

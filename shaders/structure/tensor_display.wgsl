@@ -4,12 +4,12 @@
 #import shared/tensor
 
 struct Params {
-    // 0 orientation; 1, 2, 3 anisotropy, of roots, squared; 4 magnitude; 5 Harris, 6 Foerstner,
-    // 7 Tomasi and Kanade, 8 Rohr; 9 significance.
+    /// 0 orientation; 1, 2, 3 anisotropy, of roots, squared; 4 magnitude; 5 Harris, 6 Foerstner,
+    /// 7 Tomasi and Kanade, 8 Rohr; 9 significance.
     show: u32,
-    // k of the Harris measure.
+    /// k of the Harris measure.
     k: f32,
-    // Anisotropy above which a place is no noise.
+    /// Anisotropy above which a place is no noise.
     threshold: f32,
 }
 

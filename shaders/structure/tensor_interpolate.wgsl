@@ -4,7 +4,7 @@
 #import shared/sampling
 
 struct Params {
-    // A tensor is valid from this w on.
+    /// A tensor is valid from this w on.
     kept: f32,
 }
 

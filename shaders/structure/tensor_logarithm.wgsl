@@ -4,11 +4,11 @@
 #import shared/tensor
 
 struct Params {
-    // 0: the logarithm; 1: back.
+    /// 0: the logarithm; 1: back.
     inverse: u32,
-    // Eigenvalues below this count as this.
+    /// Eigenvalues below this count as this.
     least: f32,
-    // The smaller eigenvalue is no smaller share of the larger than this.
+    /// The smaller eigenvalue is no smaller share of the larger than this.
     share: f32,
 }
 

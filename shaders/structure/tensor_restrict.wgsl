@@ -3,7 +3,7 @@
 #import gpu/grid
 
 struct Params {
-    // A tensor is valid from this w on; below 0 all are.
+    /// A tensor is valid from this w on; below 0 all are.
     kept: f32,
 }
 

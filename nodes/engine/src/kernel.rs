@@ -22,7 +22,7 @@ pub struct Kernel {
     pub inputs: usize,
     /// Channels of the images written, at the bindings after the inputs.
     pub outputs: &'static [u32],
-    /// Size of the uniform block at binding 1, in bytes.
+    /// Size of the uniform block at binding 1, in bytes; 0 for none.
     pub params_size: usize,
     /// The CPU twin: fills one band of the outputs.
     pub cpu: fn(&CpuPass<'_>, &mut Band<'_>),

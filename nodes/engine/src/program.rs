@@ -4,8 +4,8 @@
 //! appears in it. The `gpu` executor runs it with wgpu; a host may run it with whatever it has.
 //!
 //! Bindings of every pass, all in group 0: 0 is the `Grid` uniform (below), 1 the kernel's own
-//! uniform block, then the sampled textures in order, then the storage textures in order. Textures
-//! are read by integer loads only and never filtered.
+//! uniform block if it has parameters, from 2 on the sampled textures in order, then the storage
+//! textures in order. Textures are read by integer loads only and never filtered.
 
 use crate::error::{Error, Result};
 use crate::image::Rect;
@@ -66,7 +66,7 @@ pub struct Shader {
     pub inputs: usize,
     /// Channels of the storage textures.
     pub outputs: Cow<'static, [u32]>,
-    /// Size of the uniform block at binding 1, in bytes.
+    /// Size of the uniform block at binding 1, in bytes; 0 for none.
     pub params_size: usize,
 }
 
@@ -89,7 +89,7 @@ pub struct Dispatch {
     pub shader: Arc<Shader>,
     /// Uniform at binding 0.
     pub grid: Grid,
-    /// Uniform at binding 1.
+    /// Uniform at binding 1; empty for a kernel without parameters.
     pub params: Vec<u8>,
     /// Sampled textures, indices into [`Program::textures`], from binding 2.
     pub inputs: Vec<u32>,

@@ -132,7 +132,7 @@ fn pass(dispatch: &Dispatch, name: &mut impl FnMut(&str) -> *const c_char) -> Is
     IsophotePass {
         kernel: name(&dispatch.shader.name),
         grid: (&raw const dispatch.grid).cast(),
-        params: dispatch.params.as_ptr().cast(),
+        params: if dispatch.params.is_empty() { null() } else { dispatch.params.as_ptr().cast() },
         inputs: dispatch.inputs.as_ptr(),
         outputs: dispatch.outputs.as_ptr(),
         grid_size: size_of_val(&dispatch.grid) as u32,

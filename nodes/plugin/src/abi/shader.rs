@@ -276,7 +276,8 @@ mod tests {
         for kernel in kernels() {
             for language in ISOPHOTE_LANGUAGE_WGSL..=ISOPHOTE_LANGUAGE_GLSL {
                 let shader = translated(&kernel, language).unwrap_or_else(|e| panic!("{e:?}"));
-                assert_eq!(shader.binding_count as usize, 2 + kernel.inputs + kernel.outputs.len());
+                let uniforms = 1 + usize::from(kernel.params_size > 0);
+                assert_eq!(shader.binding_count as usize, uniforms + kernel.inputs + kernel.outputs.len());
                 // SAFETY: the arrays have the lengths beside them, texts their closing zeros.
                 let (code, bindings, entry) = unsafe {
                     (

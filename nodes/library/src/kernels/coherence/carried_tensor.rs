@@ -8,6 +8,7 @@
 //! Cost: 30 operations for the sums of columns and rows of each channel, 40 for the tensor, and
 //! 4 radius + 2 multiply-adds for each of its three values.
 
+pub use crate::kernels::shaders::carried_tensor::Params;
 use crate::kernels::simd::line_buffer::{Rows, WIDE_STRIP, strips_of};
 use crate::kernels::simd::pixels::put_pixels4;
 use crate::kernels::simd::window_sum::{gaussian_radius, gaussian_table};
@@ -22,20 +23,6 @@ const TAPS: usize = 12;
 const MAX_RADIUS: u32 = 8;
 /// Weights of the derivative operator across the derivative (2.27).
 const OPERATOR: [f32; 2] = [162.32 / 256.0, 46.84 / 256.0];
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for carried_tensor {
-        /// Cut-off of the Gaussian, pixels, 0..=8.
-        pub radius: i32,
-        /// A tensor is valid above this lambda1 (2.164).
-        pub threshold: f32,
-        /// Weights of the derivative operator across the derivative: at the centre and beside it.
-        pub smoothing: [f32; 2],
-        /// Weights of the Gaussian at distance 0, 1, ...
-        pub weights: [[f32; 4]; TAPS / 4],
-    }
-}
 
 crate::kernel!(carried_tensor {
     cpu: run,

@@ -10,6 +10,7 @@
 //!
 //! Cost: that of the derivative; then four comparisons per step, and nothing where the threshold is not reached.
 
+pub use crate::kernels::shaders::directed_shock::Params;
 use crate::kernels::shared::tensor::axis;
 use crate::kernels::simd::pixels::{BLOCK, Block, fetch4, offsets, write4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
@@ -20,22 +21,6 @@ use luma_taps::{Line, LumaLines, STRIP};
 mod flow_log;
 #[path = "directed_shock/luma_taps.rs"]
 mod luma_taps;
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for directed_shock {
-        /// Standard deviation of the second derivative, pixels.
-        pub sigma: f32,
-        /// Distance of its last tap, pixels.
-        pub reach: f32,
-        /// Distance of the last pixel looked at, pixels of the full-size picture.
-        pub radius: f32,
-        /// Pixels per pixel of the full-size picture.
-        pub scale: f32,
-        /// Responses up to this leave a pixel alone.
-        pub threshold: f32,
-    }
-}
 
 crate::kernel!(directed_shock {
     cpu: run,

@@ -8,14 +8,6 @@ use crate::kernels::simd::neighbours::{Neighbours, each};
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
-crate::params! {
-    /// Uniform block.
-    pub struct Params for laplacian {
-        /// Factor on the result.
-        pub scale: f32,
-    }
-}
-
 crate::kernel!(laplacian {
     cpu: run,
     cost: |_| 24.0,
@@ -29,17 +21,16 @@ crate::kernel!(laplacian {
 
 /// The Laplacian of a colour, in its unit per square pixel.
 pub fn of_color(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
-    plan.pass(&KERNEL, &[color], &Params { scale: 1.0 }, Class::Field, Support::Pixels(1))
+    plan.pass(&KERNEL, &[color], &(), Class::Field, Support::Pixels(1))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
     dispatch!(pass.level, simd => each(simd, &pass.inputs[0], band, #[inline(always)] |around: Neighbours<'_, _>| {
         let mut result = [f32x8::splat(simd, 0.0); 4];
         for (c, result) in result.iter_mut().take(3).enumerate() {
             let across = around.excess(-1, 0, c) + around.excess(1, 0, c);
             let along = around.excess(0, -1, c) + around.excess(0, 1, c);
-            *result = (across + along) * params.scale;
+            *result = across + along;
         }
         result
     }));

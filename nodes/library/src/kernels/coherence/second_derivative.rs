@@ -10,14 +10,6 @@ use crate::kernels::simd::pixels::Block;
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
-crate::params! {
-    /// Uniform block.
-    pub struct Params for second_derivative {
-        /// Factor on the result.
-        pub scale: f32,
-    }
-}
-
 crate::kernel!(second_derivative {
     cpu: run,
     cost: |_| 90.0,
@@ -32,11 +24,10 @@ crate::kernel!(second_derivative {
 /// The second derivative of a colour along the major eigenvectors of `tensors`, in its unit per square
 /// pixel.
 pub fn of_color(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId) -> ImageId {
-    plan.pass(&KERNEL, &[color, tensors], &Params { scale: 1.0 }, Class::Field, Support::Pixels(1))
+    plan.pass(&KERNEL, &[color, tensors], &(), Class::Field, Support::Pixels(1))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
     dispatch!(pass.level, simd => each(simd, &pass.inputs[0], band, #[inline(always)] |around: Neighbours<'_, _>| {
         let block = Block { x: around.x, y: around.y, len: around.len };
         let [e, f, g, _] = block.read4(simd, &pass.inputs[1]);
@@ -48,7 +39,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
             let rising = around.excess(1, 1, c) + around.excess(-1, -1, c);
             let falling = around.excess(1, -1, c) + around.excess(-1, 1, c);
             let xy = (rising - falling) * 0.25;
-            *result = (x * x * xx + x * y * xy * 2.0 + y * y * yy) * params.scale;
+            *result = x * x * xx + x * y * xy * 2.0 + y * y * yy;
         }
         result
     }));

@@ -6,20 +6,11 @@
 //!
 //! Cost: 20 operations a channel.
 
+pub use crate::kernels::shaders::shock_step::Params;
 use crate::kernels::simd::neighbours::{Neighbours, each};
 use crate::kernels::simd::pixels::Block;
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for shock_step {
-        /// Time step, at most 1/2.
-        pub time_step: f32,
-        /// The sign of the detector is soft below 1 / steepness.
-        pub steepness: f32,
-    }
-}
 
 crate::kernel!(shock_step {
     cpu: run,

@@ -4,34 +4,11 @@
 //!
 //! Cost: twelve hashes and about 100 multiply-adds per pixel.
 
+pub use crate::kernels::shaders::blueprint_paper::Params;
 use crate::kernels::shared::value_noise::noise;
 use crate::kernels::simd::pixels::{for_blocks, write4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for blueprint_paper {
-        /// RGB and opacity of the lines.
-        pub line: [f32; 4],
-        /// RGB of the paper.
-        pub paper: [f32; 4],
-        /// Pixels between grid lines; 0 for none.
-        pub spacing: f32,
-        /// Rendered size over full size.
-        pub scale: f32,
-        /// 1 / scale.
-        pub inverse_scale: f32,
-        /// Strength of the paper's texture, 0..=1.
-        pub texture_amount: f32,
-        /// How much of the picture's tones shows, 0..=1.
-        pub fill: f32,
-        /// Nonzero: the sheet is opaque also where the picture is not.
-        pub cover: u32,
-        /// Not used.
-        pub reserved: [i32; 2],
-    }
-}
 
 crate::kernel!(blueprint_paper {
     cpu: run,
@@ -74,7 +51,7 @@ pub fn draw(plan: &mut PlanBuilder, lightness: ImageId, edges: ImageId, sheet: &
         texture_amount: sheet.texture,
         fill: sheet.fill,
         cover: sheet.cover.into(),
-        reserved: [0; 2],
+        padding: Default::default(),
     };
     plan.pass(&KERNEL, &[lightness, edges], &params, Class::Colour, Support::Pixels(0))
 }

@@ -2,21 +2,12 @@
 //!
 //! Cost: three powers per pixel.
 
+pub use crate::kernels::shaders::colour_export::Params;
 use crate::kernels::shared::colour::{LINEAR_TO_ACESCG, srgb_decode, transform};
 use crate::kernels::simd::pixels::map_pixels4;
 use crate::request::ColourSpace;
 use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for colour_export {
-        /// 0 sRGB, 1 linear Rec. 709, 2 ACEScg.
-        pub space: u32,
-        /// Nonzero when colour leaves multiplied by alpha.
-        pub premultiplied: u32,
-    }
-}
 
 crate::kernel!(colour_export {
     cpu: run,

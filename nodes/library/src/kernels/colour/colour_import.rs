@@ -4,22 +4,13 @@
 //!
 //! Cost: three powers and a division per pixel.
 
+pub use crate::kernels::shaders::colour_import::Params;
 use crate::kernels::shared::colour::{ACESCG_TO_LINEAR, srgb_encode, transform};
 use crate::kernels::shared::host_colour::plain;
 use crate::kernels::simd::pixels::map_pixels4;
 use crate::request::ColourSpace;
 use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for colour_import {
-        /// 0 sRGB, 1 linear Rec. 709, 2 ACEScg.
-        pub space: u32,
-        /// Nonzero when colour comes multiplied by alpha.
-        pub premultiplied: u32,
-    }
-}
 
 crate::kernel!(colour_import {
     cpu: run,

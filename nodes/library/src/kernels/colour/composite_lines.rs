@@ -2,19 +2,10 @@
 //!
 //! Cost: eight multiply-adds per pixel.
 
+pub use crate::kernels::shaders::composite_lines::Params;
 use crate::kernels::simd::pixels::{for_blocks, write4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for composite_lines {
-        /// RGB and opacity of the lines.
-        pub line: [f32; 4],
-        /// RGB of the paper and how much of it covers the picture.
-        pub paper: [f32; 4],
-    }
-}
 
 crate::kernel!(composite_lines {
     cpu: run,

@@ -5,45 +5,12 @@
 //!
 //! Cost: 28 hashes and about 200 multiply-adds per pixel.
 
+pub use crate::kernels::shaders::ink_sheet::Params;
 use crate::kernels::shared::value_noise::noise;
 use crate::kernels::simd::pixels::{for_blocks, write4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for ink_sheet {
-        /// RGB and opacity of the ink.
-        pub line: [f32; 4],
-        /// RGB of the paper.
-        pub paper: [f32; 4],
-        /// Response from which on there is no ink, units of L.
-        pub epsilon: f32,
-        /// Steepness of the ramp to ink, per unit of L.
-        pub phi: f32,
-        /// Units of L by which strokes raise and lower the response.
-        pub carving: f32,
-        /// How dark shading is, 0..=2.
-        pub shading: f32,
-        /// How much of the shading is hatched, 0..=1; the rest is rubbed in.
-        pub hatching: f32,
-        /// How deep the paper's grain is, 0..=2.
-        pub grain: f32,
-        /// Cells of grain per pixel of the full-size picture.
-        pub grain_frequency: f32,
-        /// Pixels of the full-size picture per pixel.
-        pub inverse_scale: f32,
-        /// How much of the picture's own colours shows, 0..=1.
-        pub colour: f32,
-        /// Strength of the paper's texture, 0..=1.
-        pub texture_amount: f32,
-        /// Nonzero: the sheet is opaque also where the picture is not.
-        pub cover: u32,
-        /// How much of the grain follows the strokes instead of the paper, 0..=1.
-        pub follow: f32,
-    }
-}
 
 crate::kernel!(ink_sheet {
     cpu: run,

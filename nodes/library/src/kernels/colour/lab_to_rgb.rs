@@ -2,18 +2,11 @@
 //!
 //! Cost: three powers per pixel.
 
+pub use crate::kernels::shaders::lab_to_rgb::Params;
 use crate::kernels::shared::colour::{lab_to_linear, srgb_encode};
 use crate::kernels::simd::pixels::map_pixels4;
 use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for lab_to_rgb {
-        /// Factor on the colour axes: 0 is grey, 1 leaves the saturation alone.
-        pub chroma: f32,
-    }
-}
 
 crate::kernel!(lab_to_rgb {
     cpu: run,

@@ -7,6 +7,7 @@
 //! Cost: four powers per pixel; one for a host's linear light, none when the source is Lab already.
 
 use crate::kernels::colour::colour_import;
+pub use crate::kernels::shaders::lightness::Params;
 use crate::kernels::shared::colour::{ACESCG_TO_LINEAR, LUMINANCE, lab_curve, srgb_decode, transform};
 use crate::kernels::shared::host_colour::plain;
 use crate::kernels::simd::pixels::{map_pixels, write2};
@@ -14,18 +15,6 @@ use crate::request::ColourSpace;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
 use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for lightness {
-        /// 0 working colour, 1 Lab, 2 the host's colour.
-        pub source_space: u32,
-        /// The host's colour space: 0 sRGB, 1 linear Rec. 709, 2 ACEScg.
-        pub space: u32,
-        /// Nonzero when the host's colour comes multiplied by alpha.
-        pub premultiplied: u32,
-    }
-}
 
 const WORKING: u32 = 0;
 const LAB: u32 = 1;

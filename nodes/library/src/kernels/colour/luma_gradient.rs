@@ -3,17 +3,10 @@
 //!
 //! Cost: 60 operations.
 
+pub use crate::kernels::shaders::luma_gradient::Params;
 use crate::kernels::simd::neighbours::{Neighbours, each};
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for luma_gradient {
-        /// Weights across the derivative: at the centre and beside it; they sum to 1.
-        pub weights: [f32; 2],
-    }
-}
 
 crate::kernel!(luma_gradient {
     cpu: run,

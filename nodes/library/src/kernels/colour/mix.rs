@@ -2,15 +2,8 @@
 //!
 //! Cost: eight multiply-adds and a division per pixel.
 
+pub use crate::kernels::shaders::mix::Params;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for mix {
-        /// Share of the second picture, 0..=1.
-        pub amount: f32,
-    }
-}
 
 crate::kernel!(mix {
     cpu: run,

@@ -4,22 +4,11 @@
 //!
 //! Cost: 25 multiply-adds.
 
+pub use crate::kernels::shaders::paint_relief::Params;
 use crate::kernels::simd::line_buffer::{Rows, strips};
 use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for paint_relief {
-        /// Direction from where the light comes, times the strength of the shine per unit of slope.
-        pub light: [f32; 2],
-        /// Lightness per unit of height.
-        pub bristle: f32,
-        /// Not used.
-        pub reserved: f32,
-    }
-}
 
 crate::kernel!(paint_relief {
     cpu: run,
@@ -43,7 +32,7 @@ pub fn lit(plan: &mut PlanBuilder, lab: ImageId, heights: ImageId, relief: &Reli
     let (sin, cos) = relief.angle.to_radians().sin_cos();
     // y points down.
     let light = [relief.shine * cos, -relief.shine * sin];
-    let params = Params { light, bristle: relief.bristle, reserved: 0.0 };
+    let params = Params { light, bristle: relief.bristle, padding: Default::default() };
     plan.pass(&KERNEL, &[lab, heights], &params, Class::Colour, Support::Pixels(1))
 }
 

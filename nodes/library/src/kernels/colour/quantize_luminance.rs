@@ -3,32 +3,11 @@
 //!
 //! Cost: one to five reads, a tanh and a square root per pixel.
 
+pub use crate::kernels::shaders::quantize_luminance::Params;
 use crate::kernels::simd::pixels::{Block, for_blocks, write4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for quantize_luminance {
-        /// Width of a bin, units of L.
-        pub width: f32,
-        /// 1 / width.
-        pub inverse_width: f32,
-        /// Steepness when not adaptive, per unit of L.
-        pub phi: f32,
-        /// Nonzero: steepness from the gradient of L.
-        pub adaptive: u32,
-        /// Gradient, in L per pixel, that has steepness `lambda_phi`.
-        pub lambda_delta: f32,
-        /// 1 / (omega_delta - lambda_delta).
-        pub inverse_delta: f32,
-        /// Least steepness.
-        pub lambda_phi: f32,
-        /// Greatest steepness.
-        pub omega_phi: f32,
-    }
-}
 
 crate::kernel!(quantize_luminance {
     cpu: run,

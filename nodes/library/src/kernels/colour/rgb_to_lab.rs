@@ -3,18 +3,11 @@
 //!
 //! Cost: six powers per pixel.
 
+pub use crate::kernels::shaders::rgb_to_lab::Params;
 use crate::kernels::shared::colour::{linear_to_lab, srgb_decode};
 use crate::kernels::simd::pixels::map_pixels4;
 use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for rgb_to_lab {
-        /// Factor on the colour axes: 0 is grey, 1 leaves the saturation alone.
-        pub chroma: f32,
-    }
-}
 
 crate::kernel!(rgb_to_lab {
     cpu: run,

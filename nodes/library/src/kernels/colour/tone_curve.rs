@@ -3,19 +3,10 @@
 //!
 //! Cost: ten multiply-adds per pixel.
 
+pub use crate::kernels::shaders::tone_curve::Params;
 use crate::kernels::simd::pixels::map_pixels4;
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for tone_curve {
-        /// How far dark tones are raised, -1..=1.
-        pub darks: f32,
-        /// How far light tones are raised, -1..=1.
-        pub lights: f32,
-    }
-}
 
 crate::kernel!(tone_curve {
     cpu: run,

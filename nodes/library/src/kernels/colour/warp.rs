@@ -3,22 +3,13 @@
 //!
 //! Cost: one bilinear sample and about 20 operations.
 
+pub use crate::kernels::shaders::warp::Params;
 use crate::kernels::shared::coverage::Covered;
 use crate::kernels::shared::sampling::sample_linear4;
 use crate::kernels::shared::stream::centres;
 use crate::kernels::simd::neighbours::{Neighbours, each};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for warp {
-        /// Pixels moved per unit of the gradient.
-        pub amount: f32,
-        /// Largest move, pixels.
-        pub limit: f32,
-    }
-}
 
 crate::kernel!(warp {
     cpu: run,

@@ -4,28 +4,11 @@
 //!
 //! Cost: 16 hashes and about 150 multiply-adds.
 
+pub use crate::kernels::shaders::watercolor_wash::Params;
 use crate::kernels::shared::value_noise::noise;
 use crate::kernels::simd::pixels::{for_blocks, write4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for watercolor_wash {
-        /// Pixels of the full-size picture per pixel.
-        pub inverse_scale: f32,
-        /// How much pigment there is: 1 leaves the colours alone.
-        pub pigment: f32,
-        /// Density gained per unit that the surroundings are lighter.
-        pub edges: f32,
-        /// Density gained and lost in clouds.
-        pub clouds: f32,
-        /// Density gained and lost in the paper's grain.
-        pub grain: f32,
-        /// Cells of the grain per pixel of the full-size picture.
-        pub grain_frequency: f32,
-    }
-}
 
 crate::kernel!(watercolor_wash {
     cpu: run,

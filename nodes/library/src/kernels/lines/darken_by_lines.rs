@@ -7,14 +7,6 @@ use crate::kernels::simd::pixels::{for_blocks, write2};
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
-crate::params! {
-    /// Uniform block.
-    pub struct Params for darken_by_lines {
-        /// Share of the edge image that is multiplied in, 0..=1.
-        pub amount: f32,
-    }
-}
-
 crate::kernel!(darken_by_lines {
     cpu: run,
     cost: |_| 3.0,
@@ -23,17 +15,15 @@ crate::kernel!(darken_by_lines {
 
 /// (L alpha, alpha) with L multiplied by the `edges` (1 = paper, 0 = line).
 pub fn darken(plan: &mut PlanBuilder, lightness: ImageId, edges: ImageId) -> ImageId {
-    plan.pass(&KERNEL, &[lightness, edges], &Params { amount: 1.0 }, Class::Field, Support::Pixels(0))
+    plan.pass(&KERNEL, &[lightness, edges], &(), Class::Field, Support::Pixels(0))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
     let (lightness, edges) = (&pass.inputs[0], &pass.inputs[1]);
     dispatch!(pass.level, simd => for_blocks::<2>(band, #[inline(always)] |block, target| {
         let [l, alpha] = block.read2(simd, lightness);
-        let e = block.read1(simd, edges).max(0.0).min(1.0);
         let one = f32x8::splat(simd, 1.0);
-        let factor = one - (one - e) * params.amount;
-        write2([l * factor, alpha], target);
+        let ink = one - block.read1(simd, edges).max(0.0).min(1.0);
+        write2([l * (one - ink), alpha], target);
     }));
 }

@@ -6,38 +6,15 @@
 //! memory, radius / 4 + 3 loads a pixel.
 
 use crate::kernels::lines::dog_rows;
+pub use crate::kernels::shaders::dog_columns::Params;
 use crate::kernels::shared::edge_threshold::{
     LEAST_COVERAGE, Xdog, dog_response, edge_threshold, edge_uncovered,
 };
 use crate::kernels::simd::pixels::{BLOCK, write1};
-use crate::kernels::simd::window_sum::{GaussianTable, RUN, flat, sum};
+use crate::kernels::simd::window_sum::{RUN, flat, sum};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, f32x16, prelude::*};
 use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for dog_columns {
-        /// Taps on each side of the centre.
-        pub radius: i32,
-        /// [`Threshold`](crate::kernels::shared::edge_threshold::Threshold) as a number.
-        pub threshold: u32,
-        /// Weight of the smoothed lightness.
-        pub base: f32,
-        /// Weight of the difference of Gaussians.
-        pub edge: f32,
-        /// Response from which on there is no line.
-        pub epsilon: f32,
-        /// Steepness of the ramp.
-        pub phi: f32,
-        /// Not used.
-        pub reserved_pair: [i32; 2],
-        /// Weights at distance 0, 1, ... for standard deviation sigma.
-        pub narrow: GaussianTable,
-        /// Weights for standard deviation k sigma.
-        pub wide: GaussianTable,
-    }
-}
 
 crate::kernel!(dog_columns {
     cpu: run,
@@ -66,7 +43,7 @@ pub fn edges(plan: &mut PlanBuilder, lightness: ImageId, sigma: f32, k: f32, xdo
         edge: xdog.edge,
         epsilon: xdog.epsilon,
         phi: xdog.phi,
-        reserved_pair: [0; 2],
+        padding: Default::default(),
         narrow,
         wide,
     };

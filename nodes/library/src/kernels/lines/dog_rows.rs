@@ -4,25 +4,10 @@
 //! Cost: two multiply-adds per tap and value, radius + 1 taps. Sixteen interleaved pixels at a time.
 //! The shader reads its windows through workgroup memory, radius / 4 + 3 loads a pixel.
 
+pub use crate::kernels::shaders::dog_rows::Params;
 use crate::kernels::simd::window_sum::{GaussianTable, flat, gaussian_radius, gaussian_table};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x16, f64x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for dog_rows {
-        /// Taps on each side of the centre.
-        pub radius: i32,
-        /// Not used.
-        pub reserved: i32,
-        /// Not used.
-        pub reserved_pair: [i32; 2],
-        /// Weights at distance 0, 1, ... for standard deviation sigma.
-        pub narrow: GaussianTable,
-        /// Weights for standard deviation k sigma.
-        pub wide: GaussianTable,
-    }
-}
 
 crate::kernel!(dog_rows {
     cpu: run,
@@ -51,7 +36,7 @@ pub fn tables(sigma: f32, k: f32) -> (u32, GaussianTable, GaussianTable) {
 /// (L alpha, alpha) of the one and of the other.
 pub fn rows(plan: &mut PlanBuilder, lightness: ImageId, sigma: f32, k: f32) -> ImageId {
     let (radius, narrow, wide) = tables(sigma, k);
-    let params = Params { radius: radius as i32, reserved: 0, reserved_pair: [0; 2], narrow, wide };
+    let params = Params { radius: radius as i32, padding: Default::default(), narrow, wide };
     plan.pass(&KERNEL, &[lightness], &params, Class::Field, Support::Pixels(radius))
 }
 

@@ -4,22 +4,11 @@
 //!
 //! Cost: eight neighbours and about 40 operations per pixel.
 
+pub use crate::kernels::shaders::edge_candidates::Params;
 use crate::kernels::simd::line_buffer::{Rows, strips};
 use crate::kernels::simd::pixels::{BLOCK, write1};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, mask32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for edge_candidates {
-        /// [`Method`] as a number.
-        pub method: u32,
-        /// Height from which on a candidate is weak, units of L.
-        pub low: f32,
-        /// Height from which on a candidate is strong.
-        pub high: f32,
-    }
-}
 
 crate::kernel!(edge_candidates {
     cpu: run,

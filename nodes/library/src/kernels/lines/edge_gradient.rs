@@ -6,24 +6,13 @@
 //! smoothing, thresholds mean the same at every scale.
 //! Cost: 24 multiply-adds and a square root per pixel.
 
+pub use crate::kernels::shaders::edge_gradient::Params;
 use crate::kernels::simd::line_buffer::{Rows, strips};
 use crate::kernels::simd::pixels::put_pixels4;
 use crate::kernels::simd::window_sum::{gaussian_radius, gaussian_table};
 use crate::kernels::smoothing::gaussian_blur;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for edge_gradient {
-        /// Weight across the derivative of the pixel's own row or column.
-        pub centre: f32,
-        /// Weight of each of the two beside it.
-        pub side: f32,
-        /// From L per pixel to the height of a step.
-        pub scale: f32,
-    }
-}
 
 crate::kernel!(edge_gradient {
     cpu: run,

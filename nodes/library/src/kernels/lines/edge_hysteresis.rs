@@ -6,21 +6,8 @@
 //! takes: both executors and every tile then come to exactly the same edges.
 //! Cost: reading and writing the pixel; a step is a few operations on 64 pixels, one bit each.
 
+pub use crate::kernels::shaders::edge_hysteresis::Params;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance, View};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for edge_hysteresis {
-        /// Length of the chains, pixels; at most [`STEPS`].
-        pub steps: u32,
-        /// What is written where there is no candidate.
-        pub none: f32,
-        /// What is written for a weak candidate.
-        pub weak: f32,
-        /// What is written for a strong candidate.
-        pub strong: f32,
-    }
-}
 
 crate::kernel!(edge_hysteresis {
     cpu: run,

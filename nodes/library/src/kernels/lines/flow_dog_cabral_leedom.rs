@@ -5,6 +5,7 @@
 //! Cost: up to 6 sigma_m segments per pixel, each one reading response and field, with a tangent, two
 //! divisions and the error function, about 100 operations.
 
+pub use crate::kernels::shaders::flow_dog_cabral_leedom::Params;
 use crate::kernels::shared::edge_threshold::{LEAST_COVERAGE, Xdog, edge_threshold, edge_uncovered};
 use crate::kernels::shared::pixel_line::{PixelLine, error_function, most_steps};
 use crate::kernels::shared::stream::centres;
@@ -12,20 +13,6 @@ use crate::kernels::shared::tensor::tangent;
 use crate::kernels::simd::pixels::{fetch1, for_blocks, offsets, write1};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for flow_dog_cabral_leedom {
-        /// Standard deviation along the line, pixels.
-        pub sigma: f32,
-        /// [`Threshold`](crate::kernels::shared::edge_threshold::Threshold) as a number.
-        pub threshold: u32,
-        /// Response from which on there is no line.
-        pub epsilon: f32,
-        /// Steepness of the ramp.
-        pub phi: f32,
-    }
-}
 
 crate::kernel!(flow_dog_cabral_leedom {
     cpu: run,

@@ -5,6 +5,7 @@
 //! one row or column, and two reads interpolate it exactly as a bilinear sample would.
 //! Cost: per step (about 3 k sigma_e of them) four reads of two values; four exponentials per pixel.
 
+pub use crate::kernels::shaders::flow_dog_gradient::Params;
 use crate::kernels::shared::edge_threshold::{LEAST_COVERAGE, Xdog, dog_response};
 use crate::kernels::shared::tensor::tangent;
 use crate::kernels::simd::line_taps::{ColourLines, strips};
@@ -12,22 +13,6 @@ use crate::kernels::simd::pixels::{BLOCK, Block, write2};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for flow_dog_gradient {
-        /// -1 / (2 sigma^2) of the narrower Gaussian.
-        pub narrow: f32,
-        /// The same of the wider Gaussian.
-        pub wide: f32,
-        /// Cut-off, in pixels.
-        pub halfwidth: f32,
-        /// Weight of the smoothed lightness.
-        pub base: f32,
-        /// Weight of the difference of Gaussians.
-        pub edge: f32,
-    }
-}
 
 crate::kernel!(flow_dog_gradient {
     cpu: run,

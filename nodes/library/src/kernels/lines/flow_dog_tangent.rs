@@ -4,6 +4,7 @@
 //! Cost: 4 sigma_m steps per pixel, each one bilinear sample of two values and one (Euler, two-step) or two
 //! samples of orientation with their tangents, about 70 or 110 operations.
 
+pub use crate::kernels::shaders::flow_dog_tangent::Params;
 use crate::kernels::shared::edge_threshold::{LEAST_COVERAGE, Xdog, edge_threshold, edge_uncovered};
 use crate::kernels::shared::sampling::sample_linear2;
 use crate::kernels::shared::stream::{Integrator, NearField, Stream, StreamField, centres, holds};
@@ -12,22 +13,6 @@ use crate::kernels::simd::pixels::{BLOCK, Block, for_blocks_in_tiles, write1};
 use crate::kernels::simd::tile_copy::{Frame, Place, Surroundings, TWO};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, mask32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for flow_dog_tangent {
-        /// Standard deviation along the line, pixels.
-        pub sigma: f32,
-        /// 0: Euler; 1: second-order Runge-Kutta; 2: two-step.
-        pub integrator: u32,
-        /// [`Threshold`](crate::kernels::shared::edge_threshold::Threshold) as a number.
-        pub threshold: u32,
-        /// Response from which on there is no line.
-        pub epsilon: f32,
-        /// Steepness of the ramp.
-        pub phi: f32,
-    }
-}
 
 crate::kernel!(flow_dog_tangent {
     cpu: run,

@@ -6,6 +6,7 @@
 //! bilinear samples of two values.
 
 use crate::kernels::lines::flow_dog_gradient::halfwidth;
+pub use crate::kernels::shaders::flow_dog_two_dimensional::Params;
 use crate::kernels::shared::edge_threshold::{
     LEAST_COVERAGE, Xdog, dog_response, edge_threshold, edge_uncovered,
 };
@@ -17,32 +18,6 @@ use crate::kernels::simd::pixels::{for_blocks, write1};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for flow_dog_two_dimensional {
-        /// -1 / (2 sigma^2) of the narrower Gaussian across the line.
-        pub narrow: f32,
-        /// The same of the wider Gaussian.
-        pub wide: f32,
-        /// Cut-off across the line, in pixels.
-        pub halfwidth: f32,
-        /// Weight of the smoothed lightness.
-        pub base: f32,
-        /// Weight of the difference of Gaussians.
-        pub edge: f32,
-        /// Standard deviation along the line, pixels.
-        pub sigma: f32,
-        /// [`Stepping`] as a number.
-        pub stepping: u32,
-        /// [`Threshold`](crate::kernels::shared::edge_threshold::Threshold) as a number.
-        pub threshold: u32,
-        /// Response from which on there is no line.
-        pub epsilon: f32,
-        /// Steepness of the ramp.
-        pub phi: f32,
-    }
-}
 
 crate::kernel!(flow_dog_two_dimensional {
     cpu: run,

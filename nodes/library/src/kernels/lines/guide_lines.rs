@@ -11,28 +11,11 @@
 //! Cost: per step (12 sigma_e of them) up to three reads and two exponentials.
 
 use crate::kernels::lines::flow_dog_gradient::Across;
+pub use crate::kernels::shaders::guide_lines::Params;
 use crate::kernels::simd::pixels::{fetch1, fetch4, for_blocks, offsets, write2};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for guide_lines {
-        /// -1 / (2 sigma^2) of the narrower Gaussian.
-        pub narrow: f32,
-        /// The same of the wider Gaussian.
-        pub wide: f32,
-        /// Cut-off, in pixels.
-        pub halfwidth: f32,
-        /// Steps on each side that the cut-off takes at most.
-        pub steps: i32,
-        /// Units of response that a unit of the difference takes off.
-        pub amount: f32,
-        /// Bit 0: normal, bit 1: depth, bit 2: object id are there.
-        pub guides: u32,
-    }
-}
 
 crate::kernel!(guide_lines {
     cpu: run,

@@ -8,14 +8,6 @@ use crate::kernels::simd::pixels::{for_blocks, write2};
 use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
-crate::params! {
-    /// Uniform block.
-    pub struct Params for orientation_field {
-        /// Factor on both; eigenvectors have none.
-        pub scale: f32,
-    }
-}
-
 crate::kernel!(orientation_field {
     cpu: run,
     cost: |_| 3.0,
@@ -24,18 +16,17 @@ crate::kernel!(orientation_field {
 
 /// (E - G, F) of a tensor image.
 pub fn of_tensor(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
-    plan.pass(&KERNEL, &[tensor], &Params { scale: 1.0 }, Class::Field, Support::Pixels(0))
+    plan.pass(&KERNEL, &[tensor], &(), Class::Field, Support::Pixels(0))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
     let view = &pass.inputs[0];
     dispatch!(pass.level, simd => for_blocks::<2>(
         band,
         #[inline(always)]
         |block, target| {
             let [e, f, g, _] = block.read4(simd, view);
-            write2([(e - g) * params.scale, f * params.scale], target);
+            write2([e - g, f], target);
         },
     ));
 }

@@ -10,6 +10,7 @@
 //! Cost: pi radius^2 pixels, each half of about 105 operations. The shader reads them through workgroup memory,
 //! about (1 + elongation)^2 radius^2 / 4 loads a pixel, up to an elongation of 2.
 
+pub use crate::kernels::shaders::anisotropic_kuwahara::Params;
 use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Polynomial, Response, Sector};
 use crate::kernels::shared::tensor::{anisotropy, tangent};
 use crate::kernels::simd::line_buffer::strips;
@@ -18,28 +19,6 @@ use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 use std::f32::consts::FRAC_1_SQRT_2;
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for anisotropic_kuwahara {
-        /// Radius of the disc that the ellipse is made of, pixels.
-        pub radius: f32,
-        /// 1 / alpha of (5.22).
-        pub elongation: f32,
-        /// Overlap of the sectors at the centre (5.40).
-        pub zeta: f32,
-        /// Overlap of the sectors at their sides (5.42).
-        pub eta: f32,
-        /// tau_s of (5.15).
-        pub threshold: f32,
-        /// Exponent q.
-        pub q: f32,
-        /// tau_w: least standard deviation of a sector in the second output.
-        pub deviation_floor: f32,
-        /// 4 or 8.
-        pub sectors: u32,
-    }
-}
 
 crate::kernel!(anisotropic_kuwahara {
     cpu: run,

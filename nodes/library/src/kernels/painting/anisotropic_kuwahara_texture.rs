@@ -10,6 +10,7 @@
 //! elongation of 2.
 
 use crate::kernels::painting::anisotropic_kuwahara::{Options, reach};
+pub use crate::kernels::shaders::anisotropic_kuwahara_texture::Params;
 use crate::kernels::shared::sampled_sectors::{Table, sample, table};
 use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Response, Sector};
 use crate::kernels::shared::tensor::scalar::{anisotropy, tangent};
@@ -19,28 +20,6 @@ use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 use std::f32::consts::FRAC_1_SQRT_2;
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for anisotropic_kuwahara_texture {
-        /// Radius of the disc that the ellipse is made of, pixels.
-        pub radius: f32,
-        /// 1 / alpha of (5.22).
-        pub elongation: f32,
-        /// tau_s of (5.15).
-        pub threshold: f32,
-        /// Exponent q.
-        pub q: f32,
-        /// tau_w: least standard deviation of a sector in the second output.
-        pub deviation_floor: f32,
-        /// 4 or 8.
-        pub sectors: u32,
-        /// Unused: keeps the weights aligned.
-        pub reserved: [u32; 2],
-        /// h_0 and its quarter turns at 43 x 22 nodes over the half y >= 0 of the disc's bounding square.
-        pub weights: Table,
-    }
-}
 
 crate::kernel!(anisotropic_kuwahara_texture {
     cpu: run,
@@ -68,7 +47,7 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: &
         q: options.q,
         deviation_floor: options.deviation_floor,
         sectors: options.sectors,
-        reserved: [0; 2],
+        padding: Default::default(),
         weights: *table(options.sectors),
     };
     let level = plan.desc(color).level;

@@ -11,7 +11,8 @@
 //! 10 log2(block) operations for each of 18 transforms. The shader goes through the disc pixel by pixel, through
 //! workgroup memory: about radius^2 / 4 loads.
 
-use crate::kernels::shared::sampled_sectors::{Table, sample, table};
+pub use crate::kernels::shaders::generalized_kuwahara::Params;
+use crate::kernels::shared::sampled_sectors::{sample, table};
 use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Response, Sector};
 use crate::kernels::simd::line_buffer::strips;
 use crate::kernels::simd::moment_buffer::{CHANNELS, Planes};
@@ -25,28 +26,6 @@ use std::f32::consts::FRAC_1_SQRT_2;
 
 #[path = "generalized_kuwahara/block_convolution.rs"]
 mod block_convolution;
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for generalized_kuwahara {
-        /// 1 / radius, per pixel.
-        pub scale: f32,
-        /// Pixels from the centre to the border along an axis.
-        pub reach: i32,
-        /// tau_s of (5.15).
-        pub threshold: f32,
-        /// Exponent q.
-        pub q: f32,
-        /// 4 or 8.
-        pub sectors: u32,
-        /// Side of the blocks that the CPU transforms; 0 for none.
-        pub block: u32,
-        /// Unused: keeps the weights aligned.
-        pub reserved: [u32; 2],
-        /// h_0 and its quarter turns at 43 x 22 nodes over the half y >= 0 of the disc's bounding square.
-        pub weights: Table,
-    }
-}
 
 crate::kernel!(generalized_kuwahara {
     cpu: run,
@@ -93,7 +72,7 @@ pub fn filter(plan: &mut PlanBuilder, color: ImageId, options: &Options) -> Imag
         q: options.q,
         sectors: options.sectors,
         block,
-        reserved: [0; 2],
+        padding: Default::default(),
         weights: *table(options.sectors),
     };
     // A pixel may lie at the far end of its block.

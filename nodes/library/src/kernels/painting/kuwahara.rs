@@ -8,27 +8,12 @@
 //! Cost: 3 additions on ten channels and 60 operations; other weights 20 multiply-adds each.
 //! The shader takes all weights singly, through workgroup memory: 3 count / 4 + 6 loads a pixel.
 
-use crate::kernels::painting::kuwahara_rows::{self, Side, Weights};
+use crate::kernels::painting::kuwahara_rows::{self, Side};
+pub use crate::kernels::shaders::kuwahara::Params;
 use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for kuwahara {
-        /// Offset of the first weight from the pixel, towards the side.
-        pub first: i32,
-        /// Weights.
-        pub count: u32,
-        /// 1: all weights are equal.
-        pub flat_weights: u32,
-        /// Differences of variance up to this share are none.
-        pub tie: f32,
-        /// The weights.
-        pub weights: Weights,
-    }
-}
 
 crate::kernel!(kuwahara {
     cpu: run,

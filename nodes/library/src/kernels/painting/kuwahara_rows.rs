@@ -7,27 +7,12 @@
 //! Cost: 2 log2(r + 1) additions on five channels; other weights 10 multiply-adds each.
 //! The shader takes all weights singly, through workgroup memory: count / 4 + 2 loads a pixel.
 
+pub use crate::kernels::shaders::kuwahara_rows::Params;
 use crate::kernels::simd::line_buffer::strips;
 use crate::kernels::simd::moment_buffer::{CHANNELS, Planes};
 use crate::kernels::simd::pixels::{put_pixels4, write2};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for kuwahara_rows {
-        /// Offset of the first weight from the pixel, towards the side.
-        pub first: i32,
-        /// Weights.
-        pub count: u32,
-        /// 1: all weights are equal.
-        pub flat_weights: u32,
-        /// Unused: keeps the weights aligned.
-        pub reserved: u32,
-        /// The weights.
-        pub weights: Weights,
-    }
-}
 
 crate::kernel!(kuwahara_rows {
     cpu: run,
@@ -101,7 +86,7 @@ pub fn sums(plan: &mut PlanBuilder, color: ImageId, side: &Side) -> ImageId {
         first: side.first,
         count: side.count,
         flat_weights: u32::from(side.flat),
-        reserved: 0,
+        padding: Default::default(),
         weights: side.weights,
     };
     let level = plan.desc(color).level;

@@ -8,19 +8,10 @@
 //! Cost: 36 multiply-adds and 60 operations on four channels per pixel of the coarser level. The shader takes
 //! 144 multiply-adds, through workgroup memory: 11 loads.
 
+pub use crate::kernels::shaders::lanczos_half::Params;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 use std::f64::consts::PI;
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for lanczos_half {
-        /// Weights at distances 1/2, 3/2, 5/2, 7/2 pixels.
-        pub near: [f32; 4],
-        /// Weights at distances 9/2, 11/2 pixels.
-        pub far: [f32; 4],
-    }
-}
 
 crate::kernel!(lanczos_half {
     cpu: run,

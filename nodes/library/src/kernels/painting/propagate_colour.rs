@@ -3,21 +3,12 @@
 //!
 //! Cost: 4 interpolations on five channels and 20 operations.
 
+pub use crate::kernels::shaders::propagate_colour::Params;
 use crate::kernels::simd::pixels::{for_blocks, put_pixels4};
 use crate::kernels::simd::upsampling::Upsampling;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for propagate_colour {
-        /// p_s p_d^k at this level.
-        pub gain: f32,
-        /// tau_v: deviations up to this, times the gain, count for nothing.
-        pub threshold: f32,
-    }
-}
 
 crate::kernel!(propagate_colour {
     cpu: run,

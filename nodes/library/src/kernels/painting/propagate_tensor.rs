@@ -3,20 +3,13 @@
 //!
 //! Cost: 4 interpolations on four channels, two anisotropies and 20 operations.
 
+pub use crate::kernels::shaders::propagate_tensor::Params;
 use crate::kernels::shared::tensor::anisotropy;
 use crate::kernels::simd::pixels::{for_blocks, put_pixels4};
 use crate::kernels::simd::upsampling::Upsampling;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for propagate_tensor {
-        /// Least anisotropy that counts.
-        pub floor: f32,
-    }
-}
 
 crate::kernel!(propagate_tensor {
     cpu: run,

@@ -20,18 +20,18 @@ const TABLE_ROWS: usize = TABLE_SIDE / 2 + 1;
 /// Weights of four sectors a quarter turn apart, starting with h_0, at nodes that span the half y >= 0 of
 /// the disc's bounding square, row by row; the last texels are unused. It is what a uniform block can hold
 /// on every device.
-pub type Table = [[[f32; 4]; 32]; 30];
+pub type Table = [[f32; 4]; 960];
 
-const _: () = assert!(TABLE_SIDE * TABLE_ROWS <= 32 * 30, "the nodes fit the table");
+const _: () = assert!(TABLE_SIDE * TABLE_ROWS <= 960, "the nodes fit the table");
 
 /// The weighting functions (5.11) for 4 or 8 sectors, sampled. Those between the four are found at
 /// positions turned by 45 degrees.
 pub fn table(sectors: u32) -> &'static Table {
     static TABLES: [OnceLock<Table>; 2] = [const { OnceLock::new() }; 2];
     TABLES[usize::from(sectors > 4)].get_or_init(|| {
-        let mut table = [[[0.0; 4]; 32]; 30];
+        let mut table = [[0.0; 4]; 960];
         let node = |i: usize| 2.0 * i as f64 / (TABLE_SIDE - 1) as f64;
-        for (index, texel) in table.as_flattened_mut()[..TABLE_SIDE * TABLE_ROWS].iter_mut().enumerate() {
+        for (index, texel) in table[..TABLE_SIDE * TABLE_ROWS].iter_mut().enumerate() {
             let (x, y) = (node(index % TABLE_SIDE) - 1.0, node(index / TABLE_SIDE));
             // Sector k looks along k quarter turns: the point is turned back.
             for (value, (u, v)) in texel.iter_mut().zip([(x, y), (y, -x), (-x, -y), (-y, x)]) {
@@ -79,7 +79,7 @@ pub fn sample<S: Simd>(simd: S, table: &Table, x: f32, y: f32) -> f32x4<S> {
     let (i, j) = (u.min(LAST[0]) as u32, v.min(LAST[1]) as u32);
     let fx = f32x4::splat(simd, (u - i as f32).min(1.0));
     let fy = f32x4::splat(simd, (v - j as f32).min(1.0));
-    let texels = &table.as_flattened()[j as usize * TABLE_SIDE + i as usize..][..TABLE_SIDE + 2];
+    let texels = &table[j as usize * TABLE_SIDE + i as usize..][..TABLE_SIDE + 2];
     let (a, b) = (f32x4::from_slice(simd, &texels[0]), f32x4::from_slice(simd, &texels[1]));
     let c = f32x4::from_slice(simd, &texels[TABLE_SIDE]);
     let d = f32x4::from_slice(simd, &texels[TABLE_SIDE + 1]);

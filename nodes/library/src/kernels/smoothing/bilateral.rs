@@ -7,22 +7,11 @@
 //! three loads of eight pixels; half of the operations are the exponential. The shader reads its windows
 //! through workgroup memory, about radius^2 / 16 + radius / 2 + 1 loads a pixel.
 
+pub use crate::kernels::shaders::bilateral::Params;
 use crate::kernels::simd::line_buffer::Rows;
 use crate::kernels::simd::pixels::put_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for bilateral {
-        /// Pixels on each side of the centre, along x and along y; the larger one is the window's radius.
-        pub extent: [i32; 2],
-        /// Exponent, base 2, per squared pixel of distance.
-        pub domain: f32,
-        /// Exponent, base 2, per squared difference in range.
-        pub range: f32,
-    }
-}
 
 crate::kernel!(bilateral {
     cpu: run,

@@ -4,6 +4,7 @@
 //! Cost: up to 6 sigma segments per pixel, each one colour and one tensor with its tangent, two divisions
 //! and the error function, about 120 operations.
 
+pub use crate::kernels::shaders::cabral_leedom::Params;
 use crate::kernels::shared::coverage::Covered;
 use crate::kernels::shared::pixel_line::{PixelLine, error_function, most_steps};
 use crate::kernels::shared::stream::{acos, centres};
@@ -12,18 +13,6 @@ use crate::kernels::simd::pixels::{Block, fetch4, for_blocks, offsets, write4};
 use crate::kernels::smoothing::line_integral_convolution::{Adapt, Options, least_turn};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for cabral_leedom {
-        /// Standard deviation along the line, pixels.
-        pub sigma: f32,
-        /// A side ends at a pixel boundary where it turns by more than the angle of this cosine.
-        pub least_turn: f32,
-        /// 0: none; 1: anisotropy; 2: angle.
-        pub adapt: u32,
-    }
-}
 
 crate::kernel!(cabral_leedom {
     cpu: run,

@@ -5,18 +5,11 @@
 //!
 //! Cost: 70 operations. The shader reads through workgroup memory, 5 loads a pixel.
 
+pub use crate::kernels::shaders::diffusion_step::Params;
 use crate::kernels::simd::line_buffer::{Rows, strips};
 use crate::kernels::simd::pixels::put_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for diffusion_step {
-        /// Time step, up to 1/4.
-        pub time_step: f32,
-    }
-}
 
 crate::kernel!(diffusion_step {
     cpu: run,

@@ -8,21 +8,12 @@
 //!
 //! Cost: an eigenanalysis and an exponential, about 80 operations.
 
+pub use crate::kernels::shaders::diffusion_tensor::Params;
 use crate::kernels::shared::tensor::{Eigen, eigen};
 use crate::kernels::simd::pixels::map_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for diffusion_tensor {
-        /// 1 / lambda^2 (edge-enhancing) or 1 / contrast^2 (coherence-enhancing).
-        pub falloff: f32,
-        /// 1: coherence-enhancing; 0: edge-enhancing.
-        pub coherence: u32,
-    }
-}
 
 crate::kernel!(diffusion_tensor {
     cpu: run,

@@ -8,20 +8,9 @@
 //! Cost: about 2 radius + 0.6 radius + log2(radius) comparisons per value on the CPU; the shader looks
 //! at every pixel of the disc, through workgroup memory: about radius^2 / 16 + radius / 2 + 1 loads.
 
+pub use crate::kernels::shaders::disc_extremum::Params;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for disc_extremum {
-        /// Rows on each side of the centre.
-        pub extent: i32,
-        /// Pixels of the disc lie at most the square root of this away.
-        pub limit: i32,
-        /// 1: greatest; -1: least.
-        pub sign: f32,
-    }
-}
 
 crate::kernel!(disc_extremum {
     cpu: run,

@@ -10,6 +10,7 @@
 //! and one (Euler) or two tensor samples with their tangents.
 
 use crate::kernels::lines::orientation_field;
+pub use crate::kernels::shaders::flow_bilateral::Params;
 use crate::kernels::shared::coverage::Covered;
 use crate::kernels::shared::sampling::sample_linear4;
 use crate::kernels::shared::stream::{Integrator, Stream, StreamField, centres, holds};
@@ -19,24 +20,6 @@ use crate::kernels::smoothing::oriented_bilateral::Sampling;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::math::{Elementary, channels};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for flow_bilateral {
-        /// Standard deviation along the line, pixels.
-        pub sigma_d: f32,
-        /// Standard deviation of the range, in the unit of the colour.
-        pub sigma_r: f32,
-        /// Length of a side of the line, whole pixels.
-        pub radius: f32,
-        /// 1: second-order Runge-Kutta; 0: Euler.
-        pub midpoint: u32,
-        /// 1: range weights before the interpolation (3.9); 0: after it.
-        pub manual: u32,
-        /// 1: samples where lines cross the centres of rows or columns; 0: at equal distances.
-        pub centres: u32,
-    }
-}
 
 crate::kernel!(flow_bilateral {
     cpu: run,

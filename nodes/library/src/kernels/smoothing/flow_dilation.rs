@@ -6,6 +6,7 @@
 //! Cost: 2 length steps per pixel, each one noise sample and two tensor samples with their tangents,
 //! about 130 operations.
 
+pub use crate::kernels::shaders::flow_dilation::Params;
 use crate::kernels::shared::coverage::Covered;
 use crate::kernels::shared::sampling::sample_linear4;
 use crate::kernels::shared::stream::{Integrator, Stream, StreamField, centres};
@@ -13,14 +14,6 @@ use crate::kernels::shared::tensor::{anisotropy, tangent};
 use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for flow_dilation {
-        /// Arc length of each side of the line where the orientation is certain, pixels.
-        pub length: f32,
-    }
-}
 
 crate::kernel!(flow_dilation {
     cpu: run,

@@ -4,26 +4,11 @@
 //! interleaved values, sixteen pixels at a time. The shader reads its windows through workgroup memory,
 //! radius / 4 + 3 loads a pixel.
 
+pub use crate::kernels::shaders::gaussian_blur::Params;
 use crate::kernels::shared::coverage::{FULL, is_opaque};
-use crate::kernels::simd::window_sum::{
-    GAUSSIAN_TAPS, GaussianTable, RUN, flat, gaussian_radius, gaussian_table, sum,
-};
+use crate::kernels::simd::window_sum::{GAUSSIAN_TAPS, RUN, flat, gaussian_radius, gaussian_table, sum};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, f32x16, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for gaussian_blur {
-        /// (1, 0) for rows, (0, 1) for columns.
-        pub axis: [i32; 2],
-        /// Pixels on each side of the centre.
-        pub radius: i32,
-        /// Bit 0: multiply colour by alpha on reading. Bit 1: divide by alpha on writing.
-        pub coverage: u32,
-        /// Weights at distance 0, 1, ...
-        pub weights: GaussianTable,
-    }
-}
 
 crate::kernel!(gaussian_blur {
     cpu: run,

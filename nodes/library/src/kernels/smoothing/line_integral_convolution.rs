@@ -5,6 +5,7 @@
 //! and one (Euler, two-step) or two tensor samples with their tangents, about 90 or 130 operations.
 
 use crate::kernels::lines::orientation_field;
+pub use crate::kernels::shaders::line_integral_convolution::Params;
 use crate::kernels::shared::coverage::{Covered, full_or};
 use crate::kernels::shared::sampling::sample_linear4;
 use crate::kernels::shared::stream::{
@@ -17,24 +18,6 @@ use crate::kernels::simd::tile_copy::{FOUR, Frame, Place, Surroundings, TWO};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
 use isophote_engine::math::{Elementary, load4};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for line_integral_convolution {
-        /// Standard deviation along the line, pixels.
-        pub sigma: f32,
-        /// Step size h, pixels.
-        pub step: f32,
-        /// Most by which steps may be stretched, at least 1.
-        pub stretch: f32,
-        /// A side ends at a step that turns by more than the angle of this cosine.
-        pub least_turn: f32,
-        /// 0: Euler; 1: second-order Runge-Kutta; 2: two-step.
-        pub integrator: u32,
-        /// 0: none; 1: anisotropy; 2: angle.
-        pub adapt: u32,
-    }
-}
 
 crate::kernel!(line_integral_convolution {
     cpu: run,

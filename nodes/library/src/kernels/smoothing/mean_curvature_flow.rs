@@ -9,21 +9,12 @@
 //! Cost: 100 operations; 140 with the constraint. Memory takes longer than these: rows are read once
 //! and gradients kept in rings. The shader reads them through workgroup memory, 4 loads a pixel.
 
+pub use crate::kernels::shaders::mean_curvature_flow::Params;
 use crate::kernels::shared::tensor::tangent;
 use crate::kernels::simd::line_buffer::{Rows, pixels, strips};
 use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for mean_curvature_flow {
-        /// Time step.
-        pub time_step: f32,
-        /// r of 6.2; with 0 the tensors are not read.
-        pub constraint: f32,
-    }
-}
 
 crate::kernel!(mean_curvature_flow {
     cpu: run,

@@ -7,30 +7,13 @@
 //!
 //! Cost: about 1.8 cutoff taps of one interpolation and one exponential (manual: two or more).
 
+pub use crate::kernels::shaders::oriented_bilateral::Params;
 use crate::kernels::shared::tensor::{anisotropy, tangent};
 use crate::kernels::simd::line_taps::{ColourLines, Lines, STEPS, strips};
 use crate::kernels::simd::pixels::{put_pixels4, row_pixels4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance, View};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for oriented_bilateral {
-        /// Standard deviation along the line, pixels.
-        pub sigma_d: f32,
-        /// Standard deviation of the range, in the unit of the colour.
-        pub sigma_r: f32,
-        /// Distance of the last tap, pixels.
-        pub cutoff: f32,
-        /// Growth of the tangent's scale, and shrinking of the gradient's, per unit of anisotropy.
-        pub elongation: f32,
-        /// 1: along the tangent; 0: along the gradient.
-        pub tangential: u32,
-        /// 1: range weights before the interpolation (3.9); 0: after it.
-        pub manual: u32,
-    }
-}
 
 crate::kernel!(oriented_bilateral {
     cpu: run,

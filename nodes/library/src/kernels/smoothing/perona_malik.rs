@@ -7,23 +7,12 @@
 //!
 //! Cost: 60 operations (exponential: 100); memory takes longer.
 
+pub use crate::kernels::shaders::perona_malik::Params;
 use crate::kernels::simd::line_buffer::{Rows, WIDE_STRIP, pixels, strips_of};
 use crate::kernels::simd::pixels::put_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for perona_malik {
-        /// Time step, up to 1/4.
-        pub time_step: f32,
-        /// 1 / K^2 or 1 / lambda^2 of 3.2.
-        pub falloff: f32,
-        /// 1: the exponential diffusivity of 3.2; 0: the rational one.
-        pub exponential: u32,
-    }
-}
 
 crate::kernel!(perona_malik {
     cpu: run,

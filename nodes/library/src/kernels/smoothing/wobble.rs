@@ -3,6 +3,7 @@
 //!
 //! Cost: 16 hashes, one bilinear sample and about 150 multiply-adds.
 
+pub use crate::kernels::shaders::wobble::Params;
 use crate::kernels::shared::coverage::Covered;
 use crate::kernels::shared::sampling::sample_linear4;
 use crate::kernels::shared::stream::centres;
@@ -10,18 +11,6 @@ use crate::kernels::shared::value_noise::noise;
 use crate::kernels::simd::pixels::put_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for wobble {
-        /// Pixels of the full-size picture per pixel.
-        pub inverse_scale: f32,
-        /// Farthest that a pixel is fetched from on each axis, pixels.
-        pub amount: f32,
-        /// Waves per pixel of the full-size picture.
-        pub frequency: f32,
-    }
-}
 
 crate::kernel!(wobble {
     cpu: run,

@@ -3,16 +3,9 @@
 //!
 //! Cost: 4 additions and a division on four channels.
 
+pub use crate::kernels::shaders::colour_restrict::Params;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for colour_restrict {
-        /// Coverage below this is none.
-        pub least: f32,
-    }
-}
 
 crate::kernel!(colour_restrict {
     cpu: run,

@@ -3,17 +3,10 @@
 //!
 //! Cost: one multiply-add a value.
 
+pub use crate::kernels::shaders::contrast::Params;
 use crate::kernels::simd::pixels::map_pixels4;
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for contrast {
-        /// Factor on the distance to middle grey.
-        pub gain: f32,
-    }
-}
 
 crate::kernel!(contrast {
     cpu: run,

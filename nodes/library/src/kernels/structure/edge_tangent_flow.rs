@@ -12,6 +12,7 @@
 //! Cost: 7 multiply-adds per neighbour, pi radius^2 of them, and about 50 operations. The shader reads
 //! them through workgroup memory, about radius^2 / 16 + radius / 2 + 1 loads a pixel.
 
+pub use crate::kernels::shaders::edge_tangent_flow::Params;
 use crate::kernels::shared::tensor::axis;
 use crate::kernels::simd::line_buffer::{Rows, strips};
 use crate::kernels::simd::pixels::put_pixels4;
@@ -22,20 +23,6 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 const TAPS: usize = 24;
 /// Largest reach, in pixels.
 const MAX_REACH: i32 = TAPS as i32 - 1;
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for edge_tangent_flow {
-        /// Largest distance in x and in y, pixels.
-        pub reach: [i32; 2],
-        /// Neighbours lie nearer than this: squared radius.
-        pub limit: f32,
-        /// 1: the last pass writes w, not the magnitude.
-        pub last: u32,
-        /// Spatial weight at distance 0, 1, ... along each axis.
-        pub weights: [[f32; 4]; TAPS / 4],
-    }
-}
 
 crate::kernel!(edge_tangent_flow {
     cpu: run,

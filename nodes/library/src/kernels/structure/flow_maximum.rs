@@ -3,15 +3,8 @@
 //!
 //! Cost: 3 comparisons.
 
+pub use crate::kernels::shaders::flow_maximum::Params;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for flow_maximum {
-        /// The channel to look at.
-        pub channel: u32,
-    }
-}
 
 crate::kernel!(flow_maximum {
     cpu: run,

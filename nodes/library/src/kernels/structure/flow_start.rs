@@ -4,18 +4,11 @@
 //!
 //! Cost: about 20 operations.
 
+pub use crate::kernels::shaders::flow_start::Params;
 use crate::kernels::shared::tensor::axis;
 use crate::kernels::simd::pixels::map_pixels4;
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for flow_start {
-        /// A magnitude below this is no gradient.
-        pub least: f32,
-    }
-}
 
 crate::kernel!(flow_start {
     cpu: run,

@@ -10,6 +10,7 @@
 //! Cost: 4 radius + 2 multiply-adds on four channels: columns are summed once, in the shader once
 //! for the pixels of a workgroup, which makes 1 + radius / 4 columns of 2 radius + 1 loads a pixel.
 
+pub use crate::kernels::shaders::gradient_tensor::Params;
 use crate::kernels::shared::outer_product::outer_product;
 use crate::kernels::simd::line_buffer::{Rows, WIDE_STRIP, strips_of};
 use crate::kernels::simd::pixels::put_pixels4;
@@ -22,25 +23,6 @@ const TAPS: usize = 20;
 const MAX_RADIUS: u32 = TAPS as u32 - 1;
 
 type Table = [[f32; 4]; TAPS / 4];
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for gradient_tensor {
-        /// Pixels on each side of the centre.
-        pub radius: i32,
-        /// Bit 0: the gradient of the luma alone. Bit 1: divide each channel's tensor by its
-        /// gradient's magnitude (2.133).
-        pub flags: u32,
-        /// Factor on the colours.
-        pub scale: f32,
-        /// A tensor is valid (w = 1) above this lambda1 (2.164).
-        pub threshold: f32,
-        /// Weights at distance 0, 1, ... across the derivative.
-        pub smoothing: Table,
-        /// Weights at distance 0, 1, ... along the derivative.
-        pub derivative: Table,
-    }
-}
 
 crate::kernel!(gradient_tensor {
     cpu: run,

@@ -8,6 +8,7 @@
 //!
 //! NaN and infinities count as nothing there. Cost: about 60 operations a pixel.
 
+pub use crate::kernels::shaders::guide_tensor::Params;
 use crate::kernels::shared::outer_product::validity;
 use crate::kernels::simd::line_buffer::{Rows, strips};
 use crate::kernels::simd::pixels::put_pixels4;
@@ -15,18 +16,6 @@ use crate::kernels::structure::gradient_tensor::least_lambda1;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for guide_tensor {
-        /// 0 normal, 1 depth, 2 object id.
-        pub kind: u32,
-        /// Factor on the guide's tensor.
-        pub weight: f32,
-        /// A tensor is valid (w = 1) above this lambda1 (2.164).
-        pub threshold: f32,
-    }
-}
 
 crate::kernel!(guide_tensor {
     cpu: run,

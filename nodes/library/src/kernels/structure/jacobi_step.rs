@@ -8,14 +8,6 @@ use super::{tensor_interpolate, tensor_restrict};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
-crate::params! {
-    /// Uniform block.
-    pub struct Params for jacobi_step {
-        /// A tensor is valid from this w on.
-        pub kept: f32,
-    }
-}
-
 crate::kernel!(jacobi_step {
     cpu: run,
     cost: |_| 16.0,
@@ -29,7 +21,7 @@ crate::kernel!(jacobi_step {
 
 /// Adds the pass.
 pub fn step(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
-    plan.pass(&KERNEL, &[tensor], &Params { kept: 1.0 }, Class::Field, Support::Pixels(1))
+    plan.pass(&KERNEL, &[tensor], &(), Class::Field, Support::Pixels(1))
 }
 
 /// Replaces tensors that are not valid (w = 0) by a membrane spanned over the valid ones (2.165): a
@@ -49,12 +41,11 @@ pub fn relax(plan: &mut PlanBuilder, tensor: ImageId, steps: i32) -> ImageId {
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => average(simd, pass, &params, band));
+    dispatch!(pass.level, simd => average(simd, pass, band));
 }
 
 #[inline(always)]
-fn average<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
+fn average<S: Simd>(simd: S, pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let window = band.window;
     let view = &pass.inputs[0];
     let mut scratch = Vec::new();
@@ -67,7 +58,7 @@ fn average<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
         let (above, below) = (row(y - 1), row(y + 1));
         let centre = view.padded_row(y, window.x0 - 1, window.x1 + 1, &mut scratch);
         for (x, target) in band.row_mut(0, y).chunks_exact_mut(4).enumerate() {
-            if centre[4 * x + 7] >= params.kept {
+            if centre[4 * x + 7] >= 1.0 {
                 load(simd, centre, x + 1).store_slice(target);
                 continue;
             }

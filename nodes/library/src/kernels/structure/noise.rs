@@ -7,23 +7,10 @@
 //!
 //! Cost: about 15 integer operations a grain.
 
+pub use crate::kernels::shaders::noise::Params;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*, u32x8};
 use isophote_engine::math::store4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for noise {
-        /// Grains per pixel, each way.
-        pub pixel_size: f32,
-        /// Pixels of the full-size picture per grain.
-        pub grain: f32,
-        /// Grains that a pixel can touch, each way.
-        pub count: i32,
-        /// Another number, another noise.
-        pub seed: u32,
-    }
-}
 
 crate::kernel!(noise {
     cpu: run,

@@ -7,6 +7,7 @@
 //! Cost: 8 radius + 4 multiply-adds on four channels: columns are summed once, in the shader once
 //! for the pixels of a workgroup, which makes 2/3 + radius / 4 columns of 2 radius + 1 loads a pixel.
 
+pub use crate::kernels::shaders::oversampled_tensor::Params;
 use crate::kernels::shared::outer_product::outer_product;
 use crate::kernels::simd::line_buffer::{Rows, strips};
 use crate::kernels::structure::gradient_tensor::Measure;
@@ -20,25 +21,6 @@ const TAPS: usize = 40;
 const MAX_RADIUS: i32 = (TAPS as i32 - 1) / 2;
 
 type Table = [[f32; 4]; TAPS / 4];
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for oversampled_tensor {
-        /// Pixels of the picture on each side of the centre.
-        pub radius: i32,
-        /// Bit 0: the gradient of the luma alone. Bit 1: divide each channel's tensor by its
-        /// gradient's magnitude (2.133).
-        pub flags: u32,
-        /// Factor on the colours.
-        pub scale: f32,
-        /// A tensor is valid (w = 1) above this lambda1 (2.164).
-        pub threshold: f32,
-        /// Weights of the pixels from -radius on for a position 1/4 pixel beyond the centre's.
-        pub smoothing: Table,
-        /// The same for the derivative.
-        pub derivative: Table,
-    }
-}
 
 crate::kernel!(oversampled_tensor {
     cpu: run,

@@ -7,19 +7,12 @@
 //!
 //! Cost: 3 bilinear multiply-adds on four channels, two anisotropies, about 50 operations.
 
+pub use crate::kernels::shaders::tensor_combine::Params;
 use crate::kernels::shared::sampling::sample_linear4;
 use crate::kernels::shared::tensor::anisotropy;
 use crate::kernels::simd::pixels::{for_blocks, write4};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for tensor_combine {
-        /// Where both anisotropies together are not above this, the finer tensor stays.
-        pub least: f32,
-    }
-}
 
 crate::kernel!(tensor_combine {
     cpu: run,

@@ -12,22 +12,11 @@
 //!
 //! Cost: about 30 operations.
 
+pub use crate::kernels::shaders::tensor_display::Params;
 use crate::kernels::shared::tensor;
 use crate::kernels::simd::pixels::map_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for tensor_display {
-        /// A [`Show`] by number.
-        pub show: u32,
-        /// k of the Harris measure.
-        pub k: f32,
-        /// Anisotropy above which a place is no noise.
-        pub threshold: f32,
-    }
-}
 
 crate::kernel!(tensor_display {
     cpu: run,

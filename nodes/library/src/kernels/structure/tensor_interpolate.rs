@@ -3,16 +3,9 @@
 //!
 //! Cost: 3 multiply-adds on four channels, one of them shared by the pixels between two coarse ones.
 
+pub use crate::kernels::shaders::tensor_interpolate::Params;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for tensor_interpolate {
-        /// A tensor is valid from this w on.
-        pub kept: f32,
-    }
-}
 
 crate::kernel!(tensor_interpolate {
     cpu: run,

@@ -5,23 +5,12 @@
 //!
 //! Cost: one eigenanalysis and two logarithms or powers.
 
+pub use crate::kernels::shaders::tensor_logarithm::Params;
 use crate::kernels::shared::tensor::{axis, eigen};
 use crate::kernels::simd::pixels::map_pixels4;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for tensor_logarithm {
-        /// 0: the logarithm; 1: back.
-        pub inverse: u32,
-        /// Eigenvalues below this count as this.
-        pub least: f32,
-        /// The smaller eigenvalue is no smaller share of the larger than this.
-        pub share: f32,
-    }
-}
 
 crate::kernel!(tensor_logarithm {
     cpu: run,

@@ -4,16 +4,9 @@
 //!
 //! Cost: 4 additions and a division on four channels.
 
+pub use crate::kernels::shaders::tensor_restrict::Params;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
-
-crate::params! {
-    /// Uniform block.
-    pub struct Params for tensor_restrict {
-        /// A tensor is valid from this w on; below 0 all are.
-        pub kept: f32,
-    }
-}
 
 crate::kernel!(tensor_restrict {
     cpu: run,
