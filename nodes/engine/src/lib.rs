@@ -14,7 +14,6 @@ pub mod math;
 pub mod pixels;
 pub mod plan;
 pub mod program;
-mod strips;
 
 pub use error::{Error, Result};
 pub use fearless_simd;

@@ -10,7 +10,7 @@
 use crate::error::{Error, Result};
 use crate::image::Rect;
 use crate::kernel::{Kernel, MAX_INPUTS, WORKGROUP};
-use crate::plan::{Class, Plan, Support};
+use crate::plan::{Class, ImageId, Pass, Plan, Port, Support};
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -118,65 +118,24 @@ impl Program {
     /// [`Error::Geometry`] for a region outside the picture, [`Error::Input`] for a plan whose output
     /// is one of its inputs.
     pub fn lower(plan: &Plan, region: Rect) -> Result<Self> {
-        let [width, height] = plan.size();
-        if region.is_empty() || !Rect::of_size(width, height).contains(&region) {
-            return Err(Error::Geometry(format!(
-                "region {region:?} is not inside the picture of {width}x{height}"
-            )));
-        }
+        plan.check_region(region)?;
         // The windows of the whole picture are whole, however far the passes read.
+        let [width, height] = plan.size();
         let is_whole = region == Rect::of_size(width, height);
-        let windows = plan.windows(region);
-        let last_uses = plan.last_uses();
-        let mut program = Self::default();
-        let mut slots: Vec<Option<u32>> = vec![None; plan.images().len()];
-        for port in plan.inputs() {
-            let role = Role::Input(port.name.clone());
-            program.add(plan, &windows, port.image.index(), role, &mut slots);
-        }
-        for port in plan.outputs() {
-            if slots[port.image.index()].is_some() {
-                return Err(Error::Input(format!(
-                    "output '{}' is an input or another output passed on unchanged",
-                    port.name
-                )));
-            }
-            program.add(plan, &windows, port.image.index(), Role::Output(port.name.clone()), &mut slots);
-        }
-        let mut free: Vec<u32> = Vec::new();
+        let mut lowering = Lowering::new(plan, plan.windows(region));
+        lowering.add_ports()?;
+        let mut passes = Vec::new();
+        let mut dispatches = Vec::new();
         for (index, pass) in plan.passes().iter().enumerate() {
-            let window = windows[pass.outputs[0].index()];
-            if window.is_empty() {
+            if lowering.windows[pass.outputs[0].index()].is_empty() {
                 continue;
             }
-            for output in &pass.outputs {
-                if slots[output.index()].is_some() {
-                    continue;
-                }
-                let wanted = texture(plan, &windows, output.index(), Role::Transient);
-                let found = free.iter().position(|f| program.textures[*f as usize] == wanted);
-                slots[output.index()] = Some(match found {
-                    Some(at) => free.swap_remove(at),
-                    None => {
-                        program.textures.push(wanted);
-                        program.textures.len() as u32 - 1
-                    }
-                });
-            }
-            program.dispatches.push(dispatch(plan, &windows, index, &slots));
-            program.passes.push((index, (!is_whole).then_some(pass.support)));
-            for image in pass.inputs.iter().chain(&pass.outputs) {
-                let slot = slots[image.index()];
-                if last_uses[image.index()] == index
-                    && let Some(slot) = slot
-                    && program.textures[slot as usize].role == Role::Transient
-                    && !free.contains(&slot)
-                {
-                    free.push(slot);
-                }
-            }
+            lowering.make_room(pass);
+            dispatches.push(lowering.dispatch(pass));
+            passes.push((index, (!is_whole).then_some(pass.support)));
+            lowering.release(index);
         }
-        Ok(program)
+        Ok(Self { textures: lowering.textures, dispatches, passes })
     }
 
     /// Takes over the uniform bytes of a plan that was edited in place, without allocating.
@@ -209,42 +168,107 @@ impl Program {
     pub fn output(&self, name: &str) -> Option<usize> {
         self.textures.iter().position(|t| matches!(&t.role, Role::Output(n) if n == name))
     }
+}
 
-    fn add(&mut self, plan: &Plan, windows: &[Rect], image: usize, role: Role, slots: &mut [Option<u32>]) {
-        if windows[image].is_empty() {
-            return;
+/// A plan on its way to a program.
+struct Lowering<'p> {
+    plan: &'p Plan,
+    windows: Vec<Rect>,
+    textures: Vec<Texture>,
+    /// By virtual image: its texture, once it has one.
+    places: Vec<Option<u32>>,
+    /// Transient textures whose images are needed no longer.
+    free: Vec<u32>,
+}
+
+impl<'p> Lowering<'p> {
+    fn new(plan: &'p Plan, windows: Vec<Rect>) -> Self {
+        Self {
+            plan,
+            windows,
+            textures: Vec::new(),
+            places: vec![None; plan.images().len()],
+            free: Vec::new(),
         }
-        slots[image] = Some(self.textures.len() as u32);
-        self.textures.push(texture(plan, windows, image, role));
     }
-}
 
-fn texture(plan: &Plan, windows: &[Rect], image: usize, role: Role) -> Texture {
-    let desc = plan.images()[image];
-    let channels = if desc.channels == 3 { 4 } else { desc.channels };
-    Texture { role, channels, class: desc.class, window: windows[image] }
-}
-
-fn dispatch(plan: &Plan, windows: &[Rect], index: usize, slots: &[Option<u32>]) -> Dispatch {
-    let pass = &plan.passes()[index];
-    let out = pass.outputs[0];
-    let window = windows[out.index()];
-    let full = plan.level_size(plan.desc(out).level);
-    let mut inputs = [[0; 4]; MAX_INPUTS];
-    for (slot, image) in inputs.iter_mut().zip(&pass.inputs) {
-        let w = windows[image.index()];
-        let [fw, fh] = plan.level_size(plan.desc(*image).level);
-        *slot = [w.x0, w.y0, fw, fh];
+    /// Gives textures to what enters and leaves.
+    fn add_ports(&mut self) -> Result<()> {
+        for port in self.plan.inputs() {
+            self.add_port(port, Role::Input(port.name.clone()));
+        }
+        for port in self.plan.outputs() {
+            if self.places[port.image.index()].is_some() {
+                return Err(Error::Input(format!(
+                    "output '{}' is an input or another output passed on unchanged",
+                    port.name
+                )));
+            }
+            self.add_port(port, Role::Output(port.name.clone()));
+        }
+        Ok(())
     }
-    let size = [window.width() as i32, window.height() as i32];
-    // Every image of a pass got its texture above or in an earlier pass.
-    let textures = |ids: &[crate::plan::ImageId]| ids.iter().filter_map(|i| slots[i.index()]).collect();
-    Dispatch {
-        shader: Arc::new(Shader::from(pass.kernel)),
-        grid: Grid { origin: [window.x0, window.y0], size, full, reserved: [0; 2], inputs },
-        params: pass.params.clone(),
-        inputs: textures(&pass.inputs),
-        outputs: textures(&pass.outputs),
-        workgroups: [window.width().div_ceil(WORKGROUP), window.height().div_ceil(WORKGROUP), 1],
+
+    fn add_port(&mut self, port: &Port, role: Role) {
+        if !self.windows[port.image.index()].is_empty() {
+            let texture = self.texture(port.image, role);
+            self.places[port.image.index()] = Some(self.push(texture));
+        }
+    }
+
+    fn texture(&self, image: ImageId, role: Role) -> Texture {
+        let desc = self.plan.desc(image);
+        let channels = if desc.channels == 3 { 4 } else { desc.channels };
+        Texture { role, channels, class: desc.class, window: self.windows[image.index()] }
+    }
+
+    fn push(&mut self, texture: Texture) -> u32 {
+        self.textures.push(texture);
+        self.textures.len() as u32 - 1
+    }
+
+    /// Gives textures to the transient images that a pass writes: free ones of their shape, or new ones.
+    fn make_room(&mut self, pass: &Pass) {
+        for output in &pass.outputs {
+            if self.places[output.index()].is_some() {
+                continue;
+            }
+            let wanted = self.texture(*output, Role::Transient);
+            let found = self.free.iter().position(|free| self.textures[*free as usize] == wanted);
+            let place = match found {
+                Some(at) => self.free.swap_remove(at),
+                None => self.push(wanted),
+            };
+            self.places[output.index()] = Some(place);
+        }
+    }
+
+    /// Frees the transient textures whose images are needed for the last time by pass `index`.
+    fn release(&mut self, index: usize) {
+        let ended = self.plan.lifetimes().ending_with(index).iter().filter_map(|id| self.places[id.index()]);
+        self.free.extend(ended.filter(|place| self.textures[*place as usize].role == Role::Transient));
+    }
+
+    fn dispatch(&self, pass: &Pass) -> Dispatch {
+        let out = pass.outputs[0];
+        let window = self.windows[out.index()];
+        let full = self.plan.level_size(self.plan.desc(out).level);
+        let mut inputs = [[0; 4]; MAX_INPUTS];
+        for (place, image) in inputs.iter_mut().zip(&pass.inputs) {
+            let w = self.windows[image.index()];
+            let [fw, fh] = self.plan.level_size(self.plan.desc(*image).level);
+            *place = [w.x0, w.y0, fw, fh];
+        }
+        let size = [window.width() as i32, window.height() as i32];
+        // Every image of a pass got its texture before the pass, or in an earlier one.
+        let textures = |ids: &[ImageId]| ids.iter().filter_map(|id| self.places[id.index()]).collect();
+        Dispatch {
+            shader: Arc::new(Shader::from(pass.kernel)),
+            grid: Grid { origin: [window.x0, window.y0], size, full, reserved: [0; 2], inputs },
+            params: pass.params.clone(),
+            inputs: textures(&pass.inputs),
+            outputs: textures(&pass.outputs),
+            workgroups: [window.width().div_ceil(WORKGROUP), window.height().div_ceil(WORKGROUP), 1],
+        }
     }
 }

@@ -210,28 +210,11 @@ fn shared(b: &mut PlanBuilder, gains: [f32; 2]) -> ImageId {
     box_blur(b, first, 2, 1.0)
 }
 
-#[test]
-fn an_edit_notices_another_course() {
-    type Describe = fn(&mut PlanBuilder);
-    let fresh = |gains| {
-        let mut b = PlanBuilder::new(40, 30).unwrap();
-        let result = shared(&mut b, gains);
-        b.output("result", result);
-        b.finish().unwrap()
-    };
-    let edited = |gains, describe: Describe| {
-        fresh(gains).edit(|b| {
-            describe(b);
-            Ok::<(), ()>(())
-        })
-    };
-    let same: Describe = |b| {
-        let result = shared(b, [3.0, 3.0]);
-        b.output("result", result);
-    };
-    assert_eq!(edited([1.0, 1.0], same), Ok(true));
-    assert_eq!(edited([1.0, 2.0], same), Ok(true), "what differed may become equal");
-    let departures: [(&str, Describe); 9] = [
+type Describe = fn(&mut PlanBuilder);
+
+/// Descriptions of other plans than [`shared`] with equal gains, and what is other in them.
+fn departures() -> [(&'static str, Describe); 9] {
+    [
         ("shared passes now differ", |b| {
             let result = shared(b, [3.0, 4.0]);
             b.output("result", result);
@@ -288,8 +271,30 @@ fn an_edit_notices_another_course() {
         ("no output", |b| {
             shared(b, [1.0, 1.0]);
         }),
-    ];
-    for (what, describe) in departures {
+    ]
+}
+
+#[test]
+fn an_edit_notices_another_course() {
+    let fresh = |gains| {
+        let mut b = PlanBuilder::new(40, 30).unwrap();
+        let result = shared(&mut b, gains);
+        b.output("result", result);
+        b.finish().unwrap()
+    };
+    let edited = |gains, describe: Describe| {
+        fresh(gains).edit(|b| {
+            describe(b);
+            Ok::<(), ()>(())
+        })
+    };
+    let same: Describe = |b| {
+        let result = shared(b, [3.0, 3.0]);
+        b.output("result", result);
+    };
+    assert_eq!(edited([1.0, 1.0], same), Ok(true));
+    assert_eq!(edited([1.0, 2.0], same), Ok(true), "what differed may become equal");
+    for (what, describe) in departures() {
         assert_eq!(edited([1.0, 1.0], describe), Ok(false), "{what}");
     }
     assert_eq!(fresh([1.0, 1.0]).edit(|_| Err("no")), Err("no"));

@@ -1,7 +1,8 @@
 //! A graphics device: the library's own, or one lent by a host.
 
-use super::pipeline::Pipelines;
+use super::pipeline::{self, Pipeline, Pipelines};
 use crate::error::{Error, Result};
+use crate::program::Shader;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -73,7 +74,7 @@ pub struct Device {
     pub(super) raw: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     pub(super) counters: Counters,
-    pub(super) pipelines: Pipelines,
+    pipelines: Pipelines,
     shared_windows: bool,
     info: wgpu::AdapterInfo,
     owned: bool,
@@ -232,7 +233,7 @@ impl Device {
     /// Whether the device still works, and nothing went wrong on it since the last call.
     ///
     /// # Errors
-    /// [`Error::Device`] with the first error that nobody was told of, or when the device is lost;
+    /// [`Error::Device`] with the first error that was not yet reported, or when the device is lost;
     /// a lost device must be opened anew, with everything made on it.
     pub fn check(&self) -> Result<()> {
         if let Some(reason) = &*self.state.lost.lock().unwrap_or_else(PoisonError::into_inner) {
@@ -268,6 +269,19 @@ impl Device {
             ))),
             Some(error) => Err(Error::Device(format!("{what}: {}", one_line(&error.to_string())))),
         }
+    }
+
+    /// The pipeline of `shader`, compiled at the first request.
+    ///
+    /// # Errors
+    /// [`Error::Device`] with the compiler's words when the shader is refused.
+    pub(super) fn pipeline(&self, shader: &Arc<Shader>) -> Result<Arc<Pipeline>> {
+        self.pipelines.get(shader, || {
+            let create = |raw: &wgpu::Device| pipeline::create(raw, shader, self.shared_windows);
+            let made = self.guarded(&format!("kernel '{}'", shader.name), create)?;
+            count(&self.counters.pipelines);
+            Ok(made)
+        })
     }
 
     /// Waits until the submission is done; without one, until everything submitted is done.

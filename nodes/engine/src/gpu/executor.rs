@@ -1,12 +1,11 @@
 //! Makes programs ready for a device and keeps the memory between them.
 
 use super::device::Device;
-use super::pipeline::texture_format;
-use super::prepared::{Prepared, create_texture, texture_bytes};
-use super::tiles::Warm;
+use super::prepared::Prepared;
+use super::texture::Pool;
 use crate::error::{Error, Result};
 use crate::program::Program;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// Runs programs on a device. Each user has one of its own; they share the device and its pipelines.
 #[derive(Debug)]
@@ -74,59 +73,15 @@ impl Executor {
     }
 }
 
-/// Scratch textures of dropped programs, for the next ones.
-#[derive(Debug, Default)]
-pub(super) struct Pool(Mutex<Vec<wgpu::TextureView>>);
+/// A prepared program with textures of its own and the way back to the CPU, kept between runs.
+#[derive(Debug)]
+pub(super) struct Warm {
+    pub(super) prepared: Prepared,
+    pub(super) readback: wgpu::Buffer,
+}
 
-impl Pool {
-    /// Bytes kept at most; the oldest textures go first.
-    const KEPT: u64 = 512 << 20;
-
-    /// A texture of at least `size` that wastes at most half of itself, or a new one of `size`.
-    pub fn take(&self, device: &Device, size: [u32; 2], channels: u32) -> Result<wgpu::TextureView> {
-        let wanted = u64::from(size[0]) * u64::from(size[1]);
-        let area = |t: &wgpu::Texture| u64::from(t.width()) * u64::from(t.height());
-        let mut kept = self.lock();
-        let best = kept
-            .iter()
-            .enumerate()
-            .filter(|(_, view)| {
-                let t = view.texture();
-                t.format() == texture_format(channels)
-                    && t.width() >= size[0]
-                    && t.height() >= size[1]
-                    && area(t) <= 2 * wanted
-            })
-            .min_by_key(|(_, view)| area(view.texture()))
-            .map(|(index, _)| index);
-        if let Some(index) = best {
-            return Ok(kept.remove(index));
-        }
-        drop(kept);
-        create_texture(device, size, channels)
-    }
-
-    pub fn put(&self, view: wgpu::TextureView) {
-        let mut kept = self.lock();
-        kept.push(view);
-        let mut bytes: u64 = kept.iter().map(|v| texture_bytes(v.texture())).sum();
-        let mut surplus = 0;
-        while bytes > Self::KEPT && surplus < kept.len() {
-            bytes -= texture_bytes(kept[surplus].texture());
-            surplus += 1;
-        }
-        kept.drain(..surplus);
-    }
-
-    fn is_empty(&self) -> bool {
-        self.lock().is_empty()
-    }
-
-    fn clear(&self) {
-        self.lock().clear();
-    }
-
-    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<wgpu::TextureView>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+impl Warm {
+    pub(super) fn bytes(&self) -> u64 {
+        self.prepared.bytes() + self.readback.size()
     }
 }

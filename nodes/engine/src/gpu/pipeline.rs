@@ -1,6 +1,5 @@
 //! Compute pipelines, made once per shader and shared by everything that runs on a device.
 
-use super::device::{Device, count};
 use crate::error::Result;
 use crate::program::{Grid, Shader};
 use std::collections::HashMap;
@@ -34,30 +33,30 @@ pub(super) struct Pipeline {
 #[derive(Debug, Default)]
 pub(super) struct Pipelines(Mutex<HashMap<Arc<Shader>, Arc<Pipeline>>>);
 
-impl Device {
-    /// The pipeline of `shader`, compiled at the first request.
-    ///
-    /// # Errors
-    /// [`Error::Device`](crate::Error::Device) with the compiler's words when the shader is refused.
-    pub(super) fn pipeline(&self, shader: &Arc<Shader>) -> Result<Arc<Pipeline>> {
-        let mut known = self.pipelines.0.lock().unwrap_or_else(PoisonError::into_inner);
+impl Pipelines {
+    /// The pipeline of `shader`, made at the first request.
+    pub fn get(
+        &self,
+        shader: &Arc<Shader>,
+        create: impl FnOnce() -> Result<Pipeline>,
+    ) -> Result<Arc<Pipeline>> {
+        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(pipeline) = known.get(shader) {
             return Ok(Arc::clone(pipeline));
         }
-        let what = format!("kernel '{}'", shader.name);
-        let shared = f64::from(u8::from(self.shares_windows()));
-        // A shader must not be told of constants that it does not declare.
-        let has_windows = shader.source.contains(&format!("override {SHARED_WINDOWS}:"));
-        let constants = [(SHARED_WINDOWS, shared)];
-        let constants = if has_windows { &constants[..] } else { &[] };
-        let pipeline = Arc::new(self.guarded(&what, |device| create(device, shader, constants))?);
-        count(&self.counters.pipelines);
+        let pipeline = Arc::new(create()?);
         known.insert(Arc::clone(shader), Arc::clone(&pipeline));
         Ok(pipeline)
     }
 }
 
-fn create(device: &wgpu::Device, shader: &Shader, constants: &[(&str, f64)]) -> Pipeline {
+/// Compiles `shader`, which holds windows of neighbours in workgroup memory where it can and
+/// `shared_windows` says so.
+pub(super) fn create(device: &wgpu::Device, shader: &Shader, shared_windows: bool) -> Pipeline {
+    // A shader must not be given constants that it does not declare.
+    let has_windows = shader.source.contains(&format!("override {SHARED_WINDOWS}:"));
+    let constants = [(SHARED_WINDOWS, f64::from(u8::from(shared_windows)))];
+    let constants = if has_windows { &constants[..] } else { &[] };
     let label = Some(shader.name.as_ref());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label,

@@ -1,8 +1,8 @@
 //! A program made ready for a device: pipelines, textures, one uniform buffer and bind groups.
 
 use super::device::{Device, count};
-use super::executor::Pool;
-use super::pipeline::{Pipeline, bound_size, texture_format};
+use super::pipeline::{Pipeline, bound_size};
+use super::texture::{Pool, create_texture, texture_bytes};
 use super::timing::Timer;
 use crate::cpu::PassTime;
 use crate::error::{Error, Result};
@@ -120,7 +120,7 @@ impl Prepared {
     ///
     /// A texture's texel (0, 0) is the first pixel of the window that the program names for it, and
     /// it may be larger. Inputs may have any format that reads as unfiltered float, without their own
-    /// gamma where the plan expects encoded colour; outputs need [`texture_format`] of their channels
+    /// gamma where the plan expects encoded colour; outputs need [`texture_format`](super::texture_format) of their channels
     /// and the usages `STORAGE_BINDING` and `TEXTURE_BINDING`. Binding the same views again costs
     /// nothing; a changed one makes the bind groups anew that hold it.
     ///
@@ -389,32 +389,4 @@ fn check_size(name: &str, view: &wgpu::TextureView, needed: [u32; 2]) -> Result<
         )));
     }
     Ok(())
-}
-
-pub(super) fn texture_bytes(texture: &wgpu::Texture) -> u64 {
-    let texel = texture.format().block_copy_size(None).unwrap_or(16);
-    u64::from(texture.width()) * u64::from(texture.height()) * u64::from(texel)
-}
-
-/// A texture that can be read, written and copied, with its view.
-pub(super) fn create_texture(device: &Device, size: [u32; 2], channels: u32) -> Result<wgpu::TextureView> {
-    let what = format!("a texture of {}x{} texels and {channels} channels", size[0], size[1]);
-    let view = device.guarded(&what, |raw| {
-        let texture = raw.create_texture(&wgpu::TextureDescriptor {
-            label: Some("isophote"),
-            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: texture_format(channels),
-            usage: wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::STORAGE_BINDING
-                | wgpu::TextureUsages::COPY_SRC
-                | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
-        texture.create_view(&wgpu::TextureViewDescriptor::default())
-    })?;
-    count(&device.counters.textures);
-    Ok(view)
 }

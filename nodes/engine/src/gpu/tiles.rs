@@ -1,7 +1,7 @@
 //! Plans on images in memory: upload, run, read back, in tiles where the device is too small.
 
 use super::device::count;
-use super::executor::Executor;
+use super::executor::{Executor, Warm};
 use super::prepared::Prepared;
 use super::timing::read_buffer;
 use crate::cpu::{Control, bind_inputs};
@@ -13,19 +13,6 @@ use crate::program::{Program, Role, Texture};
 
 /// The smallest tile side worth computing; below it the halo would be nearly everything.
 const LEAST_TILE: u32 = 32;
-
-/// A prepared program with textures of its own and the way back to the CPU, kept between runs.
-#[derive(Debug)]
-pub(super) struct Warm {
-    prepared: Prepared,
-    readback: wgpu::Buffer,
-}
-
-impl Warm {
-    fn bytes(&self) -> u64 {
-        self.prepared.bytes() + self.readback.size()
-    }
-}
 
 /// One tile: its program, and which part of the picture it computes.
 struct Tile {
@@ -63,9 +50,7 @@ impl Executor {
         }
         let total = tiles.len() as f32;
         for (index, tile) in tiles.iter().enumerate() {
-            if control.is_cancelled() {
-                return Err(Error::Cancelled);
-            }
+            control.check()?;
             let done = self.run_tile(plan, inputs, tile, &mut results);
             if matches!(done, Err(Error::Memory(_))) && !self.warm.is_empty() {
                 self.purge();
@@ -77,9 +62,7 @@ impl Executor {
                 progress((index + 1) as f32 / total);
             }
         }
-        if control.is_cancelled() {
-            return Err(Error::Cancelled);
-        }
+        control.check()?;
         Ok(results)
     }
 
@@ -109,7 +92,7 @@ impl Executor {
                 };
                 return Err(Error::Geometry(format!(
                     "the graphics device may use at most {0}x{0} pixels{memory}, too little even for a small tile with \
-                     the surroundings that this filter reads: use the CPU",
+                     the pixels around it that this filter reads: use the CPU",
                     self.max_side
                 )));
             }

@@ -1,6 +1,6 @@
 //! How plans are recorded, and edited by recording them again.
 
-use super::{Class, ImageDesc, ImageId, Pass, Plan, Port, Support};
+use super::parts::{Class, ImageDesc, ImageId, Lifetimes, Pass, Plan, Port, Support};
 use crate::error::{Error, Result};
 use crate::image::check_size;
 use crate::kernel::{Kernel, MAX_INPUTS};
@@ -43,6 +43,56 @@ impl Plan {
         let complete = replay.call == builder.plan.calls.len() && replay.output == builder.plan.outputs.len();
         *self = builder.plan;
         described.map(|()| complete && !replay.diverged)
+    }
+
+    /// A plan of pass `index` alone, run by `kernel`: the pass's own, or one of the same bindings in its
+    /// place. Its inputs and outputs are named "0", "1", ... in their order. This is how the two twins
+    /// of a kernel are compared on equal input.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when there is no such pass or the kernel has other bindings.
+    pub fn single_pass(&self, index: usize, kernel: &'static Kernel) -> Result<Self> {
+        let Some(pass) = self.passes.get(index) else {
+            return Err(Error::Input(format!("the plan has no pass {index}")));
+        };
+        let same = kernel.inputs == pass.kernel.inputs
+            && kernel.outputs == pass.kernel.outputs
+            && kernel.params_size == pass.kernel.params_size;
+        if !same {
+            return Err(Error::Input(format!("{} cannot stand in for {}", kernel.name, pass.kernel.name)));
+        }
+        let images = pass.inputs.iter().chain(&pass.outputs).map(|i| self.desc(*i)).collect();
+        let ids = |from: usize, count: usize| (from..from + count).map(|i| ImageId(i as u32));
+        let ports = |from: usize, count: usize| {
+            ids(from, count)
+                .enumerate()
+                .map(|(name, image)| Port { name: name.to_string(), image })
+                .collect::<Vec<_>>()
+        };
+        let (inputs, outputs) = (pass.inputs.len(), pass.outputs.len());
+        let alone = Pass {
+            kernel,
+            inputs: ids(0, inputs).collect(),
+            outputs: ids(inputs, outputs).collect(),
+            params: pass.params.clone(),
+            support: pass.support,
+        };
+        let plan = Self {
+            size: self.size,
+            images,
+            passes: vec![alone],
+            inputs: ports(0, inputs),
+            outputs: ports(inputs, outputs),
+            calls: vec![0],
+            stamps: vec![0],
+            ..Self::default()
+        };
+        Ok(plan.with_lifetimes())
+    }
+
+    fn with_lifetimes(mut self) -> Self {
+        self.lifetimes = Lifetimes::find(&self.passes, &self.outputs);
+        self
     }
 }
 
@@ -188,7 +238,7 @@ impl PlanBuilder {
         if self.plan.outputs.is_empty() {
             return Err(Error::Input("the plan has no output".into()));
         }
-        Ok(self.plan)
+        Ok(self.plan.with_lifetimes())
     }
 
     fn image(&mut self, desc: ImageDesc) -> ImageId {

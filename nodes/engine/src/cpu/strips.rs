@@ -49,7 +49,7 @@ impl Schedule {
             };
             written(plan).map(of).sum()
         };
-        if bytes(&strips.capacity) <= peak(plan, windows) { strips } else { whole }
+        if bytes(&strips.capacity) <= plan.peak_values(windows) { strips } else { whole }
     }
 
     fn strips(plan: &Plan, region: Rect, windows: &[Rect], rows: i32) -> Self {
@@ -82,31 +82,6 @@ impl Schedule {
     }
 }
 
-impl Plan {
-    /// Rows of a band of `region`, for whoever computes it band by band to save memory.
-    ///
-    /// Images ([`Plan::peak_bytes`]) take at most `good` bytes, as long as bands are high against what is
-    /// read around them, which is computed anew for each; beyond that they take at most `most`. Bands have
-    /// at least `least` rows, and all where a pass reads the whole picture, since a part would need as much.
-    pub fn band_rows(&self, region: Rect, [good, most]: [u64; 2], least: i32) -> i32 {
-        let all = region.height() as i32;
-        let Support::Pixels(halo) = self.support() else { return all };
-        let efficient = i32::try_from(halo).unwrap_or(i32::MAX).saturating_mul(4).max(least);
-        let takes = |rows: i32| {
-            let middle = (region.y0 + region.y1 - rows) / 2;
-            self.peak_bytes(&self.windows(Rect { y0: middle, y1: middle + rows, ..region }))
-        };
-        let fitting = |mut rows: i32, bytes: u64, least: i32| {
-            while rows > least && takes(rows) > bytes {
-                rows = (rows / 2).max(least);
-            }
-            rows
-        };
-        let rows = fitting(all, good, efficient.min(all));
-        fitting(rows, most, least.min(rows))
-    }
-}
-
 /// The images that passes write.
 fn written(plan: &Plan) -> impl Iterator<Item = usize> {
     plan.passes().iter().flat_map(|pass| pass.outputs.iter().map(|o| o.index()))
@@ -130,22 +105,4 @@ fn kept(plan: &Plan, windows: &[Rect], frontier: &[i32]) -> Vec<i32> {
         kept[port.image.index()] = windows[port.image.index()].y0;
     }
     kept.iter().zip(frontier).map(|(kept, frontier)| *kept.min(frontier)).collect()
-}
-
-/// Values that whole passes hold at most at once in the images they write.
-fn peak(plan: &Plan, windows: &[Rect]) -> u64 {
-    let size = |i: usize| windows[i].area() * u64::from(plan.images()[i].channels);
-    let last_uses = plan.last_uses();
-    let inputs: Vec<usize> = plan.inputs().iter().map(|port| port.image.index()).collect();
-    let (mut live, mut most) = (0, 0);
-    for (index, pass) in plan.passes().iter().enumerate() {
-        live += pass.outputs.iter().map(|o| size(o.index())).sum::<u64>();
-        most = most.max(live);
-        let mut freed: Vec<usize> = pass.inputs.iter().chain(&pass.outputs).map(|i| i.index()).collect();
-        freed.sort_unstable();
-        freed.dedup();
-        let freed = freed.iter().filter(|i| last_uses[**i] == index && !inputs.contains(i));
-        live -= freed.map(|i| size(*i)).sum::<u64>();
-    }
-    most
 }

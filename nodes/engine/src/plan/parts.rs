@@ -1,0 +1,161 @@
+//! What a plan is made of.
+
+use crate::kernel::Kernel;
+use std::collections::HashSet;
+
+/// A virtual image of a plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ImageId(pub(crate) u32);
+
+impl ImageId {
+    /// Position in [`Plan::images`].
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// How precisely an image must be kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Class {
+    /// Tensors, distances, orientations: always 32-bit float.
+    Field,
+    /// Colours: an executor may keep them in half precision where the caller allows it.
+    Colour,
+}
+
+/// Shape of a virtual image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ImageDesc {
+    /// Values a pixel, 1..=4.
+    pub channels: u32,
+    /// Precision needed.
+    pub class: Class,
+    /// Pyramid level: sides are ceil(n / 2^level); negative levels are oversampled.
+    pub level: i8,
+}
+
+/// How far around an output pixel a pass reads its inputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Support {
+    /// At most so many pixels of the input's own level, in x and in y.
+    Pixels(u32),
+    /// Anywhere.
+    Global,
+}
+
+/// One pass over an image.
+#[derive(Clone, Debug)]
+pub struct Pass {
+    /// What to run.
+    pub kernel: &'static Kernel,
+    /// Images read.
+    pub inputs: Vec<ImageId>,
+    /// Images written; all of one level.
+    pub outputs: Vec<ImageId>,
+    /// The kernel's uniform block.
+    pub params: Vec<u8>,
+    /// How far the kernel reads.
+    pub support: Support,
+}
+
+/// An image that enters or leaves a plan, by name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Port {
+    /// The caller's name for it.
+    pub name: String,
+    /// The virtual image.
+    pub image: ImageId,
+}
+
+/// When images are needed no longer.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Lifetimes {
+    /// By pass: the images whose last use it is.
+    ending: Vec<Vec<ImageId>>,
+}
+
+impl Lifetimes {
+    /// Of the images of `passes` in this order, of which `outputs` live on.
+    pub(super) fn find(passes: &[Pass], outputs: &[Port]) -> Self {
+        let mut living: HashSet<ImageId> = outputs.iter().map(|port| port.image).collect();
+        let mut ending: Vec<Vec<ImageId>> = passes
+            .iter()
+            .rev()
+            .map(|pass| {
+                pass.inputs.iter().chain(&pass.outputs).copied().filter(|id| living.insert(*id)).collect()
+            })
+            .collect();
+        ending.reverse();
+        Self { ending }
+    }
+
+    /// The images that pass `index` reads or writes and no later one does, each once. Images that leave the
+    /// plan are never among them; images that enter it are.
+    pub fn ending_with(&self, index: usize) -> &[ImageId] {
+        self.ending.get(index).map_or(&[], Vec::as_slice)
+    }
+}
+
+/// Passes in order, with the images that enter and leave.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    pub(super) size: [u32; 2],
+    pub(super) images: Vec<ImageDesc>,
+    pub(super) passes: Vec<Pass>,
+    pub(super) inputs: Vec<Port>,
+    pub(super) outputs: Vec<Port>,
+    pub(super) lifetimes: Lifetimes,
+    /// Which pass each call of the builder led to; replayed by edits.
+    pub(super) calls: Vec<u32>,
+    /// The edit in which each pass was last written.
+    pub(super) stamps: Vec<u64>,
+    pub(super) edit: u64,
+}
+
+impl Plan {
+    /// Size of the picture at level 0, in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// All virtual images.
+    pub fn images(&self) -> &[ImageDesc] {
+        &self.images
+    }
+
+    /// All passes, in the order of execution.
+    pub fn passes(&self) -> &[Pass] {
+        &self.passes
+    }
+
+    /// Images that enter.
+    pub fn inputs(&self) -> &[Port] {
+        &self.inputs
+    }
+
+    /// Images that leave.
+    pub fn outputs(&self) -> &[Port] {
+        &self.outputs
+    }
+
+    /// Shape of a virtual image.
+    pub fn desc(&self, image: ImageId) -> ImageDesc {
+        self.images[image.index()]
+    }
+
+    /// When each image is needed no longer.
+    pub fn lifetimes(&self) -> &Lifetimes {
+        &self.lifetimes
+    }
+
+    /// Size of the whole picture at `level`: ceil(n / 2^level), at least 1.
+    pub fn level_size(&self, level: i8) -> [i32; 2] {
+        self.size.map(|n| {
+            if level >= 0 {
+                n.div_ceil(1 << level.min(31)).max(1) as i32
+            } else {
+                (n << (-level).min(4)) as i32
+            }
+        })
+    }
+}
