@@ -266,7 +266,7 @@ typedef struct IsophoteParam {
   double slider_maximum;
 } IsophoteParam;
 
-// Everything a node says about itself.
+// The declaration of a node.
 typedef struct IsophoteNode {
   // Stable name.
   const char *id;
@@ -302,7 +302,7 @@ typedef struct IsophoteCatalogue {
 //
 // The library writes at most `capacity` bytes with the closing zero, whole UTF-8 characters only, and
 // puts into `length` how long the text is without the zero. With `data` null and `capacity` 0 it
-// only tells the length, which is a success.
+// only sets `length`, which is a success.
 typedef struct IsophoteText {
   // Where to write; may be null when `capacity` is 0.
   char *data;
@@ -319,9 +319,9 @@ typedef uint64_t IsophoteGraph;
 typedef struct IsophoteValue {
   // Type of the parameter.
   IsophoteParamKind kind;
-  // Index of the chosen option; otherwise 0.
+  // Index of the selected option; otherwise 0.
   uint32_t choice_index;
-  // Id of the chosen option, valid for the life of the process; otherwise null.
+  // Id of the selected option, valid for the life of the process; otherwise null.
   const char *choice;
   // A number in the first place, 0 or 1, the index of the option, or R, G, B, A.
   double number[4];
@@ -444,7 +444,7 @@ typedef void (*IsophoteJob)(uint64_t batch, uint32_t index);
 // called later or with a wrong number does nothing.
 typedef void (*IsophoteRun)(void *user, uint32_t jobs, IsophoteJob job, uint64_t batch);
 
-// Told the share of the work done, 0..=1, on the thread that called the library.
+// Receives the share of the work done, 0..=1, on the thread that called the library.
 typedef void (*IsophoteProgress)(void *user, float done);
 
 // Asked often, on any thread; another value than 0 stops the work.
@@ -456,7 +456,7 @@ typedef struct IsophotePassTime {
   const char *kernel;
   // Wall-clock time in seconds.
   double seconds;
-  // Multiply-adds, or operations of like cost, by the kernel's own reckoning.
+  // Multiply-adds, or operations of like cost, by the kernel's own estimate.
   double operations;
   // Bytes of the images read and written, each once.
   uint64_t bytes;
@@ -464,8 +464,8 @@ typedef struct IsophotePassTime {
   uint64_t pixels;
 } IsophotePassTime;
 
-// Told what each pass took, in their order, when the work is done, on the thread that called the
-// library. On a device it is not called.
+// Receives the time of each pass, in their order, when the work is done, on the thread that called
+// the library. On a device it is not called.
 typedef void (*IsophoteMeasured)(void *user, const struct IsophotePassTime *pass);
 
 // How work is done and watched. Callbacks may be null, must return normally (no exception, no
@@ -475,21 +475,21 @@ typedef struct IsophoteControl {
   void *user;
   // The host's threads, instead of the library's.
   IsophoteRun run;
-  // Told how far the work is.
+  // Receives the progress.
   IsophoteProgress progress;
   // Asked whether to stop.
   IsophoteCancelled cancelled;
-  // Told what each pass took; without it nothing is measured.
+  // Receives the time of each pass; without it nothing is measured.
   IsophoteMeasured measured;
   // Threads of the library to use, or how many the host's `run` has; 0 for one per core, 1 for the
   // calling thread alone. At most 1024.
   uint32_t threads;
 } IsophoteControl;
 
-// What became of the work.
+// The outcome of the work.
 typedef struct IsophoteReport {
   // Samples of the inputs that were NaN or infinite and were replaced (by 0 and the largest half).
-  uint64_t mended;
+  uint64_t replaced;
   // Wall-clock time of the call in seconds.
   double seconds;
 } IsophoteReport;
@@ -640,7 +640,8 @@ typedef struct IsophoteApi {
   // [one thread per object] Writes the graph as JSON, with the parameters that differ from their
   // defaults, into the caller's buffer.
   IsophoteStatus (*graph_to_json)(IsophoteGraph graph, struct IsophoteText *json);
-  // [one thread per object] Adds the node `node_id` under a name of its own, and tells its index.
+  // [one thread per object] Adds the node `node_id` under a name of its own, and writes its index to
+  // `node`.
   IsophoteStatus (*graph_add)(IsophoteGraph graph,
                               const char *name,
                               const char *node_id,
@@ -651,7 +652,7 @@ typedef struct IsophoteApi {
   IsophoteStatus (*graph_find)(IsophoteGraph graph, const char *name, uint32_t *node);
   // [one thread per object] Name of a node within the graph, into the caller's buffer.
   IsophoteStatus (*graph_name)(IsophoteGraph graph, uint32_t node, struct IsophoteText *name);
-  // [one thread per object] What a node says about itself.
+  // [one thread per object] The declaration of a node.
   IsophoteStatus (*graph_spec)(IsophoteGraph graph, uint32_t node, const struct IsophoteNode **spec);
   // [one thread per object] Sets a parameter that is a number.
   IsophoteStatus (*graph_set_float)(IsophoteGraph graph,
@@ -740,8 +741,8 @@ typedef struct IsophoteApi {
   IsophoteStatus (*plan_destroy)(IsophotePlan plan);
   // [one thread per object] Message of the last failed call on the plan; empty before the first.
   IsophoteStatus (*plan_error)(IsophotePlan plan, struct IsophoteText *text);
-  // [one thread per object] Takes over the parameters and connections that `graph` has now, and tells
-  // what changed. When only uniforms changed, the bytes that `IsophotePass` points to were
+  // [one thread per object] Takes over the parameters and connections that `graph` has now, and
+  // reports what changed. When only uniforms changed, the bytes that `IsophotePass` points to were
   // rewritten in place; when the structure changed, textures and passes must be asked for again
   // and earlier pointers are void. After a failure the plan is as before.
   IsophoteStatus (*plan_update)(IsophotePlan plan, IsophoteGraph graph, IsophoteChange *change);

@@ -74,7 +74,8 @@ pub struct IsophoteApi {
     /// defaults, into the caller's buffer.
     pub graph_to_json: unsafe extern "C" fn(graph: IsophoteGraph, json: *mut IsophoteText) -> IsophoteStatus,
 
-    /// [one thread per object] Adds the node `node_id` under a name of its own, and tells its index.
+    /// [one thread per object] Adds the node `node_id` under a name of its own, and writes its index to
+    /// `node`.
     pub graph_add: unsafe extern "C" fn(
         graph: IsophoteGraph,
         name: *const c_char,
@@ -89,7 +90,7 @@ pub struct IsophoteApi {
     /// [one thread per object] Name of a node within the graph, into the caller's buffer.
     pub graph_name:
         unsafe extern "C" fn(graph: IsophoteGraph, node: u32, name: *mut IsophoteText) -> IsophoteStatus,
-    /// [one thread per object] What a node says about itself.
+    /// [one thread per object] The declaration of a node.
     pub graph_spec: unsafe extern "C" fn(
         graph: IsophoteGraph,
         node: u32,
@@ -212,8 +213,8 @@ pub struct IsophoteApi {
     pub plan_destroy: unsafe extern "C" fn(plan: IsophotePlan) -> IsophoteStatus,
     /// [one thread per object] Message of the last failed call on the plan; empty before the first.
     pub plan_error: unsafe extern "C" fn(plan: IsophotePlan, text: *mut IsophoteText) -> IsophoteStatus,
-    /// [one thread per object] Takes over the parameters and connections that `graph` has now, and tells
-    /// what changed. When only uniforms changed, the bytes that `IsophotePass` points to were
+    /// [one thread per object] Takes over the parameters and connections that `graph` has now, and
+    /// reports what changed. When only uniforms changed, the bytes that `IsophotePass` points to were
     /// rewritten in place; when the structure changed, textures and passes must be asked for again
     /// and earlier pointers are void. After a failure the plan is as before.
     pub plan_update: unsafe extern "C" fn(

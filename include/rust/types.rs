@@ -16,7 +16,7 @@ pub type IsophoteDevice = u64;
 ///
 /// The library writes at most `capacity` bytes with the closing zero, whole UTF-8 characters only, and
 /// puts into `length` how long the text is without the zero. With `data` null and `capacity` 0 it
-/// only tells the length, which is a success.
+/// only sets `length`, which is a success.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct IsophoteText {
@@ -100,7 +100,7 @@ pub struct IsophoteParam {
     pub slider_maximum: f64,
 }
 
-/// Everything a node says about itself.
+/// The declaration of a node.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct IsophoteNode {
@@ -142,9 +142,9 @@ pub struct IsophoteCatalogue {
 pub struct IsophoteValue {
     /// Type of the parameter.
     pub kind: IsophoteParamKind,
-    /// Index of the chosen option; otherwise 0.
+    /// Index of the selected option; otherwise 0.
     pub choice_index: u32,
-    /// Id of the chosen option, valid for the life of the process; otherwise null.
+    /// Id of the selected option, valid for the life of the process; otherwise null.
     pub choice: *const c_char,
     /// A number in the first place, 0 or 1, the index of the option, or R, G, B, A.
     pub number: [f64; 4],
@@ -254,7 +254,7 @@ pub type IsophoteJob = Option<unsafe extern "C" fn(batch: u64, index: u32)>;
 pub type IsophoteRun =
     Option<unsafe extern "C" fn(user: *mut c_void, jobs: u32, job: IsophoteJob, batch: u64)>;
 
-/// Told the share of the work done, 0..=1, on the thread that called the library.
+/// Receives the share of the work done, 0..=1, on the thread that called the library.
 pub type IsophoteProgress = Option<unsafe extern "C" fn(user: *mut c_void, done: f32)>;
 
 /// Asked often, on any thread; another value than 0 stops the work.
@@ -268,7 +268,7 @@ pub struct IsophotePassTime {
     pub kernel: *const c_char,
     /// Wall-clock time in seconds.
     pub seconds: f64,
-    /// Multiply-adds, or operations of like cost, by the kernel's own reckoning.
+    /// Multiply-adds, or operations of like cost, by the kernel's own estimate.
     pub operations: f64,
     /// Bytes of the images read and written, each once.
     pub bytes: u64,
@@ -276,8 +276,8 @@ pub struct IsophotePassTime {
     pub pixels: u64,
 }
 
-/// Told what each pass took, in their order, when the work is done, on the thread that called the
-/// library. On a device it is not called.
+/// Receives the time of each pass, in their order, when the work is done, on the thread that called
+/// the library. On a device it is not called.
 pub type IsophoteMeasured = Option<unsafe extern "C" fn(user: *mut c_void, pass: *const IsophotePassTime)>;
 
 /// How work is done and watched. Callbacks may be null, must return normally (no exception, no
@@ -289,23 +289,23 @@ pub struct IsophoteControl {
     pub user: *mut c_void,
     /// The host's threads, instead of the library's.
     pub run: IsophoteRun,
-    /// Told how far the work is.
+    /// Receives the progress.
     pub progress: IsophoteProgress,
     /// Asked whether to stop.
     pub cancelled: IsophoteCancelled,
-    /// Told what each pass took; without it nothing is measured.
+    /// Receives the time of each pass; without it nothing is measured.
     pub measured: IsophoteMeasured,
     /// Threads of the library to use, or how many the host's `run` has; 0 for one per core, 1 for the
     /// calling thread alone. At most 1024.
     pub threads: u32,
 }
 
-/// What became of the work.
+/// The outcome of the work.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct IsophoteReport {
     /// Samples of the inputs that were NaN or infinite and were replaced (by 0 and the largest half).
-    pub mended: u64,
+    pub replaced: u64,
     /// Wall-clock time of the call in seconds.
     pub seconds: f64,
 }

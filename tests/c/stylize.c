@@ -103,8 +103,8 @@ int main(int argc, char **argv)
     check(api, graph, argv[4],
           api->process(graph, 0, &request, &input, 1, NULL, &target, &control, &report));
     write_ppm(argv[3], picture);
-    printf("%ux%u pixels, %.0f %% done, %llu samples mended\n", picture.width, picture.height, done * 100.0,
-           (unsigned long long)report.mended);
+    printf("%ux%u pixels, %.0f %% done, %llu samples replaced\n", picture.width, picture.height, done * 100.0,
+           (unsigned long long)report.replaced);
 
     free(picture.data);
     api->graph_destroy(graph);

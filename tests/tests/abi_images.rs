@@ -223,7 +223,7 @@ fn more_memory_than_there_is_is_a_status() {
 }
 
 #[test]
-fn bad_pixels_are_mended_and_counted() {
+fn bad_pixels_are_replaced_and_counted() {
     let library = Loaded::new();
     let run = Run::new(&library, "gaussian");
     let mut data = picture();
@@ -232,7 +232,7 @@ fn bad_pixels_are_mended_and_counted() {
     data[1202] = f32::NEG_INFINITY;
     let out = vec![0.0_f32; data.len()];
     let (status, said, report) = run.run(&color(floats(&data)), &target(floats(&out)));
-    assert_eq!((status, report.mended), (ISOPHOTE_OK, 3), "{said}");
+    assert_eq!((status, report.replaced), (ISOPHOTE_OK, 3), "{said}");
     assert!(report.seconds > 0.0);
     assert!(out.iter().all(|v| v.is_finite()));
 }

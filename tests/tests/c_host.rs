@@ -156,7 +156,7 @@ fn stylize(node: &str, settings: &[&str], under_valgrind: bool, width: u32, heig
         .output()
         .expect("the program can be started");
     let text = printed(&run, node);
-    assert!(text.contains(&format!("{width}x{height} pixels, 100 % done, 0 samples mended")), "{text}");
+    assert!(text.contains(&format!("{width}x{height} pixels, 100 % done, 0 samples replaced")), "{text}");
     let after = std::fs::read(&output).expect("the program wrote a picture");
     let (before, after) = (pixels(&before, width, height), pixels(&after, width, height));
     let changed = before.iter().zip(after).filter(|(a, b)| a.abs_diff(**b) > 2).count();

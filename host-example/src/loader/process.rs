@@ -104,7 +104,7 @@ impl Graph {
             )
         };
         self.check(status)?;
-        Ok(Report { mended: report.mended, seconds: report.seconds })
+        Ok(Report { mended: report.replaced, seconds: report.seconds })
     }
 }
 

@@ -33,13 +33,13 @@ impl Sample {
 /// The largest finite half: what infinities become.
 pub const LARGEST_HALF: f32 = 65504.0;
 
-/// One value made fit to be filtered; counts it in `mended` when it was not.
+/// One value made fit to be filtered; counts it in `replaced` when it was not.
 #[inline]
-pub fn sanitized(value: f32, mended: &mut u64) -> f32 {
+pub fn sanitized(value: f32, replaced: &mut u64) -> f32 {
     if value.is_finite() {
         return value;
     }
-    *mended += 1;
+    *replaced += 1;
     if value.is_nan() { 0.0 } else { LARGEST_HALF.copysign(value) }
 }
 
@@ -50,7 +50,7 @@ pub fn sanitized(value: f32, mended: &mut u64) -> f32 {
 /// are dropped. Returns how many samples were NaN or infinite. Pixels beyond the shorter of the two
 /// slices are left alone.
 pub fn read_row(bytes: &[u8], sample: Sample, channels: usize, row: &mut [f32], out_channels: usize) -> u64 {
-    let mut mended = 0;
+    let mut replaced = 0;
     let size = sample.size();
     let pixels = bytes.chunks_exact(size * channels).zip(row.chunks_exact_mut(out_channels));
     for (source, pixel) in pixels {
@@ -65,10 +65,10 @@ pub fn read_row(bytes: &[u8], sample: Sample, channels: usize, row: &mut [f32], 
                 *value = 1.0;
                 continue;
             };
-            *value = sanitized(read_sample(&source[from * size..], sample), &mut mended);
+            *value = sanitized(read_sample(&source[from * size..], sample), &mut replaced);
         }
     }
-    mended
+    replaced
 }
 
 /// Writes one row of pixels, the reverse of [`read_row`]: alpha is added as 1 or dropped, and a grey
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_values_are_mended_and_counted() {
+    fn bad_values_are_replaced_and_counted() {
         let values = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -3.0];
         let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_ne_bytes()).collect();
         let mut row = [9.0; 4];

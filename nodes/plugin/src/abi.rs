@@ -1,7 +1,7 @@
 //! The C face: one exported symbol, and the table of functions that it gives out.
 //!
-//! Every function goes through [`guard`], which catches panics, maps errors to statuses and keeps
-//! messages. Hosts hold numbers, not pointers ([`handles`]), so that a wrong one is an error. Raw
+//! Every function goes through [`guard`], which catches panics, turns every [`failure`] into a status and
+//! keeps messages. Hosts hold numbers, not pointers ([`handles`]), so that a wrong one is an error. Raw
 //! pointers are touched in [`args`], [`images`], [`threads`] and nowhere else if it can be helped.
 
 pub mod args;
@@ -10,14 +10,18 @@ pub mod catalogue;
 pub mod contract;
 pub mod device;
 pub mod entry;
+pub mod failure;
 pub mod graph;
 pub mod guard;
 pub mod handles;
 pub mod images;
+pub mod objects;
 pub mod plan;
 pub mod process;
+pub mod request;
 pub mod shader;
 pub mod threads;
+pub mod warm;
 
 use contract::{ISOPHOTE_ABI_VERSION, IsophoteApi, IsophoteStatus};
 use std::ffi::{CStr, c_char};
@@ -62,7 +66,7 @@ pub static API: Table = Table(IsophoteApi {
     graph_disconnect: graph::disconnect,
     graph_set_output: graph::set_output,
     graph_output_kind: graph::output_kind,
-    request_init: process::request_init,
+    request_init: request::init,
     graph_support: process::support,
     process: process::process,
     plan_create: plan::create,
@@ -105,7 +109,7 @@ unsafe extern "C" fn trim() -> IsophoteStatus {
     guard::call(
         || {
             threads::forget_pools();
-            graph::forget_memory();
+            objects::forget_memory();
             Ok(())
         },
         |_| {},

@@ -1,24 +1,27 @@
 //! The OpenFX face: every node as an image effect of its own, for hosts such as Nuke, Resolve and Natron.
 //!
-//! Thin: [`effects`] derives what there is from the nodes' declarations, [`describe`] tells it to hosts,
-//! [`settings`] and [`image`] read what hosts have, [`squares`] makes their pixels square, and [`render`] runs the plan. Nothing is kept
-//! between calls but the host's functions, so that any action may come on any thread, in any number.
+//! Thin: [`effects`] derives what there is from the nodes' declarations, [`describe`] describes it to hosts,
+//! [`settings`] and [`image`] read what hosts have, [`pixel_aspect`] makes their pixels square, and [`render`]
+//! runs the plan. Nothing is kept between calls but the host's functions, so that any action may come on any
+//! thread, in any number.
 
 mod describe;
 mod effects;
+mod faults;
 mod frame;
 mod host;
 mod image;
 mod instance;
 mod interface;
 mod memory;
+mod pixel_aspect;
 mod quirks;
 mod render;
 mod settings;
-mod squares;
 mod threads;
 
 use crate::abi::guard::lock;
+use crate::abi::threads::forget_pools;
 use effects::{EFFECTS, Effect};
 use host::{Failure, Host, Outcome};
 use interface::*;
@@ -91,36 +94,10 @@ fn guarded(body: impl FnOnce() -> Outcome) -> OfxStatus {
 
 fn act(number: usize, action: &CStr, handle: Handle, in_args: Handle, out_args: Handle) -> Outcome {
     let effect: &'static Effect = EFFECTS.get(number).ok_or(kOfxStatFailed)?;
-    if action == kOfxActionLoad {
-        let mut slot = lock(&SLOTS[number]);
-        // A host may come back at the same address with other functions.
-        slot.fetched = None;
-        slot.get()?;
-        return Ok(kOfxStatOK);
+    if let Some(outcome) = act_on_library(number, action) {
+        return outcome;
     }
-    if action == kOfxActionUnload {
-        lock(&SLOTS[number]).fetched = None;
-        crate::abi::threads::forget_pools();
-        return Ok(kOfxStatOK);
-    }
-    if action == kOfxActionPurgeCaches {
-        crate::abi::threads::forget_pools();
-        return Ok(kOfxStatOK);
-    }
-    const KNOWN: [&CStr; 11] = [
-        kOfxActionDescribe,
-        kOfxActionCreateInstance,
-        kOfxActionDestroyInstance,
-        kOfxActionInstanceChanged,
-        kOfxImageEffectActionDescribeInContext,
-        kOfxImageEffectActionGetRegionOfDefinition,
-        kOfxImageEffectActionGetRegionsOfInterest,
-        kOfxImageEffectActionGetClipPreferences,
-        kOfxImageEffectActionGetOutputColourspace,
-        kOfxImageEffectActionIsIdentity,
-        kOfxImageEffectActionRender,
-    ];
-    if !KNOWN.contains(&action) {
+    if !ACTIONS_ON_EFFECTS.contains(&action) {
         return Ok(kOfxStatReplyDefault);
     }
     if handle.is_null() {
@@ -129,65 +106,80 @@ fn act(number: usize, action: &CStr, handle: Handle, in_args: Handle, out_args: 
     faults::at(effect, action);
     // The slot is not locked while the host is called.
     let host = lock(&SLOTS[number]).get()?;
+    act_on_effect(effect, &host, action, handle, in_args, out_args)
+}
+
+/// Actions that concern no effect in particular; none for the others.
+fn act_on_library(number: usize, action: &CStr) -> Option<Outcome> {
     match action {
-        a if a == kOfxActionDescribe => describe::describe(effect, &host, handle),
+        a if a == kOfxActionLoad => {
+            let mut slot = lock(&SLOTS[number]);
+            // A host may come back at the same address with other functions.
+            slot.fetched = None;
+            Some(slot.get().map(|_| kOfxStatOK))
+        }
+        a if a == kOfxActionUnload => {
+            lock(&SLOTS[number]).fetched = None;
+            forget_pools();
+            Some(Ok(kOfxStatOK))
+        }
+        a if a == kOfxActionPurgeCaches => {
+            forget_pools();
+            Some(Ok(kOfxStatOK))
+        }
+        _ => None,
+    }
+}
+
+/// Actions on a descriptor or an instance; [`act_on_effect`] knows each.
+const ACTIONS_ON_EFFECTS: [&CStr; 11] = [
+    kOfxActionDescribe,
+    kOfxActionCreateInstance,
+    kOfxActionDestroyInstance,
+    kOfxActionInstanceChanged,
+    kOfxImageEffectActionDescribeInContext,
+    kOfxImageEffectActionGetRegionOfDefinition,
+    kOfxImageEffectActionGetRegionsOfInterest,
+    kOfxImageEffectActionGetClipPreferences,
+    kOfxImageEffectActionGetOutputColourspace,
+    kOfxImageEffectActionIsIdentity,
+    kOfxImageEffectActionRender,
+];
+
+fn act_on_effect(
+    effect: &'static Effect,
+    host: &Host,
+    action: &CStr,
+    handle: Handle,
+    in_args: Handle,
+    out_args: Handle,
+) -> Outcome {
+    match action {
+        a if a == kOfxActionDescribe => describe::describe(effect, host, handle),
         a if a == kOfxImageEffectActionDescribeInContext => {
-            describe::in_context(effect, &host, handle, in_args)
+            describe::in_context(effect, host, handle, in_args)
         }
         // Nothing is kept for an instance but whether it shows a message.
         a if a == kOfxActionCreateInstance => Ok(kOfxStatOK),
         a if a == kOfxActionDestroyInstance => {
-            host.untell(handle);
+            host.clear_message(handle);
             Ok(kOfxStatOK)
         }
-        a if a == kOfxActionInstanceChanged => instance::changed(effect, &host, handle, in_args),
+        a if a == kOfxActionInstanceChanged => instance::changed(effect, host, handle, in_args),
         a if a == kOfxImageEffectActionGetRegionOfDefinition => {
-            instance::region_of_definition(&host, handle, in_args, out_args)
+            instance::region_of_definition(host, handle, in_args, out_args)
         }
         a if a == kOfxImageEffectActionGetRegionsOfInterest => {
-            instance::regions_of_interest(effect, &host, handle, in_args, out_args)
+            instance::regions_of_interest(effect, host, handle, in_args, out_args)
         }
         a if a == kOfxImageEffectActionGetClipPreferences => {
-            instance::clip_preferences(effect, &host, handle, out_args)
+            instance::clip_preferences(effect, host, handle, out_args)
         }
-        a if a == kOfxImageEffectActionGetOutputColourspace => instance::output_colourspace(&host, out_args),
+        a if a == kOfxImageEffectActionGetOutputColourspace => instance::output_colourspace(host, out_args),
         a if a == kOfxImageEffectActionIsIdentity => {
-            instance::is_identity(effect, &host, handle, in_args, out_args)
+            instance::is_identity(effect, host, handle, in_args, out_args)
         }
-        _ => render::render(effect, &host, handle, in_args),
-    }
-}
-
-/// Panics and failures on demand, so that tests can see what becomes of one. Not in the library that is
-/// shipped.
-mod faults {
-    use super::Effect;
-    use isophote::Error;
-    use std::ffi::CStr;
-
-    /// `<effect's identifier>:<action>` in this variable is where to panic.
-    #[cfg(debug_assertions)]
-    const VARIABLE: &str = "ISOPHOTE_OFX_PANIC";
-
-    pub fn at(effect: &Effect, action: &CStr) {
-        #[cfg(debug_assertions)]
-        if let Ok(wanted) = std::env::var(VARIABLE) {
-            let here = format!("{}:{}", effect.identifier.to_string_lossy(), action.to_string_lossy());
-            assert!(wanted != here, "asked for by {VARIABLE}");
-        }
-        #[cfg(not(debug_assertions))]
-        let _ = (effect, action);
-    }
-
-    /// What a render of the effect whose identifier is in `ISOPHOTE_OFX_FAILURE` fails with.
-    pub fn failure(effect: &Effect) -> Option<Error> {
-        #[cfg(debug_assertions)]
-        if std::env::var("ISOPHOTE_OFX_FAILURE").is_ok_and(|id| id.as_bytes() == effect.identifier.to_bytes())
-        {
-            return Some(isophote::engine::Error::Memory("asked for".to_owned()).into());
-        }
-        let _ = effect;
-        None
+        _ => render::render(effect, host, handle, in_args),
     }
 }
 
@@ -249,7 +241,7 @@ pub extern "C" fn OfxGetPlugin(nth: c_int) -> *const OfxPlugin {
     catch_unwind(find).unwrap_or(null())
 }
 
-/// [any thread] The host, before it asks for effects. Few hosts call it; each effect is told again.
+/// [any thread] The host, before it asks for effects. Few hosts call it, and each effect gets the host again.
 // SAFETY: the standard claims the name for this function.
 #[unsafe(no_mangle)]
 pub extern "C" fn OfxSetHost(_host: *const OfxHost) -> OfxStatus {

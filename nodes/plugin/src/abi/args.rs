@@ -1,7 +1,7 @@
 //! Arguments: text, structs and places to write, behind pointers that may be null or unaligned.
 
 use super::contract::{ISOPHOTE_TRUNCATED, IsophoteText};
-use super::guard::{Failure, Outcome};
+use super::failure::{Failure, Outcome};
 use std::ffi::{CStr, c_char};
 
 /// Text from the host.
@@ -107,9 +107,9 @@ pub unsafe fn fill(target: *mut IsophoteText, value: &str) -> Outcome<()> {
 ///
 /// # Safety
 /// As [`fill`].
-pub unsafe fn tell(target: *mut IsophoteText, message: &str) {
+pub unsafe fn fill_message(target: *mut IsophoteText, message: &str) {
     if !target.is_null() {
-        // The call has failed already; there is nobody to tell about the message itself.
+        // The call has failed already; a message that does not fit is no further failure.
         // SAFETY: as the caller promised.
         let _ = unsafe { fill(target, message) };
     }

@@ -2,7 +2,8 @@
 
 use super::args;
 use super::contract::*;
-use super::guard::{self, Failure, Outcome};
+use super::failure::{Failure, Outcome};
+use super::guard;
 use isophote::registry;
 use isophote::spec::{Choice, ImageKind, NodeSpec, Param, ParamKind, Port, Unit};
 use std::collections::HashMap;
@@ -82,7 +83,7 @@ pub(super) unsafe extern "C" fn find_node(
         }
     };
     // SAFETY: the host promised that the message may be written.
-    guard::call(body, |message| unsafe { args::tell(error, message) })
+    guard::call(body, |message| unsafe { args::fill_message(error, message) })
 }
 
 fn node(spec: &NodeSpec) -> IsophoteNode {

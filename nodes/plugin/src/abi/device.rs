@@ -2,31 +2,11 @@
 
 use super::args;
 use super::contract::*;
-use super::graph;
 use super::guard;
-use super::handles::{Object, Slots};
+use super::handles::Object;
+use super::objects::{self, DeviceObject};
 use isophote::engine::gpu::{Device, Options};
 use std::ffi::c_char;
-use std::sync::{Arc, Mutex};
-
-/// A device of a host's.
-#[derive(Debug)]
-pub struct DeviceObject {
-    /// The engine's device.
-    pub device: Arc<Device>,
-    message: Mutex<String>,
-}
-
-impl Object for DeviceObject {
-    fn slots() -> &'static Slots<Self> {
-        static SLOTS: Slots<DeviceObject> = Slots::new(3, "device");
-        &SLOTS
-    }
-
-    fn message(&self) -> &Mutex<String> {
-        &self.message
-    }
-}
 
 pub(super) unsafe extern "C" fn create(
     adapter: *const c_char,
@@ -41,7 +21,7 @@ pub(super) unsafe extern "C" fn create(
             Some(unsafe { args::text(adapter, "the adapter's name")? }.to_owned())
         };
         let device = Device::open(&Options { adapter, ..Options::default() })?;
-        Ok(DeviceObject { device, message: Mutex::default() })
+        Ok(DeviceObject::new(device))
     };
     // SAFETY: the host promised that both places may be written.
     unsafe { guard::create(device, error, open) }
@@ -51,7 +31,7 @@ pub(super) unsafe extern "C" fn destroy(device: IsophoteDevice) -> IsophoteStatu
     guard::call(
         || {
             let device = DeviceObject::slots().remove(device)?;
-            graph::forget_device(&device);
+            objects::forget_device(&device);
             Ok(())
         },
         |_| {},

@@ -5,61 +5,12 @@ pub mod params;
 use super::args;
 use super::catalogue;
 use super::contract::*;
-use super::device::DeviceObject;
-use super::guard::{self, Failure, Outcome, lock};
-use super::handles::{Object, Slots};
-use super::process::Warm;
+use super::failure::{Failure, Outcome};
+use super::guard;
+use super::objects::GraphObject;
 use isophote::graph::GraphInput;
 use isophote::{Graph, NodeId};
 use std::ffi::c_char;
-use std::sync::{Arc, Mutex};
-
-/// A graph of a host's.
-#[derive(Debug)]
-pub struct GraphObject {
-    graph: Mutex<Graph>,
-    message: Mutex<String>,
-    /// What the last call of `process` left for the next; taken out while one runs.
-    pub(super) warm: Mutex<Option<Warm>>,
-}
-
-impl Object for GraphObject {
-    fn slots() -> &'static Slots<Self> {
-        static SLOTS: Slots<GraphObject> = Slots::new(1, "graph");
-        &SLOTS
-    }
-
-    fn message(&self) -> &Mutex<String> {
-        &self.message
-    }
-}
-
-impl GraphObject {
-    fn new(graph: Graph) -> Self {
-        Self { graph: Mutex::new(graph), message: Mutex::default(), warm: Mutex::default() }
-    }
-
-    /// The graph as it is now, so that no lock is held while it is used.
-    pub fn snapshot(&self) -> Graph {
-        lock(&self.graph).clone()
-    }
-}
-
-/// Gives back the memory that graphs keep for their next call.
-pub fn forget_memory() {
-    for graph in GraphObject::slots().all() {
-        let warm = lock(&graph.warm).take();
-        drop(warm);
-    }
-}
-
-/// Gives back what graphs keep on a device that is about to be destroyed.
-pub fn forget_device(device: &DeviceObject) {
-    for graph in GraphObject::slots().all() {
-        let executor = lock(&graph.warm).as_mut().and_then(|warm| warm.take_executor(device));
-        drop(executor);
-    }
-}
 
 fn node(graph: &Graph, index: u32) -> Outcome<NodeId> {
     Ok(graph.node(index as usize)?)
@@ -67,7 +18,7 @@ fn node(graph: &Graph, index: u32) -> Outcome<NodeId> {
 
 /// A call on the graph itself.
 fn on_graph(graph: IsophoteGraph, body: impl FnOnce(&mut Graph) -> Outcome<()>) -> IsophoteStatus {
-    guard::on::<GraphObject>(graph, |object| body(&mut lock(&object.graph)))
+    guard::on::<GraphObject>(graph, |object| body(&mut object.lock()))
 }
 
 fn graph_input(name: &str) -> Outcome<GraphInput> {
@@ -245,9 +196,4 @@ pub(super) unsafe extern "C" fn output_kind(graph: IsophoteGraph, kind: *mut Iso
         // SAFETY: the host promised that the place may be written.
         unsafe { args::put(kind, catalogue::kind(found), "the place for the kind") }
     })
-}
-
-/// The graph of a handle, for calls on other objects.
-pub fn find_object(graph: IsophoteGraph) -> Outcome<Arc<GraphObject>> {
-    GraphObject::slots().get(graph)
 }

@@ -2,80 +2,10 @@
 
 use super::args;
 use super::contract::*;
+use super::failure::{Failure, Outcome};
 use super::handles::Object;
-use isophote::engine;
-use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
-/// Why a call failed: the status and the line that a person reads.
-#[derive(Debug)]
-pub struct Failure {
-    /// What the call returns.
-    pub status: IsophoteStatus,
-    /// What, where, and how to mend it.
-    pub message: String,
-}
-
-/// What the inside of a call comes to.
-pub type Outcome<T> = Result<T, Failure>;
-
-impl Failure {
-    /// A failure of this status.
-    pub fn new(status: IsophoteStatus, message: impl Into<String>) -> Self {
-        Self { status, message: message.into() }
-    }
-
-    /// An argument that is null, not text, or none of the listed numbers.
-    pub fn argument(message: impl Into<String>) -> Self {
-        Self::new(ISOPHOTE_INVALID_ARGUMENT, message)
-    }
-
-    /// A size, stride or region that does not fit.
-    pub fn geometry(message: impl Into<String>) -> Self {
-        Self::new(ISOPHOTE_GEOMETRY, message)
-    }
-
-    fn panicked(payload: &(dyn Any + Send)) -> Self {
-        let what = payload
-            .downcast_ref::<&str>()
-            .map(|s| (*s).to_owned())
-            .or_else(|| payload.downcast_ref::<String>().cloned())
-            .unwrap_or_else(|| "no message".into());
-        Self::new(ISOPHOTE_INTERNAL, format!("a mistake inside Isophote: {what}"))
-    }
-}
-
-impl From<engine::Error> for Failure {
-    fn from(error: engine::Error) -> Self {
-        use engine::Error as E;
-        let status = match &error {
-            E::Geometry(_) => ISOPHOTE_GEOMETRY,
-            E::Input(_) => ISOPHOTE_INPUT,
-            E::Cancelled => ISOPHOTE_CANCELLED,
-            E::NoDevice(_) => ISOPHOTE_NO_DEVICE,
-            E::Device(_) => ISOPHOTE_DEVICE,
-            E::Memory(_) => ISOPHOTE_OUT_OF_MEMORY,
-            _ => ISOPHOTE_INTERNAL,
-        };
-        Self::new(status, error.to_string())
-    }
-}
-
-impl From<isophote::Error> for Failure {
-    fn from(error: isophote::Error) -> Self {
-        use isophote::Error as E;
-        let status = match error {
-            E::Engine(inner) => return inner.into(),
-            E::Unknown(_) => ISOPHOTE_UNKNOWN,
-            E::Value(_) => ISOPHOTE_OUT_OF_RANGE,
-            E::Connection(_) => ISOPHOTE_CONNECTION,
-            E::Format(_) => ISOPHOTE_MALFORMED,
-            _ => ISOPHOTE_INTERNAL,
-        };
-        Self::new(status, error.to_string())
-    }
-}
 
 /// Runs the inside of a call; `report` is given the message of a failure.
 pub fn call(body: impl FnOnce() -> Outcome<()>, report: impl FnOnce(&str)) -> IsophoteStatus {
@@ -126,7 +56,7 @@ pub unsafe fn create<T: Object>(
         unsafe { args::put(out, handle, "the place for the handle") }
     };
     // SAFETY: as this function's caller promised.
-    call(inside, |message| unsafe { args::tell(error, message) })
+    call(inside, |message| unsafe { args::fill_message(error, message) })
 }
 
 /// The handle's object is dropped, once nobody uses it.
@@ -165,8 +95,9 @@ pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::abi::graph::GraphObject;
+    use crate::abi::objects::GraphObject;
     use crate::abi::{graph, threads};
+    use isophote::engine;
     use std::ptr::null_mut;
 
     #[test]

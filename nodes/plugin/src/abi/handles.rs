@@ -5,7 +5,7 @@
 //! given out twice.
 
 use super::contract::{ISOPHOTE_INVALID_HANDLE, ISOPHOTE_OUT_OF_MEMORY};
-use super::guard::{Failure, Outcome};
+use super::failure::{Failure, Outcome};
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 /// What hosts hold handles of.

@@ -4,7 +4,7 @@
 //! another image, or lie at any address.
 
 use super::contract::*;
-use super::guard::{Failure, Outcome};
+use super::failure::{Failure, Outcome};
 use isophote::engine::pixels::{Sample, read_row, write_row};
 use isophote::engine::{Image, Rect};
 use isophote::graph::GraphInput;
@@ -115,7 +115,7 @@ impl Checked {
         self.data.wrapping_offset(row * self.row_stride).wrapping_add(column)
     }
 
-    /// Reads the pixels of `window`, which the image must hold, and counts the samples mended.
+    /// Reads the pixels of `window`, which the image must hold, and counts the samples that were replaced.
     ///
     /// # Errors
     /// Out of memory; input when normals are not floats of three or four channels.
@@ -134,13 +134,13 @@ impl Checked {
         let channels = input.kind().channels();
         let mut image = Image::with_window(window, channels)?;
         let mut bytes = vec![0; window.width() as usize * self.channels * self.sample.size()];
-        let mut mended = 0;
+        let mut replaced = 0;
         for y in window.y0..window.y1 {
             // SAFETY: the row lies in the image, whose memory is readable as the caller promised; the copy
             // is of bytes and needs no alignment.
             unsafe { bytes.as_mut_ptr().copy_from_nonoverlapping(self.at(&window, y), bytes.len()) };
             let row = image.row_mut(y);
-            mended += read_row(&bytes, self.sample, self.channels, row, channels as usize);
+            replaced += read_row(&bytes, self.sample, self.channels, row, channels as usize);
             if input == GraphInput::ObjectId {
                 // Numbers, not shares of the largest one.
                 let most = match self.sample {
@@ -151,7 +151,7 @@ impl Checked {
                 row.iter_mut().for_each(|v| *v = (*v * most).round());
             }
         }
-        Ok((image, mended))
+        Ok((image, replaced))
     }
 
     /// Writes all pixels of `result`, which must lie within the image.

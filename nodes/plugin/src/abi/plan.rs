@@ -2,10 +2,11 @@
 
 use super::args;
 use super::contract::*;
-use super::graph;
-use super::guard::{self, Failure, Outcome, lock};
+use super::failure::{Failure, Outcome};
+use super::guard::{self, lock};
 use super::handles::{Object, Slots};
-use super::process;
+use super::objects::GraphObject;
+use super::request;
 use super::shader;
 use isophote::engine::kernel::WORKGROUP;
 use isophote::engine::program::{Dispatch, Program, Role, Texture};
@@ -152,11 +153,11 @@ pub(super) unsafe extern "C" fn create(
     plan: *mut IsophotePlan,
 ) -> IsophoteStatus {
     let make = || {
-        let graph = graph::find_object(from)?.snapshot();
+        let graph = GraphObject::slots().get(from)?.snapshot();
         // SAFETY: the host promised a request behind the pointer, and a rectangle or null.
         let (request, region) = unsafe {
-            let request = process::request(&args::get(host_request, "the request")?)?;
-            (request, process::region(region, &request)?)
+            let request = request::request(&args::get(host_request, "the request")?)?;
+            (request, request::region(region, &request)?)
         };
         let planned = Planned::new(&graph, request)?;
         let state = State::new(graph, planned, region)?;
@@ -184,7 +185,7 @@ pub(super) unsafe extern "C" fn update(
         if change.is_null() {
             return Err(Failure::argument("the place for the change is null"));
         }
-        let graph = graph::find_object(graph)?.snapshot();
+        let graph = GraphObject::slots().get(graph)?.snapshot();
         let found = lock(&object.state).update(graph)?;
         // SAFETY: the host promised that the place may be written.
         unsafe { args::put(change, found, "the place for the change") }

@@ -2,132 +2,23 @@
 
 use super::args;
 use super::contract::*;
-use super::device::DeviceObject;
-use super::graph::{self, GraphObject};
-use super::guard::{self, Failure, Outcome, lock};
+use super::failure::{Failure, Outcome};
+use super::graph;
+use super::guard::{self, lock};
 use super::handles::Object;
 use super::images::{Checked, shown};
-use super::threads::{Chosen, User};
-use isophote::engine::cpu::{Control, CpuExecutor, PassTime};
+use super::objects::{DeviceObject, GraphObject};
+use super::request::{region, request};
+use super::threads::{CallThreads, User};
+use super::warm::Warm;
+use isophote::engine::cpu::{Control, PassTime};
 use isophote::engine::{Image, ImageId, Plan, Rect, Support, gpu};
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
-use isophote::{ColourSpace, Graph, Planned, Request};
 use std::ffi::{CString, c_char, c_void};
 use std::ptr::null_mut;
 use std::sync::Arc;
 use std::time::Instant;
-
-/// What one call on a graph leaves for the next: the plan, and executors with their memory.
-#[derive(Debug, Default)]
-pub struct Warm {
-    planned: Option<Planned>,
-    cpu: Option<CpuExecutor>,
-    gpu: Option<gpu::Executor>,
-}
-
-impl Warm {
-    /// What an earlier call left, with its plan brought up to date or made anew. Give it back with
-    /// [`Warm::keep`].
-    fn take(object: &GraphObject, graph: &Graph, request: &Request) -> Outcome<Self> {
-        let mut warm = lock(&object.warm).take().unwrap_or_default();
-        if let Some(mut planned) = warm.planned.take().filter(|p| p.request() == request) {
-            // A plan whose update failed is not used again.
-            planned.update(graph)?;
-            warm.planned = Some(planned);
-        } else {
-            warm.planned = Some(Planned::new(graph, *request)?);
-        }
-        Ok(warm)
-    }
-
-    fn keep(self, object: &GraphObject) {
-        *lock(&object.warm) = Some(self);
-    }
-
-    fn plan(&self) -> Outcome<&Plan> {
-        self.planned
-            .as_ref()
-            .map(Planned::plan)
-            .ok_or_else(|| Failure::new(ISOPHOTE_INTERNAL, "the graph has no plan"))
-    }
-
-    /// The executor on a device, when there is one.
-    pub fn take_executor(&mut self, device: &DeviceObject) -> Option<gpu::Executor> {
-        self.gpu.take_if(|executor| Arc::ptr_eq(executor.device(), &device.device))
-    }
-}
-
-/// The library's request from the host's.
-///
-/// # Errors
-/// Invalid argument for numbers that are not listed.
-pub fn request(host: &IsophoteRequest) -> Outcome<Request> {
-    let space = match host.space {
-        ISOPHOTE_SPACE_SRGB => ColourSpace::Srgb,
-        ISOPHOTE_SPACE_LINEAR => ColourSpace::Linear,
-        ISOPHOTE_SPACE_ACESCG => ColourSpace::AcesCg,
-        other => return Err(Failure::argument(format!("{other} is no colour space"))),
-    };
-    let premultiplied = match host.alpha {
-        ISOPHOTE_ALPHA_PREMULTIPLIED => true,
-        ISOPHOTE_ALPHA_STRAIGHT => false,
-        other => return Err(Failure::argument(format!("{other} is no relation of colour to alpha"))),
-    };
-    let bit = |bit: u32| host.guides & bit != 0;
-    let guides = Guides {
-        normal: bit(ISOPHOTE_GUIDE_NORMAL),
-        depth: bit(ISOPHOTE_GUIDE_DEPTH),
-        object_id: bit(ISOPHOTE_GUIDE_OBJECT_ID),
-    };
-    if host.guides & !(ISOPHOTE_GUIDE_NORMAL | ISOPHOTE_GUIDE_DEPTH | ISOPHOTE_GUIDE_OBJECT_ID) != 0 {
-        return Err(Failure::argument(format!("{:#x} are no guides", host.guides)));
-    }
-    Ok(Request { width: host.width, height: host.height, scale: host.scale, space, premultiplied, guides })
-}
-
-/// The host's region, or the whole picture.
-///
-/// # Errors
-/// Geometry when it is empty or not inside the picture.
-///
-/// # Safety
-/// `region` is null or points to a rectangle.
-pub unsafe fn region(region: *const IsophoteRect, request: &Request) -> Outcome<Rect> {
-    isophote::engine::image::check_size(request.width, request.height)?;
-    let whole = Rect::of_size(request.width, request.height);
-    if region.is_null() {
-        return Ok(whole);
-    }
-    // SAFETY: as the caller promised.
-    let host = unsafe { args::get(region, "the region")? };
-    // Compared before anything is subtracted, so that no width overflows.
-    let is_inside = 0 <= host.x0 && host.x0 < host.x1 && host.x1 <= whole.x1;
-    if !(is_inside && 0 <= host.y0 && host.y0 < host.y1 && host.y1 <= whole.y1) {
-        return Err(Failure::geometry(format!(
-            "the region x {}..{}, y {}..{} is not inside the picture of {}x{}",
-            host.x0, host.x1, host.y0, host.y1, whole.x1, whole.y1
-        )));
-    }
-    Ok(Rect { x0: host.x0, y0: host.y0, x1: host.x1, y1: host.y1 })
-}
-
-pub(super) unsafe extern "C" fn request_init(
-    width: u32,
-    height: u32,
-    request: *mut IsophoteRequest,
-) -> IsophoteStatus {
-    let value = IsophoteRequest {
-        width,
-        height,
-        scale: 1.0,
-        space: ISOPHOTE_SPACE_SRGB,
-        alpha: ISOPHOTE_ALPHA_PREMULTIPLIED,
-        guides: 0,
-    };
-    // SAFETY: the host promised that the place may be written.
-    guard::call(|| unsafe { args::put(request, value, "the place for the request") }, |_| {})
-}
 
 pub(super) unsafe extern "C" fn support(
     graph: IsophoteGraph,
@@ -143,7 +34,7 @@ pub(super) unsafe extern "C" fn support(
             let input = if input.is_null() { None } else { Some(graph::input(input)?) };
             (request, region(host_region, &request)?, input)
         };
-        let warm = Warm::take(object, &object.snapshot(), &request)?;
+        let warm = object.warm(&request)?;
         let plan = warm.plan()?;
         let windows = plan.windows(region);
         let window = plan
@@ -156,7 +47,7 @@ pub(super) unsafe extern "C" fn support(
             Support::Global => (0, 1),
         };
         let window = IsophoteRect { x0: window.x0, y0: window.y0, x1: window.x1, y1: window.y1 };
-        warm.keep(object);
+        object.keep(warm);
         // SAFETY: the host promised that the place may be written.
         unsafe { args::put(support, IsophoteSupport { window, halo, global }, "the place for the support") }
     })
@@ -195,23 +86,23 @@ pub(super) unsafe extern "C" fn process(
             0 => None,
             handle => Some(DeviceObject::slots().get(handle)?),
         };
-        let threads = Chosen::new(&control)?;
-        let mut warm = Warm::take(object, &object.snapshot(), &request)?;
+        let threads = CallThreads::new(&control)?;
+        let mut warm = object.warm(&request)?;
         let job = Job { region, inputs: &inputs, threads: &threads, control: &control };
         // SAFETY: the host promised that the images' memory may be read.
         let computed = unsafe { job.run(&mut warm, device.as_deref()) };
-        let computed = computed.map(|(result, mended)| {
+        let computed = computed.map(|(result, replaced)| {
             // SAFETY: the host promised that the target's memory may be written; all inputs were copied,
             // so that it does not matter whether it is theirs.
             unsafe { target.write(&result) };
-            if let (Some(cpu), None) = (&mut warm.cpu, &device) {
-                cpu.recycle(result);
+            if device.is_none() {
+                warm.recycle(result);
             }
-            mended
+            replaced
         });
-        warm.keep(object);
-        let mended = computed?;
-        let done = IsophoteReport { mended, seconds: started.elapsed().as_secs_f64() };
+        object.keep(warm);
+        let replaced = computed?;
+        let done = IsophoteReport { replaced, seconds: started.elapsed().as_secs_f64() };
         // SAFETY: the host promised that the report may be written, or is null.
         unsafe { args::put_if_wanted(report, done) };
         Ok(())
@@ -251,7 +142,7 @@ unsafe fn sources(inputs: *const IsophoteInput, count: u32) -> Outcome<Vec<(Grap
 struct Job<'a> {
     region: Rect,
     inputs: &'a [(GraphInput, Checked)],
-    threads: &'a Chosen,
+    threads: &'a CallThreads,
     control: &'a IsophoteControl,
 }
 
@@ -280,11 +171,11 @@ impl Job<'_> {
         }
         must_fit(plan, &windows, device.is_some())?;
         let mut images = Vec::new();
-        let mut mended = 0;
+        let mut replaced = 0;
         for (input, image, window) in needed {
             // SAFETY: as the caller promised.
             let (image, bad) = unsafe { image.read(window, input)? };
-            mended += bad;
+            replaced += bad;
             images.push((input.id(), image));
         }
         let images: Vec<(&str, &Image)> = images.iter().map(|(name, image)| (*name, image)).collect();
@@ -295,7 +186,7 @@ impl Job<'_> {
                 "the graph's output is of another size than the picture",
             ));
         }
-        Ok((result, mended))
+        Ok((result, replaced))
     }
 
     fn execute(
@@ -312,77 +203,83 @@ impl Job<'_> {
                 unsafe { ask(user.0) != 0 }
             }
         });
-        let progress = self.control.progress.map(|tell| {
+        let progress = self.control.progress.map(|report| {
             move |done: f32| {
                 let user = user;
                 // SAFETY: the host promised a function of this type.
-                unsafe { tell(user.0, done) }
+                unsafe { report(user.0, done) }
             }
         });
         let control = Control {
             cancelled: cancelled.as_ref().map(|c| c as &(dyn Fn() -> bool + Sync)),
             progress: progress.as_ref().map(|p| p as &dyn Fn(f32)),
         };
-        let Warm { planned, cpu, gpu } = warm;
-        let plan = planned
-            .as_ref()
-            .map(Planned::plan)
-            .ok_or_else(|| Failure::new(ISOPHOTE_INTERNAL, "the graph has no plan"))?;
         let results = match device {
-            None => {
-                let cpu = cpu.get_or_insert_default();
-                cpu.record_times(self.control.measured.is_some());
-                let results = cpu.run(plan, images, self.region, self.threads.threads(), control)?;
-                if let Some(measured) = self.control.measured {
-                    self.tell_times(plan, cpu.times(), measured);
-                }
-                results
-            }
-            Some(object) => {
-                let executor = match gpu.take() {
-                    Some(executor) if Arc::ptr_eq(executor.device(), &object.device) => executor,
-                    _ => gpu::Executor::new(Arc::clone(&object.device)),
-                };
-                let results = gpu.insert(executor).run_images(plan, images, self.region, control);
-                if let Err(e) = &results {
-                    // A lost device takes all that was made on it with it.
-                    *gpu = None;
-                    e.to_string().clone_into(&mut lock(object.message()));
-                }
-                results?
-            }
+            None => self.on_cpu(warm, images, control)?,
+            Some(device) => self.on_device(warm, device, images, control)?,
         };
         results.into_iter().next().ok_or_else(|| Failure::new(ISOPHOTE_INTERNAL, "the plan gave no image"))
     }
-}
 
-impl Job<'_> {
-    /// Tells the host what each pass of the last run on the CPU took.
-    fn tell_times(
+    fn on_cpu(
+        &self,
+        warm: &mut Warm,
+        images: &[(&str, &Image)],
+        control: Control<'_>,
+    ) -> Outcome<Vec<Image>> {
+        let (plan, cpu, _) = warm.parts()?;
+        let cpu = cpu.get_or_insert_default();
+        cpu.record_times(self.control.measured.is_some());
+        let results = cpu.run(plan, images, self.region, self.threads.threads(), control)?;
+        if let Some(measured) = self.control.measured {
+            self.report_times(plan, cpu.times(), measured);
+        }
+        Ok(results)
+    }
+
+    fn on_device(
+        &self,
+        warm: &mut Warm,
+        object: &DeviceObject,
+        images: &[(&str, &Image)],
+        control: Control<'_>,
+    ) -> Outcome<Vec<Image>> {
+        let (plan, _, gpu) = warm.parts()?;
+        let executor = match gpu.take() {
+            Some(executor) if Arc::ptr_eq(executor.device(), &object.device) => executor,
+            _ => gpu::Executor::new(Arc::clone(&object.device)),
+        };
+        let results = gpu.insert(executor).run_images(plan, images, self.region, control);
+        if let Err(e) = &results {
+            // A lost device takes all that was made on it with it.
+            *gpu = None;
+            e.to_string().clone_into(&mut lock(object.message()));
+        }
+        Ok(results?)
+    }
+
+    /// Reports to the host what each pass of the last run on the CPU took.
+    fn report_times(
         &self,
         plan: &Plan,
         times: &[PassTime],
         measured: unsafe extern "C" fn(*mut c_void, *const IsophotePassTime),
     ) {
         let windows = plan.windows(self.region);
-        let pixels = |image: &ImageId| {
-            let window = windows[image.index()];
-            u64::from(window.width()) * u64::from(window.height())
-        };
-        let bytes = |image: &ImageId| pixels(image) * u64::from(plan.desc(*image).channels) * 4;
+        let bytes = |id: &ImageId| windows[id.index()].area() * u64::from(plan.desc(*id).channels) * 4;
         // Passes that the region does not need were not run.
         let passes = plan.passes().iter().filter(|pass| !windows[pass.outputs[0].index()].is_empty());
         for (pass, time) in passes.zip(times) {
             let kernel = CString::new(pass.kernel.name).unwrap_or_default();
-            let told = IsophotePassTime {
+            let entry = IsophotePassTime {
                 kernel: kernel.as_ptr(),
                 seconds: time.time.as_secs_f64(),
                 operations: (pass.kernel.cost)(&pass.params) * time.pixels as f64,
                 bytes: pass.inputs.iter().chain(&pass.outputs).map(bytes).sum(),
                 pixels: time.pixels,
             };
-            // SAFETY: the host promised a function of this type; what it is told lives during the call.
-            unsafe { measured(self.control.user, &raw const told) };
+            // SAFETY: the host promised a function of this type; what it is given lives during the call.
+            unsafe { measured(self.control.user, &raw const entry) };
         }
     }
 }
@@ -391,11 +288,7 @@ impl Job<'_> {
 /// process.
 fn must_fit(plan: &Plan, windows: &[Rect], on_device: bool) -> Outcome<()> {
     let most = if on_device {
-        let bytes = |image: ImageId| {
-            let window = &windows[image.index()];
-            let channels = u64::from(plan.desc(image).channels);
-            u64::from(window.width()) * u64::from(window.height()) * channels * 4
-        };
+        let bytes = |id: ImageId| windows[id.index()].area() * u64::from(plan.desc(id).channels) * 4;
         plan.inputs().iter().chain(plan.outputs()).map(|port| bytes(port.image)).sum()
     } else {
         plan.peak_bytes(windows)

@@ -5,7 +5,8 @@
 
 use super::catalogue::lasting;
 use super::contract::*;
-use super::guard::{Failure, Outcome, lock};
+use super::failure::{Failure, Outcome};
+use super::guard::lock;
 use isophote::engine::program::Shader;
 use naga::back::pipeline_constants::process_overrides;
 use naga::back::{glsl, hlsl, msl, spv};

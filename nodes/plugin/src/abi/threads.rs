@@ -5,7 +5,8 @@
 //! only when nothing of it runs any more.
 
 use super::contract::*;
-use super::guard::{Failure, Outcome, lock};
+use super::failure::{Failure, Outcome};
+use super::guard::lock;
 use isophote::engine::cpu::{CallingThread, Pool, Threads};
 use std::any::Any;
 use std::collections::HashMap;
@@ -44,8 +45,8 @@ pub fn forget_pools() {
     drop(pools);
 }
 
-/// The threads that a call shall use.
-pub enum Chosen {
+/// The threads that a call uses.
+pub enum CallThreads {
     /// None but the caller's.
     Calling(CallingThread),
     /// The library's.
@@ -54,7 +55,7 @@ pub enum Chosen {
     Host(HostThreads),
 }
 
-impl Chosen {
+impl CallThreads {
     /// What `control` asks for.
     ///
     /// # Errors

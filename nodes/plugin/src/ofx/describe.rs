@@ -179,48 +179,14 @@ fn define_control(
     let set = match control.target {
         Target::Param(_, param) => match param.kind {
             ParamKind::Float { default, range, slider } => {
-                let set = define(kOfxParamTypeDouble)?;
-                let angle = param.unit == Unit::Degrees;
-                let kind = if angle { kOfxParamDoubleTypeAngle } else { kOfxParamDoubleTypePlain };
-                set.set_string(kOfxParamPropDoubleType, 0, kind);
-                for (name, value) in [
-                    (kOfxParamPropDefault, default),
-                    (kOfxParamPropMin, range[0]),
-                    (kOfxParamPropMax, range[1]),
-                    (kOfxParamPropDisplayMin, slider[0]),
-                    (kOfxParamPropDisplayMax, slider[1]),
-                ] {
-                    set.set_doubles(name, &[exact(value)]);
-                }
-                // A hundredth of the slider, as a round number, and one digit more.
-                let digits = (2.0 - (slider[1] - slider[0]).log10().floor()).clamp(0.0, 6.0);
-                set.set_doubles(kOfxParamPropIncrement, &[10_f64.powf(-f64::from(digits))]);
-                set.set_int(kOfxParamPropDigits, digits as c_int + 1);
-                set.set_int(kOfxParamPropAnimates, 1);
-                set
+                float(define(kOfxParamTypeDouble)?, param.unit, default, range, slider)
             }
             ParamKind::Int { default, range, slider } => {
-                let set = define(kOfxParamTypeInteger)?;
-                for (name, value) in [
-                    (kOfxParamPropDefault, default),
-                    (kOfxParamPropMin, range[0]),
-                    (kOfxParamPropMax, range[1]),
-                    (kOfxParamPropDisplayMin, slider[0]),
-                    (kOfxParamPropDisplayMax, slider[1]),
-                    (kOfxParamPropAnimates, 1),
-                ] {
-                    set.set_int(name, value);
-                }
-                set
+                int(define(kOfxParamTypeInteger)?, default, range, slider)
             }
             ParamKind::Bool { default } => switch(define(kOfxParamTypeBoolean)?, default),
             ParamKind::Choice { default, .. } => choice(define(kOfxParamTypeChoice)?, control, default),
-            ParamKind::Color { default } => {
-                let set = define(kOfxParamTypeRGBA)?;
-                set.set_doubles(kOfxParamPropDefault, &default.map(exact));
-                set.set_int(kOfxParamPropAnimates, 1);
-                set
-            }
+            ParamKind::Color { default } => color(define(kOfxParamTypeRGBA)?, default),
         },
         Target::LinesOutput => choice(define(kOfxParamTypeChoice)?, control, 0),
         Target::WorkingSpace => {
@@ -236,6 +202,46 @@ fn define_control(
         set.set_string(kOfxParamPropParent, 0, &effect.groups[group].name);
     }
     Ok(())
+}
+
+fn float(set: Properties<'_>, unit: Unit, default: f32, range: [f32; 2], slider: [f32; 2]) -> Properties<'_> {
+    let kind = if unit == Unit::Degrees { kOfxParamDoubleTypeAngle } else { kOfxParamDoubleTypePlain };
+    set.set_string(kOfxParamPropDoubleType, 0, kind);
+    for (name, value) in [
+        (kOfxParamPropDefault, default),
+        (kOfxParamPropMin, range[0]),
+        (kOfxParamPropMax, range[1]),
+        (kOfxParamPropDisplayMin, slider[0]),
+        (kOfxParamPropDisplayMax, slider[1]),
+    ] {
+        set.set_doubles(name, &[exact(value)]);
+    }
+    // A hundredth of the slider, as a round number, and one digit more.
+    let digits = (2.0 - (slider[1] - slider[0]).log10().floor()).clamp(0.0, 6.0);
+    set.set_doubles(kOfxParamPropIncrement, &[10_f64.powf(-f64::from(digits))]);
+    set.set_int(kOfxParamPropDigits, digits as c_int + 1);
+    set.set_int(kOfxParamPropAnimates, 1);
+    set
+}
+
+fn int(set: Properties<'_>, default: c_int, range: [c_int; 2], slider: [c_int; 2]) -> Properties<'_> {
+    for (name, value) in [
+        (kOfxParamPropDefault, default),
+        (kOfxParamPropMin, range[0]),
+        (kOfxParamPropMax, range[1]),
+        (kOfxParamPropDisplayMin, slider[0]),
+        (kOfxParamPropDisplayMax, slider[1]),
+        (kOfxParamPropAnimates, 1),
+    ] {
+        set.set_int(name, value);
+    }
+    set
+}
+
+fn color(set: Properties<'_>, default: [f32; 4]) -> Properties<'_> {
+    set.set_doubles(kOfxParamPropDefault, &default.map(exact));
+    set.set_int(kOfxParamPropAnimates, 1);
+    set
 }
 
 fn switch(set: Properties<'_>, default: bool) -> Properties<'_> {

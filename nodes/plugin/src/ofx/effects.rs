@@ -12,8 +12,8 @@ use isophote::{ColourSpace, Graph, NodeId, Planned, Request};
 use std::ffi::{CStr, CString};
 use std::sync::LazyLock;
 
-/// Reverse name of the house, before the id of every effect.
-const HOUSE: &str = "org.isophote.";
+/// Before the id of every effect: the reverse name of the project.
+const PREFIX: &str = "org.isophote.";
 
 /// What the controls of an effect's own are called.
 pub const WORKING_SPACE: &CStr = c"working_space";
@@ -103,7 +103,7 @@ pub struct Effect {
     pub controls: Vec<Control>,
     /// Guides that it takes as clips.
     pub guides: Vec<GraphInput>,
-    /// Whether a tile needs only its surroundings, at the default values.
+    /// Whether a tile needs only the pixels around it, at the default values.
     pub local: bool,
 }
 
@@ -139,7 +139,7 @@ impl Effect {
             Form::Structure => ("structure", "Structure"),
             _ => (shown.id, shown.label),
         };
-        let identifier = format!("{HOUSE}{id}");
+        let identifier = format!("{PREFIX}{id}");
         let mut effect = Self {
             // Some hosts stumble over a hyphen in a label.
             label: text(&label.replace('-', " ")),
@@ -276,7 +276,7 @@ mod tests {
         for node in isophote::registry::nodes() {
             let alone = node.inputs.iter().all(|p| p.optional || p.kind == ImageKind::Color);
             if node.group == "styles" || (node.has_mix() && alone) {
-                assert!(ids.contains(text(&format!("{HOUSE}{}", node.id)).as_c_str()), "{}", node.id);
+                assert!(ids.contains(text(&format!("{PREFIX}{}", node.id)).as_c_str()), "{}", node.id);
             }
         }
         assert!(ids.contains(c"org.isophote.structure"));

@@ -12,7 +12,7 @@ use std::ptr::{null, null_mut};
 use std::sync::atomic::{AtomicPtr, Ordering};
 use std::sync::{Mutex, OnceLock};
 
-/// Why an action failed, as the host is told.
+/// Why an action failed, as the host gets it.
 pub type Failure = OfxStatus;
 /// What an action comes to.
 pub type Outcome<T = OfxStatus> = Result<T, Failure>;
@@ -27,10 +27,10 @@ pub struct Host {
     /// What suites are asked of, and the function for it.
     origin: AtomicPtr<c_void>,
     fetch: FetchSuite,
-    /// Fetched when there is something to tell: not every host takes the question well.
+    /// Fetched when there is a message to show: not every host takes the question well.
     messages: OnceLock<Option<OfxMessageSuiteV2>>,
     /// Addresses of the instances that show a message.
-    told: Mutex<BTreeSet<usize>>,
+    showing: Mutex<BTreeSet<usize>>,
     pub quirks: Quirks,
     /// Whether images may hold only a part of the picture.
     pub tiles: bool,
@@ -71,7 +71,7 @@ impl Host {
                 origin: AtomicPtr::new(host.host),
                 fetch,
                 messages: OnceLock::new(),
-                told: Mutex::default(),
+                showing: Mutex::default(),
                 quirks: Quirks::default(),
                 tiles: true,
                 half: false,
@@ -124,13 +124,13 @@ impl Host {
     }
 
     /// Shows a message on the effect, where that is known to be safe: once, until it renders again.
-    pub fn tell(&self, effect: Handle, message: &str) {
+    pub fn show_message(&self, effect: Handle, message: &str) {
         if !self.quirks.messages {
             return;
         }
         let Some(messages) = self.messages() else { return };
         let Some(show) = messages.setPersistentMessage.or(messages.message) else { return };
-        if !lock(&self.told).insert(effect.addr()) {
+        if !lock(&self.showing).insert(effect.addr()) {
             return;
         }
         // The text is an argument and not the format, in which a `%` would be one of the host's.
@@ -155,9 +155,9 @@ impl Host {
         })
     }
 
-    /// Takes the message of an effect back, if there was one.
-    pub fn untell(&self, effect: Handle) {
-        if lock(&self.told).remove(&effect.addr())
+    /// Clears the message of an effect, if there is one.
+    pub fn clear_message(&self, effect: Handle) {
+        if lock(&self.showing).remove(&effect.addr())
             && let Some(clear) = self.messages().and_then(|m| m.clearPersistentMessage)
         {
             // SAFETY: an effect that the host gave, on which a message was set.

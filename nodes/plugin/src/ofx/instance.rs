@@ -7,9 +7,10 @@ use super::host::{Host, Outcome, Properties};
 use super::image::Clip;
 use super::interface::*;
 use super::memory::{LEAST_ROWS, WORKING_MEMORY};
+use super::pixel_aspect::SquarePixels;
 use super::settings::Settings;
-use super::squares::Squares;
 use isophote::engine::{Plan, Rect, Support};
+use isophote::graph::GraphInput;
 use isophote::request::Guides;
 use isophote::{ColourSpace, Graph, Planned, Request};
 use std::ffi::{CStr, CString};
@@ -38,7 +39,7 @@ pub struct Prepared {
     /// What is run.
     pub planned: Planned,
     /// Its pixels, where they are others than the host's. Colour is multiplied by alpha in them.
-    pub squares: Option<Squares>,
+    pub square: Option<SquarePixels>,
 }
 
 impl Prepared {
@@ -68,34 +69,41 @@ impl Prepared {
                 Request { scale, space, premultiplied, guides, ..Request::new(width, height) },
             )
         };
-        let Some(mut squares) = Squares::of(frame) else {
-            return Ok(Self { planned: plan(frame.size(), frame.scale, premultiplied)?, squares: None });
+        let Some(mut square) = SquarePixels::of(frame) else {
+            return Ok(Self { planned: plan(frame.size(), frame.scale, premultiplied)?, square: None });
         };
-        let mut planned = plan(squares.size(), squares.scale, true)?;
+        let mut planned = plan(square.size(), square.scale, true)?;
         if least_memory(planned.plan()) > WORKING_MEMORY[1] {
-            squares = Squares::as_many(frame);
-            planned = plan(squares.size(), squares.scale, true)?;
+            square = SquarePixels::as_many(frame);
+            planned = plan(square.size(), square.scale, true)?;
         }
-        Ok(Self { planned, squares: Some(squares) })
+        Ok(Self { planned, square: Some(square) })
+    }
+
+    /// The part of the plan's result that `region` of the frame is made from.
+    pub fn plan_window(&self, region: Rect) -> Rect {
+        self.square.map_or(region, |square| square.square_window(region))
     }
 
     /// The part of each of the plan's images that `region` of the frame needs.
     pub fn windows(&self, region: Rect) -> Vec<Rect> {
-        self.planned.plan().windows(self.squares.map_or(region, |squares| squares.over(region)))
+        self.planned.plan().windows(self.plan_window(region))
     }
 
     /// The host's pixels that a part of an image is made from.
-    pub fn under(&self, window: Rect) -> Rect {
-        self.squares.map_or(window, |squares| squares.under(window))
+    pub fn host_window(&self, window: Rect) -> Rect {
+        self.square.map_or(window, |square| square.host_window(window))
     }
 
     /// Rows of the host's in one band.
     pub fn band_rows(&self, region: Rect) -> i32 {
         let plan = self.planned.plan();
-        let Some(squares) = self.squares else { return plan.band_rows(region, WORKING_MEMORY, LEAST_ROWS) };
-        let over = squares.over(region);
-        let rows = plan.band_rows(over, WORKING_MEMORY, LEAST_ROWS);
-        let share = f64::from(rows) / f64::from(over.height().max(1));
+        let window = self.plan_window(region);
+        let rows = plan.band_rows(window, WORKING_MEMORY, LEAST_ROWS);
+        if self.square.is_none() {
+            return rows;
+        }
+        let share = f64::from(rows) / f64::from(window.height().max(1));
         ((share * f64::from(region.height())) as i32).max(1)
     }
 }
@@ -151,41 +159,45 @@ pub fn regions_of_interest(
     }
     let open = |name: &CStr| Clip::of(host, instance, name).is_none_or(|clip| clip.is_open());
     let has = |guide| effect.guides.contains(&guide) && guide_clip(guide).is_some_and(|name| !open(name));
-    let guides = Guides {
-        normal: has(isophote::graph::GraphInput::Normal),
-        depth: has(isophote::graph::GraphInput::Depth),
-        object_id: false,
-    };
+    let guides = Guides { normal: has(GraphInput::Normal), depth: has(GraphInput::Depth), object_id: false };
     let prepared = Prepared::new(&settings, &frame, true, guides).map_err(|_| kOfxStatFailed)?;
     let windows = prepared.windows(region);
     // Lines of the other field lend the first and last of a field their neighbours.
     let order = source.properties.string(kOfxImageClipPropFieldOrder, 0);
     let fields = order.is_some_and(|order| order.as_c_str() != kOfxImageFieldNone);
-    let mut answered = false;
-    let mut tell = |clip: &CStr, rect: Rect| {
-        let mut bounds = frame.outside(rect);
-        if fields {
-            (bounds[1], bounds[3]) = (bounds[1] - 1, bounds[3] + 1);
-        }
-        let name = CString::new(format!("{ROI_PREFIX}{}", clip.to_string_lossy())).unwrap_or_default();
-        answered |= answer.set_doubles(&name, &frame.canonical(bounds));
-    };
+    let mut interest = Interest { answer, frame, fields, answered: false };
     for port in prepared.planned.plan().inputs() {
-        let window = prepared.under(windows[port.image.index()]).union(&region);
-        match isophote::graph::GraphInput::from_id(&port.name) {
-            Some(isophote::graph::GraphInput::Color) => tell(SOURCE, window),
-            Some(guide) => {
-                if let Some(clip) = guide_clip(guide) {
-                    tell(clip, window);
-                }
-            }
+        let window = prepared.host_window(windows[port.image.index()]).union(&region);
+        match GraphInput::from_id(&port.name) {
+            Some(GraphInput::Color) => interest.add(SOURCE, window),
+            Some(guide) => guide_clip(guide).into_iter().for_each(|clip| interest.add(clip, window)),
             None => {}
         }
     }
     if !open(MASK) {
-        tell(MASK, region);
+        interest.add(MASK, region);
     }
-    Ok(if answered { kOfxStatOK } else { kOfxStatReplyDefault })
+    Ok(if interest.answered { kOfxStatOK } else { kOfxStatReplyDefault })
+}
+
+/// The regions of interest that a host has been given.
+struct Interest<'h> {
+    answer: Properties<'h>,
+    frame: Frame,
+    fields: bool,
+    answered: bool,
+}
+
+impl Interest<'_> {
+    /// Answers that `rect` of the picture is needed of a clip.
+    fn add(&mut self, clip: &CStr, rect: Rect) {
+        let mut bounds = self.frame.outside(rect);
+        if self.fields {
+            (bounds[1], bounds[3]) = (bounds[1] - 1, bounds[3] + 1);
+        }
+        let name = CString::new(format!("{ROI_PREFIX}{}", clip.to_string_lossy())).unwrap_or_default();
+        self.answered |= self.answer.set_doubles(&name, &self.frame.canonical(bounds));
+    }
 }
 
 /// The result is premultiplied as the source is. Hosts that manage colours are asked for pixels that are
@@ -247,7 +259,7 @@ pub fn is_identity(
     Ok(if answered { kOfxStatOK } else { kOfxStatReplyDefault })
 }
 
-/// Says of an instance whether a tile needs only its surroundings, which some modes change.
+/// Says of an instance whether a tile needs only the pixels around it, which some modes change.
 ///
 /// # Errors
 /// Failed, when the host has no parameters.
@@ -293,9 +305,9 @@ mod tests {
                     let middle = (4320 - rows) / 2;
                     let band = Rect { y0: middle, y1: middle + rows, ..whole };
                     let (plan, windows) = (prepared.planned.plan(), prepared.windows(band));
-                    // The host's pixels of a guide or the colour are gone when the last squares are made.
-                    let squares = plan.inputs().iter().map(|port| windows[port.image.index()]);
-                    let read = squares.map(|w| bytes(w) + 2 * bytes(prepared.under(w))).sum::<u64>();
+                    // The host's pixels of a guide or the colour are gone when the last are resampled.
+                    let read = plan.inputs().iter().map(|port| windows[port.image.index()]);
+                    let read = read.map(|w| bytes(w) + 2 * bytes(prepared.host_window(w))).sum::<u64>();
                     let most = 2 * bytes(whole) + plan.peak_bytes(&windows).max(read);
                     let gib = most as f64 / (1_u64 << 30) as f64;
                     assert!(most <= 4 << 30, "{:?} at {par}: {gib:.2} GiB", effect.identifier);

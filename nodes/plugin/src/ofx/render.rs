@@ -4,18 +4,19 @@ use super::describe::{MASK, SOURCE, guide_clip};
 use super::effects::Effect;
 use super::faults;
 use super::frame::{Bounds, Frame};
-use super::host::{Host, Outcome};
+use super::host::{Host, Outcome, Properties};
 use super::image::{Alpha, Beyond, Clip, Fetched};
 use super::instance::{self, Moment, Prepared};
 use super::interface::*;
 use super::memory::LEAST_ROWS;
 use super::settings::Settings;
 use super::threads::FrameThreads;
-use isophote::engine::cpu::{Control, CpuExecutor};
+use isophote::engine::cpu::{Control, CpuExecutor, Threads};
 use isophote::engine::{Error as EngineError, Image, Rect};
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
 use isophote::{ColourSpace, Error};
+use std::ffi::CStr;
 use std::sync::Mutex;
 
 /// One field of an interlaced picture.
@@ -69,41 +70,66 @@ pub fn render(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -
         // A single channel is coverage, whatever space the colours are in.
         settings.space = ColourSpace::Srgb;
     }
-    let fetch = |name| match Clip::of(host, instance, name) {
-        Some(clip) => clip.image(moment.time),
-        None => Ok(None),
-    };
-    let mask = if settings.mask_apply { fetch(MASK)? } else { None };
+    let mask = if settings.mask_apply { fetch(host, instance, MASK, moment.time)? } else { None };
+    let guides = fetch_guides(effect, host, instance, moment.time)?;
+    let field = Field::of(args);
+    let identity = settings.is_identity(frame.scale);
+    let job = Job { host, instance, frame, settings, identity, source, output, mask, guides, field };
+    let done = faults::failure(effect).map_or_else(|| job.run(window), |error| Err(Stop::Error(error)));
+    report(host, instance, done)
+}
+
+impl Field {
+    /// The field that the arguments name, if any.
+    fn of(args: Properties<'_>) -> Option<Self> {
+        match args.string(kOfxImageEffectPropFieldToRender, 0)?.as_c_str() {
+            f if f == kOfxImageFieldLower => Some(Self { parity: 0 }),
+            f if f == kOfxImageFieldUpper => Some(Self { parity: 1 }),
+            _ => None,
+        }
+    }
+}
+
+/// The image of a clip, where there is one.
+fn fetch<'h>(host: &'h Host, instance: Handle, name: &CStr, time: f64) -> Outcome<Option<Fetched<'h>>> {
+    Clip::of(host, instance, name).map_or(Ok(None), |clip| clip.image(time))
+}
+
+/// The guides of an effect that have an image.
+fn fetch_guides<'h>(
+    effect: &Effect,
+    host: &'h Host,
+    instance: Handle,
+    time: f64,
+) -> Outcome<Vec<(GraphInput, Fetched<'h>)>> {
     let mut guides = Vec::new();
     for guide in &effect.guides {
         if let Some(name) = guide_clip(*guide)
-            && let Some(image) = fetch(name)?
+            && let Some(image) = fetch(host, instance, name, time)?
             && (*guide != GraphInput::Normal || image.channels >= 3)
         {
             guides.push((*guide, image));
         }
     }
-    let field = args.string(kOfxImageEffectPropFieldToRender, 0).and_then(|field| match field.as_c_str() {
-        f if f == kOfxImageFieldLower => Some(Field { parity: 0 }),
-        f if f == kOfxImageFieldUpper => Some(Field { parity: 1 }),
-        _ => None,
-    });
-    let identity = settings.is_identity(frame.scale);
-    let job = Job { host, instance, frame, settings, identity, source, output, mask, guides, field };
-    match faults::failure(effect).map_or_else(|| job.run(window), |error| Err(Stop::Error(error))) {
+    Ok(guides)
+}
+
+/// The status of a render, with a message on the effect when it failed.
+fn report(host: &Host, instance: Handle, done: Result<(), Stop>) -> Outcome {
+    match done {
         Ok(()) => {
-            host.untell(instance);
+            host.clear_message(instance);
             Ok(kOfxStatOK)
         }
         Err(Stop::Aborted) => Ok(kOfxStatOK),
         Err(Stop::Status(status)) => {
             if status == kOfxStatErrMemory {
-                host.tell(instance, "There is not enough memory for a picture of this size.");
+                host.show_message(instance, "There is not enough memory for a picture of this size.");
             }
             Err(status)
         }
         Err(Stop::Error(error)) => {
-            host.tell(instance, &error.to_string());
+            host.show_message(instance, &error.to_string());
             Err(match error {
                 Error::Engine(EngineError::Memory(_)) => kOfxStatErrMemory,
                 _ => kOfxStatFailed,
@@ -167,9 +193,7 @@ impl Job<'_> {
         let has = |guide| self.guides.iter().any(|(g, _)| *g == guide);
         let guides =
             Guides { normal: has(GraphInput::Normal), depth: has(GraphInput::Depth), object_id: false };
-        let premultiplied = self.source.alpha != Alpha::Unpremultiplied;
-        let prepared = Prepared::new(&self.settings, &self.frame, premultiplied, guides)?;
-        let (plan, squares) = (prepared.planned.plan(), prepared.squares);
+        let prepared = Prepared::new(&self.settings, &self.frame, !self.is_straight(), guides)?;
         let threads = FrameThreads::of(self.host);
         // Hosts need not expect the question from two threads at once.
         let instance = Mutex::new(Instance(self.instance));
@@ -177,47 +201,72 @@ impl Job<'_> {
         let control = Control { cancelled: Some(&aborted), progress: None };
         let mut executor = CpuExecutor::new();
         for band in bands(inside, prepared.band_rows(inside)) {
-            let windows = prepared.windows(band);
-            let mut images = Vec::new();
-            for port in plan.inputs() {
-                let window = windows[port.image.index()];
-                let Some(input) = GraphInput::from_id(&port.name) else { continue };
-                let given = match input {
-                    GraphInput::Color => Some(&self.source),
-                    guide => self.guides.iter().find(|(g, _)| *g == guide).map(|(_, image)| image),
-                };
-                if let Some(image) = given.filter(|_| !window.is_empty()) {
-                    let mut pixels = self.read(input, image, prepared.under(window))?;
-                    if let Some(squares) = squares {
-                        if input == GraphInput::Color && !premultiplied {
-                            multiply(&mut pixels);
-                        }
-                        pixels = squares
-                            .to_squares(pixels, window, input, threads.threads())
-                            .map_err(Error::from)?;
-                    }
-                    images.push((input, pixels));
-                }
-            }
+            let images = self.inputs(&prepared, band, threads.threads())?;
             let named: Vec<(&str, &Image)> = images.iter().map(|(i, image)| (i.id(), image)).collect();
-            let region = squares.map_or(band, |squares| squares.over(band));
-            let results =
-                executor.run(plan, &named, region, threads.threads(), control).map_err(Error::from)?;
-            let mut result = results.into_iter().next().ok_or(kOfxStatFailed)?;
+            let region = prepared.plan_window(band);
+            let results = executor
+                .run(prepared.planned.plan(), &named, region, threads.threads(), control)
+                .map_err(Error::from)?;
             drop(images);
             if band.y1 == inside.y1 {
                 // What it kept for the next band.
                 executor = CpuExecutor::new();
             }
-            if let Some(squares) = squares {
-                result = squares.to_pixels(result, band, threads.threads()).map_err(Error::from)?;
-                if !premultiplied && result.channels() == 4 {
-                    divide(&mut result);
-                }
-            }
+            let result = results.into_iter().next().ok_or(kOfxStatFailed)?;
+            let result = self.to_host(&prepared, result, band, threads.threads())?;
             self.write(self.finished(result, band)?)?;
         }
         Ok(())
+    }
+
+    /// Whether colour is not multiplied by alpha in the source and the output.
+    fn is_straight(&self) -> bool {
+        self.source.alpha == Alpha::Unpremultiplied
+    }
+
+    /// What the plan reads to compute `band`, in the plan's pixels.
+    fn inputs(
+        &self,
+        prepared: &Prepared,
+        band: Rect,
+        threads: &dyn Threads,
+    ) -> Result<Vec<(GraphInput, Image)>, Stop> {
+        let windows = prepared.windows(band);
+        let mut images = Vec::new();
+        for port in prepared.planned.plan().inputs() {
+            let window = windows[port.image.index()];
+            let Some(input) = GraphInput::from_id(&port.name) else { continue };
+            let given = match input {
+                GraphInput::Color => Some(&self.source),
+                guide => self.guides.iter().find(|(g, _)| *g == guide).map(|(_, image)| image),
+            };
+            let Some(image) = given.filter(|_| !window.is_empty()) else { continue };
+            let mut pixels = self.read(input, image, prepared.host_window(window))?;
+            if let Some(square) = prepared.square {
+                if input == GraphInput::Color && self.is_straight() {
+                    multiply(&mut pixels);
+                }
+                pixels = square.to_square(pixels, window, input, threads).map_err(Error::from)?;
+            }
+            images.push((input, pixels));
+        }
+        Ok(images)
+    }
+
+    /// The plan's result in the host's pixels of `band`.
+    fn to_host(
+        &self,
+        prepared: &Prepared,
+        result: Image,
+        band: Rect,
+        threads: &dyn Threads,
+    ) -> Result<Image, Stop> {
+        let Some(square) = prepared.square else { return Ok(result) };
+        let mut result = square.to_host(result, band, threads).map_err(Error::from)?;
+        if self.is_straight() && result.channels() == 4 {
+            divide(&mut result);
+        }
+        Ok(result)
     }
 
     /// The pixels of `window` of an input, as they enter the plan.

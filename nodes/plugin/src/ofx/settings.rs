@@ -31,7 +31,7 @@ pub struct Settings {
 const LEAST_LENGTH: f32 = 0.01;
 
 impl Settings {
-    /// The values at `time`. What the host cannot tell keeps its default.
+    /// The values at `time`. What the host does not give keeps its default.
     ///
     /// # Errors
     /// Failed, when the host has no parameters or the graph refuses a value.
@@ -46,8 +46,8 @@ impl Settings {
                 Target::LinesOutput => over = values.int(name) == Some(1),
                 Target::WorkingSpace => {
                     let index = values.int(name).and_then(|i| usize::try_from(i).ok());
-                    if let Some((label, chosen)) = index.and_then(|i| SPACES.get(i)) {
-                        (space, as_is) = (*chosen, *label == AS_IS);
+                    if let Some((label, listed)) = index.and_then(|i| SPACES.get(i)) {
+                        (space, as_is) = (*listed, *label == AS_IS);
                     }
                 }
                 Target::ProcessAlpha => process_alpha = values.bool(name).unwrap_or(process_alpha),

@@ -4,7 +4,7 @@ use super::{node, on_graph};
 use crate::abi::args;
 use crate::abi::catalogue::{self, decimal};
 use crate::abi::contract::*;
-use crate::abi::guard::{Failure, Outcome};
+use crate::abi::failure::{Failure, Outcome};
 use isophote::spec::{Param, ParamKind};
 use isophote::{Graph, NodeId, Value};
 use std::ffi::c_char;

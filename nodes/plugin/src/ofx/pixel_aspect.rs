@@ -1,4 +1,5 @@
-//! Square pixels for frames that have others: anamorphic pictures, and proxies that shrink one side more.
+//! Pixel aspect ratios: square pixels for frames that have others, such as anamorphic pictures and proxies
+//! that shrink one side more.
 //!
 //! Filters know lengths in pixels, the same in every direction. So they work on a picture of square
 //! pixels that covers the same place, as fine as the finer side of the host's, and the host gets means
@@ -7,8 +8,8 @@
 //! Both ways take a pixel for what it is, the mean over its area: what a new pixel covers of old ones is
 //! summed up. Within a pixel, its neighbours make a parabola of the same mean (the piecewise parabolic
 //! method of Colella and Woodward, 1984), no higher and no lower than they are. So nothing rings, alpha
-//! stays in 0..=1, and where a whole number of squares makes a pixel, there and back is no change at all.
-//! Which squares there are depends on the whole picture alone, never on a tile.
+//! stays in 0..=1, and where a whole number of square pixels makes one of the host's, there and back is no
+//! change at all. Which square pixels there are depends on the whole picture alone, never on a tile.
 
 use super::frame::Frame;
 use isophote::engine::cpu::Threads;
@@ -17,11 +18,11 @@ use isophote::engine::{Error, Image, Rect};
 use isophote::graph::GraphInput;
 use std::sync::{Mutex, PoisonError};
 
-/// Squares per pixel along one axis, at most: beyond that the finer axis loses detail instead.
+/// Square pixels in one of the host's along one axis, at most: beyond that the finer axis loses detail instead.
 const MOST: f64 = 8.0;
 /// What is less of a pixel is rounding.
 const ROUNDING: f64 = 1e-6;
-/// A square that lies outside the picture for all but this share is left out.
+/// A pixel that lies outside the picture for all but this share is left out.
 const SLIVER: f64 = 0.01;
 /// Surfaces are continuous where depths differ by less than this factor.
 const SAME_SURFACE: f32 = 1.1;
@@ -99,21 +100,21 @@ impl Axis {
 
 /// The square pixels of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Squares {
-    /// From the host's pixels to squares, in x and y.
+pub struct SquarePixels {
+    /// From the host's pixels to square ones, in x and y.
     axes: [Axis; 2],
-    /// Squares per canonical unit.
+    /// Square pixels per canonical unit.
     pub scale: f32,
 }
 
-impl Squares {
-    /// The squares of a frame, as fine as its finer side; `None` where its pixels are square.
+impl SquarePixels {
+    /// Those of a frame, as fine as its finer side; `None` where its own pixels are square.
     pub fn of(frame: &Frame) -> Option<Self> {
         let [x, y] = frame.ratio;
         (!frame.is_square()).then(|| Self::new(frame, x.max(y).min(MOST * x.min(y))))
     }
 
-    /// As many squares as the frame has pixels: less detail on its finer side, no more memory.
+    /// As many as the frame has pixels: less detail on its finer side, no more memory.
     pub fn as_many(frame: &Frame) -> Self {
         Self::new(frame, (frame.ratio[0] * frame.ratio[1]).sqrt())
     }
@@ -126,26 +127,26 @@ impl Squares {
         Self { axes: [axis(0), axis(1)], scale: density.clamp(1.0 / 1024.0, 64.0) as f32 }
     }
 
-    /// Size of the picture in squares.
+    /// Size of the picture in square pixels.
     pub fn size(&self) -> [u32; 2] {
         self.axes.map(|axis| axis.to as u32)
     }
 
-    /// The squares that pixels of the host's are made from.
-    pub fn over(&self, pixels: Rect) -> Rect {
-        needed(self.axes.map(Axis::reversed), pixels)
+    /// The square pixels that the host's in `window` are made from.
+    pub fn square_window(&self, window: Rect) -> Rect {
+        needed(self.axes.map(Axis::reversed), window)
     }
 
-    /// The host's pixels that squares are made from.
-    pub fn under(&self, squares: Rect) -> Rect {
-        needed(self.axes, squares)
+    /// The host's pixels that square ones in `window` are made from.
+    pub fn host_window(&self, window: Rect) -> Rect {
+        needed(self.axes, window)
     }
 
-    /// The squares of `window` from the pixels [`Squares::under`] them.
+    /// The square pixels of `window` from the host's of [`SquarePixels::host_window`].
     ///
     /// # Errors
     /// Memory.
-    pub fn to_squares(
+    pub fn to_square(
         self,
         pixels: Image,
         window: Rect,
@@ -155,12 +156,12 @@ impl Squares {
         resampled(self.axes, pixels, window, input == GraphInput::Depth, threads)
     }
 
-    /// The host's pixels of `window` from the squares [`Squares::over`] them.
+    /// The host's pixels of `window` from the square ones of [`SquarePixels::square_window`].
     ///
     /// # Errors
     /// Memory.
-    pub fn to_pixels(self, squares: Image, window: Rect, threads: &dyn Threads) -> Result<Image, Error> {
-        resampled(self.axes.map(Axis::reversed), squares, window, false, threads)
+    pub fn to_host(self, pixels: Image, window: Rect, threads: &dyn Threads) -> Result<Image, Error> {
+        resampled(self.axes.map(Axis::reversed), pixels, window, false, threads)
     }
 }
 
@@ -303,9 +304,9 @@ mod tests {
     use super::*;
     use isophote::engine::cpu::CallingThread;
 
-    fn squares(size: [i32; 2], ratio: [f64; 2]) -> Squares {
+    fn square(size: [i32; 2], ratio: [f64; 2]) -> SquarePixels {
         let frame = Frame { picture: [0, 0, size[0], size[1]], ratio, scale: 1.0 };
-        Squares::of(&frame).unwrap()
+        SquarePixels::of(&frame).unwrap()
     }
 
     fn picture(size: [i32; 2], value: impl Fn(i32, i32, usize) -> f32) -> Image {
@@ -325,14 +326,14 @@ mod tests {
     }
 
     #[test]
-    fn the_finer_side_counts_and_near_squares_are_squares() {
-        assert_eq!(squares([100, 60], [0.5, 1.0]).size(), [200, 60]);
-        assert_eq!(squares([100, 60], [2.0, 1.0]).size(), [100, 120]);
-        assert_eq!(squares([100, 60], [1.0 / 1.0667, 1.0]).size(), [107, 60]);
-        assert!(squares([10_000, 10], [0.01, 1.0]).size()[0] <= MAX_SIDE);
+    fn the_finer_side_counts_and_nearly_square_pixels_are_square() {
+        assert_eq!(square([100, 60], [0.5, 1.0]).size(), [200, 60]);
+        assert_eq!(square([100, 60], [2.0, 1.0]).size(), [100, 120]);
+        assert_eq!(square([100, 60], [1.0 / 1.0667, 1.0]).size(), [107, 60]);
+        assert!(square([10_000, 10], [0.01, 1.0]).size()[0] <= MAX_SIDE);
         let frame = Frame { picture: [0, 0, 100, 60], ratio: [0.5, 0.5002], scale: 0.5 };
-        assert_eq!(Squares::of(&frame), None);
-        let even = Squares::as_many(&Frame { ratio: [0.5, 1.0], ..frame }).size();
+        assert_eq!(SquarePixels::of(&frame), None);
+        let even = SquarePixels::as_many(&Frame { ratio: [0.5, 1.0], ..frame }).size();
         assert!((i64::from(even[0]) * i64::from(even[1]) - 6000).abs() < 200, "{even:?}");
     }
 
@@ -343,12 +344,12 @@ mod tests {
         for (ratio, noisy, smooth) in
             [([0.5, 1.0], 1e-6, 1e-6), ([3.0, 1.0], 1e-6, 1e-6), ([1.0 / 1.0667, 1.0], 0.6, 0.005)]
         {
-            let squares = squares(size, ratio);
+            let square = square(size, ratio);
             let back = |image: &Image| {
-                let window = Rect::of_size(squares.size()[0], squares.size()[1]);
+                let window = Rect::of_size(square.size()[0], square.size()[1]);
                 let there =
-                    squares.to_squares(image.clone(), window, GraphInput::Color, &CallingThread).unwrap();
-                squares.to_pixels(there, whole, &CallingThread).unwrap()
+                    square.to_square(image.clone(), window, GraphInput::Color, &CallingThread).unwrap();
+                square.to_host(there, whole, &CallingThread).unwrap()
             };
             let noise = picture(size, noise);
             assert!(worst(&back(&noise), &noise) <= noisy, "{ratio:?}: {}", worst(&back(&noise), &noise));
@@ -367,20 +368,20 @@ mod tests {
         let size = [37, 29];
         let image = picture(size, |x, y, c| if (x / 5 + y / 3) % 2 == 0 { noise(x, y, c) } else { 60.0 });
         for ratio in [[0.5, 1.0], [1.0, 0.7], [1.0 / 1.0667, 1.0], [1.3, 0.9]] {
-            let squares = squares(size, ratio);
-            let [width, height] = squares.size();
+            let square = square(size, ratio);
+            let [width, height] = square.size();
             let all = Rect::of_size(width, height);
             let make = |window: Rect| {
-                let under = image.crop(squares.under(window)).unwrap();
-                squares.to_squares(under, window, GraphInput::Color, &CallingThread).unwrap()
+                let under = image.crop(square.host_window(window)).unwrap();
+                square.to_square(under, window, GraphInput::Color, &CallingThread).unwrap()
             };
             let full = make(all);
             assert!(full.data().iter().all(|v| (-1e-5..=60.0001).contains(v)));
             let part = Rect { x0: 9, y0: 4, x1: 20, y1: 23 };
             assert!(make(part) == full.crop(part).unwrap(), "{ratio:?}");
             let back = |window: Rect| {
-                let over = full.crop(squares.over(window)).unwrap();
-                squares.to_pixels(over, window, &CallingThread).unwrap()
+                let over = full.crop(square.square_window(window)).unwrap();
+                square.to_host(over, window, &CallingThread).unwrap()
             };
             let part = Rect { x0: 3, y0: 11, x1: 36, y1: 12 };
             assert!(back(part) == back(Rect::of_size(37, 29)).crop(part).unwrap(), "{ratio:?}");
@@ -389,11 +390,11 @@ mod tests {
 
     #[test]
     fn depths_are_those_of_surfaces() {
-        let squares = squares([30, 4], [1.0 / 1.0667, 1.0]);
+        let square = square([30, 4], [1.0 / 1.0667, 1.0]);
         let depth = |x: i32| if x < 15 { 5.0 + 0.02 * x as f32 } else { f32::INFINITY };
         let image = Image::from_vec(30, 4, 1, (0..120).map(|i| depth(i % 30)).collect()).unwrap();
-        let window = Rect::of_size(squares.size()[0], 4);
-        let made = squares.to_squares(image, window, GraphInput::Depth, &CallingThread).unwrap();
+        let window = Rect::of_size(square.size()[0], 4);
+        let made = square.to_square(image, window, GraphInput::Depth, &CallingThread).unwrap();
         for (x, v) in made.row(2).iter().enumerate() {
             let place = (x as f32 + 0.5) / 1.0667 - 0.5;
             let (low, high) = (depth(place.floor().max(0.0) as i32), depth(place.ceil().min(29.0) as i32));

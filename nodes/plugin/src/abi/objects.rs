@@ -1,0 +1,104 @@
+//! The objects that hosts hold handles of, but for plans: graphs and devices.
+
+use super::failure::Outcome;
+use super::guard::lock;
+use super::handles::{Object, Slots};
+use super::warm::Warm;
+use isophote::engine::gpu::Device;
+use isophote::{Graph, Request};
+use std::sync::{Arc, Mutex, MutexGuard};
+
+/// A graph of a host's.
+#[derive(Debug)]
+pub struct GraphObject {
+    graph: Mutex<Graph>,
+    message: Mutex<String>,
+    /// What the last call of `process` left for the next; taken out while one runs.
+    warm: Mutex<Option<Warm>>,
+}
+
+impl Object for GraphObject {
+    fn slots() -> &'static Slots<Self> {
+        static SLOTS: Slots<GraphObject> = Slots::new(1, "graph");
+        &SLOTS
+    }
+
+    fn message(&self) -> &Mutex<String> {
+        &self.message
+    }
+}
+
+impl GraphObject {
+    /// An object that holds `graph`.
+    pub fn new(graph: Graph) -> Self {
+        Self { graph: Mutex::new(graph), message: Mutex::default(), warm: Mutex::default() }
+    }
+
+    /// The graph itself, locked.
+    pub fn lock(&self) -> MutexGuard<'_, Graph> {
+        lock(&self.graph)
+    }
+
+    /// The graph as it is now, so that no lock is held while it is used.
+    pub fn snapshot(&self) -> Graph {
+        self.lock().clone()
+    }
+
+    /// What an earlier call left, for `request` of the graph as it is now. Give it back with
+    /// [`GraphObject::keep`].
+    ///
+    /// # Errors
+    /// What planning fails with.
+    pub fn warm(&self, request: &Request) -> Outcome<Warm> {
+        let mut warm = lock(&self.warm).take().unwrap_or_default();
+        warm.plan_for(&self.snapshot(), request)?;
+        Ok(warm)
+    }
+
+    /// Keeps what a call leaves for the next.
+    pub fn keep(&self, warm: Warm) {
+        *lock(&self.warm) = Some(warm);
+    }
+}
+
+/// A device of a host's.
+#[derive(Debug)]
+pub struct DeviceObject {
+    /// The engine's device.
+    pub device: Arc<Device>,
+    message: Mutex<String>,
+}
+
+impl Object for DeviceObject {
+    fn slots() -> &'static Slots<Self> {
+        static SLOTS: Slots<DeviceObject> = Slots::new(3, "device");
+        &SLOTS
+    }
+
+    fn message(&self) -> &Mutex<String> {
+        &self.message
+    }
+}
+
+impl DeviceObject {
+    /// An object that holds `device`.
+    pub fn new(device: Arc<Device>) -> Self {
+        Self { device, message: Mutex::default() }
+    }
+}
+
+/// Gives back the memory that graphs keep for their next call.
+pub fn forget_memory() {
+    for graph in GraphObject::slots().all() {
+        let warm = lock(&graph.warm).take();
+        drop(warm);
+    }
+}
+
+/// Gives back what graphs keep on a device that is about to be destroyed.
+pub fn forget_device(device: &DeviceObject) {
+    for graph in GraphObject::slots().all() {
+        let executor = lock(&graph.warm).as_mut().and_then(|warm| warm.take_executor(&device.device));
+        drop(executor);
+    }
+}

@@ -1,0 +1,80 @@
+//! What a host asks for: the picture, its spaces, and the region of it.
+
+use super::args;
+use super::contract::*;
+use super::failure::{Failure, Outcome};
+use super::guard;
+use isophote::engine::Rect;
+use isophote::request::Guides;
+use isophote::{ColourSpace, Request};
+
+/// The library's request from the host's.
+///
+/// # Errors
+/// Invalid argument for numbers that are not listed.
+pub fn request(host: &IsophoteRequest) -> Outcome<Request> {
+    let space = match host.space {
+        ISOPHOTE_SPACE_SRGB => ColourSpace::Srgb,
+        ISOPHOTE_SPACE_LINEAR => ColourSpace::Linear,
+        ISOPHOTE_SPACE_ACESCG => ColourSpace::AcesCg,
+        other => return Err(Failure::argument(format!("{other} is no colour space"))),
+    };
+    let premultiplied = match host.alpha {
+        ISOPHOTE_ALPHA_PREMULTIPLIED => true,
+        ISOPHOTE_ALPHA_STRAIGHT => false,
+        other => return Err(Failure::argument(format!("{other} is no relation of colour to alpha"))),
+    };
+    let bit = |bit: u32| host.guides & bit != 0;
+    let guides = Guides {
+        normal: bit(ISOPHOTE_GUIDE_NORMAL),
+        depth: bit(ISOPHOTE_GUIDE_DEPTH),
+        object_id: bit(ISOPHOTE_GUIDE_OBJECT_ID),
+    };
+    if host.guides & !(ISOPHOTE_GUIDE_NORMAL | ISOPHOTE_GUIDE_DEPTH | ISOPHOTE_GUIDE_OBJECT_ID) != 0 {
+        return Err(Failure::argument(format!("{:#x} are no guides", host.guides)));
+    }
+    Ok(Request { width: host.width, height: host.height, scale: host.scale, space, premultiplied, guides })
+}
+
+/// The host's region, or the whole picture.
+///
+/// # Errors
+/// Geometry when it is empty or not inside the picture.
+///
+/// # Safety
+/// `region` is null or points to a rectangle.
+pub unsafe fn region(region: *const IsophoteRect, request: &Request) -> Outcome<Rect> {
+    isophote::engine::image::check_size(request.width, request.height)?;
+    let whole = Rect::of_size(request.width, request.height);
+    if region.is_null() {
+        return Ok(whole);
+    }
+    // SAFETY: as the caller promised.
+    let host = unsafe { args::get(region, "the region")? };
+    // Compared before anything is subtracted, so that no width overflows.
+    let is_inside = 0 <= host.x0 && host.x0 < host.x1 && host.x1 <= whole.x1;
+    if !(is_inside && 0 <= host.y0 && host.y0 < host.y1 && host.y1 <= whole.y1) {
+        return Err(Failure::geometry(format!(
+            "the region x {}..{}, y {}..{} is not inside the picture of {}x{}",
+            host.x0, host.x1, host.y0, host.y1, whole.x1, whole.y1
+        )));
+    }
+    Ok(Rect { x0: host.x0, y0: host.y0, x1: host.x1, y1: host.y1 })
+}
+
+pub(super) unsafe extern "C" fn init(
+    width: u32,
+    height: u32,
+    request: *mut IsophoteRequest,
+) -> IsophoteStatus {
+    let value = IsophoteRequest {
+        width,
+        height,
+        scale: 1.0,
+        space: ISOPHOTE_SPACE_SRGB,
+        alpha: ISOPHOTE_ALPHA_PREMULTIPLIED,
+        guides: 0,
+    };
+    // SAFETY: the host promised that the place may be written.
+    guard::call(|| unsafe { args::put(request, value, "the place for the request") }, |_| {})
+}

@@ -1,0 +1,30 @@
+//! Panics and failures on demand, so that tests can see what becomes of one. Not in the library that is
+//! shipped.
+
+use super::effects::Effect;
+use isophote::Error;
+use std::ffi::CStr;
+
+/// `<effect's identifier>:<action>` in this variable is where to panic.
+#[cfg(debug_assertions)]
+const VARIABLE: &str = "ISOPHOTE_OFX_PANIC";
+
+pub fn at(effect: &Effect, action: &CStr) {
+    #[cfg(debug_assertions)]
+    if let Ok(wanted) = std::env::var(VARIABLE) {
+        let here = format!("{}:{}", effect.identifier.to_string_lossy(), action.to_string_lossy());
+        assert!(wanted != here, "asked for by {VARIABLE}");
+    }
+    #[cfg(not(debug_assertions))]
+    let _ = (effect, action);
+}
+
+/// What a render of the effect whose identifier is in `ISOPHOTE_OFX_FAILURE` fails with.
+pub fn failure(effect: &Effect) -> Option<Error> {
+    #[cfg(debug_assertions)]
+    if std::env::var("ISOPHOTE_OFX_FAILURE").is_ok_and(|id| id.as_bytes() == effect.identifier.to_bytes()) {
+        return Some(isophote::engine::Error::Memory("asked for".to_owned()).into());
+    }
+    let _ = effect;
+    None
+}
