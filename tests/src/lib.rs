@@ -7,6 +7,7 @@
 pub mod cases;
 pub mod compare;
 pub mod device;
+pub mod imports;
 pub mod library;
 pub mod ofx;
 pub mod pictures;

@@ -1,0 +1,67 @@
+//! Files, what each imports, and the circles.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// What files import: from the importing file to the other, and the line and the words of each import.
+#[derive(Debug, Default)]
+pub struct Imports(BTreeMap<PathBuf, BTreeMap<PathBuf, BTreeSet<(usize, String)>>>);
+
+impl Imports {
+    /// Takes down that `from` imports `path` from `to`; a file's own modules are none.
+    pub fn add(&mut self, from: &Path, to: &Path, line: usize, path: &str) {
+        if from != to {
+            let targets = self.0.entry(from.to_owned()).or_default();
+            targets.entry(to.to_owned()).or_default().insert((line, path.to_owned()));
+        }
+    }
+
+    fn targets(&self, file: &Path) -> impl Iterator<Item = &Path> {
+        self.0.get(file).into_iter().flat_map(|targets| targets.keys().map(PathBuf::as_path))
+    }
+
+    /// All files that can be reached from `file` by imports.
+    fn reached<'s>(&'s self, file: &'s Path) -> BTreeSet<&'s Path> {
+        let mut found = BTreeSet::new();
+        let mut open = vec![file];
+        while let Some(next) = open.pop() {
+            open.extend(self.targets(next).filter(|target| found.insert(*target)));
+        }
+        found
+    }
+
+    /// A report for each group of files of which every one reaches every other.
+    pub fn circles(&self, root: &Path) -> Vec<String> {
+        let reached: BTreeMap<&Path, BTreeSet<&Path>> =
+            self.0.keys().map(|file| (file.as_path(), self.reached(file))).collect();
+        let mut seen: BTreeSet<&Path> = BTreeSet::new();
+        let mut reports = Vec::new();
+        for (file, targets) in &reached {
+            if !targets.contains(file) || seen.contains(file) {
+                continue;
+            }
+            let others = targets.iter().filter(|t| reached.get(*t).is_some_and(|back| back.contains(file)));
+            let members: BTreeSet<&Path> = others.copied().collect();
+            seen.extend(&members);
+            reports.push(self.report(root, &members));
+        }
+        reports
+    }
+
+    fn report(&self, root: &Path, members: &BTreeSet<&Path>) -> String {
+        let short = |path: &Path| path.strip_prefix(root).unwrap_or(path).display().to_string();
+        let mut text = members.iter().map(|file| short(file)).collect::<Vec<_>>().join(", ");
+        for from in members {
+            for (to, uses) in self.0.get(*from).into_iter().flatten() {
+                if members.contains(to.as_path()) {
+                    let uses: Vec<_> =
+                        uses.iter().map(|(line, path)| format!("{path} in line {line}")).collect();
+                    let _ =
+                        write!(text, "\n  {} imports from {}: {}", short(from), short(to), uses.join(", "));
+                }
+            }
+        }
+        text
+    }
+}

@@ -1,0 +1,94 @@
+//! No two files import each other, directly or around a circle.
+
+use isophote_tests::imports::circles;
+use std::path::Path;
+
+/// Circles that are still there, by their first file.
+const KNOWN: &[&str] = &[
+    "host-example/src/apply/convert.rs",
+    "host-example/src/apply/exr/blocks.rs",
+    "host-example/src/bench/compare.rs",
+    "host-example/src/bench/cpu.rs",
+    "host-example/src/loader/catalogue.rs",
+    "host-example/src/render/shadow.rs",
+    "host-example/src/scene/camera.rs",
+    "nodes/library/src/graph.rs",
+    "nodes/library/src/spec.rs",
+    "tests/src/ofx/effect.rs",
+    "xtask/src/scene/textures/masonry.rs",
+];
+
+#[test]
+fn no_two_files_import_each_other() {
+    let circles = circles(&Path::new(env!("CARGO_MANIFEST_DIR")).join(".."));
+    let new: Vec<&String> = circles.iter().filter(|c| !KNOWN.iter().any(|k| c.starts_with(k))).collect();
+    assert!(
+        new.is_empty(),
+        "files import each other:\n{}",
+        new.iter().map(|c| format!("{c}\n")).collect::<String>()
+    );
+}
+
+/// Circles of a package with these files.
+fn circles_of(files: &[(&str, &str)]) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("Cargo.toml"), "[package]\nname = \"made-up\"\n").unwrap();
+    for (path, text) in files {
+        let path = folder.path().join("src").join(path);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+    circles(folder.path())
+}
+
+#[test]
+fn a_circle_is_found_with_its_lines() {
+    let found = circles_of(&[
+        ("lib.rs", "mod a;\nmod b;\nmod c;\nmod d;\n"),
+        ("a.rs", "//! use crate::d::D;\nuse crate::{\n    b::{B, other::X as Y},\n};\n"),
+        ("b.rs", "pub struct B;\npub mod other { pub struct X; }\nfn f() { super::c::g::<u8>() }\n"),
+        ("c.rs", "use crate::a;\npub fn g() { a::h() }\n"),
+        ("d.rs", "use super::{a, b};\n"),
+    ]);
+    assert_eq!(
+        found,
+        ["src/a.rs, src/b.rs, src/c.rs\n  \
+          src/a.rs imports from src/b.rs: crate::b::B in line 3, crate::b::other::X in line 3\n  \
+          src/b.rs imports from src/c.rs: super::c::g in line 3\n  \
+          src/c.rs imports from src/a.rs: crate::a in line 1, a::h in line 2"]
+    );
+}
+
+#[test]
+fn a_module_and_its_child_can_make_a_circle() {
+    let child = ("a/child.rs", "use super::A;\npub fn f() {}\n");
+    let lib = ("lib.rs", "mod a;");
+    assert!(circles_of(&[lib, ("a.rs", "mod child;\npub struct A;"), child]).is_empty());
+    for parent in [
+        "pub mod child;\npub use child::f;",
+        "mod child { }\nfn g() { child::f() }",
+        "mod child;\nfn g() { self::child::f() }",
+    ] {
+        let expected = usize::from(!parent.contains("{ }"));
+        assert_eq!(circles_of(&[lib, ("a.rs", parent), child]).len(), expected, "{parent}");
+    }
+    // As a path that an attribute gives, from a file that no module declares in plain words.
+    let declared = (
+        "a/mod.rs",
+        "generated!();\n#[path = \"odd/place.rs\"]\npub(in crate::a) mod child;\nuse child::f;\n",
+    );
+    assert_eq!(circles_of(&[("lib.rs", ""), declared, ("a/odd/place.rs", child.1)]).len(), 1);
+}
+
+#[test]
+fn tests_comments_and_names_of_other_things_are_no_imports() {
+    let b = "use crate::a::A;\npub fn a() {}\n";
+    for a in [
+        "pub struct A;\n// use crate::b::a;\n/* crate::b::a(); */\nconst S: &str = \"crate::b::a\";",
+        "pub struct A;\n#[cfg(test)]\nmod tests { use super::*; use crate::b; fn f() { b::a() } }",
+        "pub struct A;\nfn f(b: A) { std::b::c(b.crate_b); other::b::a() }",
+        "pub(in crate::b) struct A;",
+    ] {
+        assert!(circles_of(&[("lib.rs", "mod a;\nmod b;"), ("a.rs", a), ("b.rs", b)]).is_empty(), "{a}");
+    }
+}
