@@ -14,6 +14,7 @@ use crate::scene::Scene;
 use crate::scene::camera::{self, Direction, Orbit, View};
 use crate::scene::pose::Pose;
 use crate::stylize::Stylizer;
+use crate::stylize::plan_runner::Kernels;
 use crate::stylize::style::Style;
 
 /// What is rendered of a scene.
@@ -60,8 +61,8 @@ impl Shot {
         gpu.check()?;
         let mut stylizer = None;
         if let Some((library, style)) = style {
-            let device = isophote_engine::gpu::Device::wrap(gpu.device.clone(), gpu.queue.clone());
-            let stylizer = stylizer.insert(Stylizer::new(&device, library, style, options.size)?);
+            let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
+            let stylizer = stylizer.insert(Stylizer::new(&kernels, library, style, options.size)?);
             stylizer.bind(renderer.targets())?;
         }
         let pose = Pose::at_rest(&scene);

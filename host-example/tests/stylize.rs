@@ -3,8 +3,8 @@
 mod support;
 
 use std::path::Path;
+use std::sync::Arc;
 
-use isophote_engine::gpu::Device;
 use isophote_host::loader::contract::{ISOPHOTE_SPACE_LINEAR, IsophoteRequest};
 use isophote_host::loader::{Control, Input, Library};
 use isophote_host::output::Picture;
@@ -18,6 +18,7 @@ use isophote_host::scene::Scene;
 use isophote_host::scene::camera::{Direction, Orbit};
 use isophote_host::scene::pose::Pose;
 use isophote_host::stylize::Stylizer;
+use isophote_host::stylize::plan_runner::{Counts, Kernels};
 use isophote_host::stylize::style::{Setting, Style};
 
 use support::{folder, isophote, listing, succeeds};
@@ -47,9 +48,9 @@ impl Stage {
         Self { gpu, scene, pose, look, orbit, renderer, library }
     }
 
-    fn stylizer(&self, device: &std::sync::Arc<Device>, name: &str) -> Stylizer {
+    fn stylizer(&self, kernels: &Arc<Kernels>, name: &str) -> Stylizer {
         let style = Style::load(&self.library, name, &[]).expect("the style is known");
-        let mut stylizer = Stylizer::new(device, &self.library, style, SIZE).expect("the style fits");
+        let mut stylizer = Stylizer::new(kernels, &self.library, style, SIZE).expect("the style fits");
         stylizer.bind(self.renderer.targets()).expect("the targets fit");
         stylizer
     }
@@ -77,26 +78,24 @@ fn set(stylizer: &mut Stylizer, text: &str) -> bool {
 fn a_warm_frame_makes_nothing_and_is_one_submission() {
     let folder = folder();
     let mut stage = Stage::new(folder.path());
-    let device = Device::wrap(stage.gpu.device.clone(), stage.gpu.queue.clone());
+    let kernels = Kernels::new(stage.gpu.device.clone(), stage.gpu.queue.clone());
     for style in ["cartoon", "blueprint"] {
-        let mut stylizer = stage.stylizer(&device, style);
+        let mut stylizer = stage.stylizer(&kernels, style);
         stage.frame(&stylizer, 0.0);
-        let before = device.counts();
+        let before = stylizer.counts();
         for frame in 1..5 {
             stylizer.update().expect("nothing is to be updated");
             stylizer.bind(stage.renderer.targets()).expect("the targets are the same");
             stage.frame(&stylizer, frame as f32 * 0.1);
         }
         // The submission is the host's own, with the scene in it; the library adds none.
-        assert_eq!(device.counts(), before, "{style}");
+        assert_eq!(stylizer.counts(), before, "{style}");
         stage.gpu.wait().expect("the device works");
         // Moving a slider writes uniforms and nothing else.
         let picture = stage.read(stylizer.output());
         let slider = "tau=0.6";
         assert!(!set(&mut stylizer, slider), "{slider} changes the passes of {style}");
-        let after = device.counts();
-        assert_eq!(after.uniform_writes, before.uniform_writes + 1);
-        assert_eq!(isophote_engine::gpu::Counts { uniform_writes: before.uniform_writes, ..after }, before);
+        assert_eq!(stylizer.counts(), Counts { uploads: before.uploads + 1, ..before });
         stage.frame(&stylizer, 0.4);
         assert_ne!(stage.read(stylizer.output()), picture, "{slider} changes nothing");
     }
@@ -106,11 +105,12 @@ fn a_warm_frame_makes_nothing_and_is_one_submission() {
 fn structural_changes_and_other_sizes_are_taken_over() {
     let folder = folder();
     let mut stage = Stage::new(folder.path());
-    let device = Device::wrap(stage.gpu.device.clone(), stage.gpu.queue.clone());
-    let mut stylizer = stage.stylizer(&device, "flow_dog");
-    let passes = stylizer.program().dispatches.len();
+    let kernels = Kernels::new(stage.gpu.device.clone(), stage.gpu.queue.clone());
+    let mut stylizer = stage.stylizer(&kernels, "flow_dog");
+    let passes = |stylizer: &Stylizer| stylizer.plan().passes().expect("the plan has passes").len();
+    let before = passes(&stylizer);
     assert!(set(&mut stylizer, "iterations=3"), "iterations are passes");
-    assert!(stylizer.program().dispatches.len() > passes);
+    assert!(passes(&stylizer) > before);
     stylizer.bind(stage.renderer.targets()).expect("the targets fit");
     stage.frame(&stylizer, 0.0);
     stage.renderer.resize((50, 70)).expect("the size fits");
@@ -126,9 +126,9 @@ fn structural_changes_and_other_sizes_are_taken_over() {
 fn the_hosts_device_gives_what_the_librarys_processor_gives() {
     let folder = folder();
     let mut stage = Stage::new(folder.path());
-    let device = Device::wrap(stage.gpu.device.clone(), stage.gpu.queue.clone());
+    let kernels = Kernels::new(stage.gpu.device.clone(), stage.gpu.queue.clone());
     for name in ["cartoon", "blueprint"] {
-        let stylizer = stage.stylizer(&device, name);
+        let stylizer = stage.stylizer(&kernels, name);
         stage.frame(&stylizer, 0.3);
         let ours = stage.read(stylizer.output());
         let Targets { color, normal, depth, object_id, .. } = stage.renderer.targets();

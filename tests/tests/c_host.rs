@@ -47,6 +47,7 @@ fn compiled(source: &str) -> Option<PathBuf> {
         .arg("-o")
         .arg(&program)
         .arg("-ldl")
+        .args((source == "vulkan.c").then_some("-lvulkan"))
         .output()
         .expect("the compiler can be started");
     assert!(output.status.success(), "{source}:\n{}", String::from_utf8_lossy(&output.stderr));
@@ -141,30 +142,40 @@ fn reference(planned: &Planned, rgb: &[u8]) -> Vec<u8> {
     out
 }
 
-/// Runs the program and compares with the Rust crate; returns what it printed.
-fn stylize(node: &str, settings: &[&str], under_valgrind: bool, width: u32, height: u32) -> Option<String> {
-    let program = compiled("stylize.c")?;
-    let tag = format!("{node}{under_valgrind}");
-    let (input, output) = (folder().join(format!("{tag}.in.ppm")), folder().join(format!("{tag}.out.ppm")));
+/// A run of one of the programs that stylize a picture.
+struct Run {
+    /// What it printed.
+    text: String,
+    /// The picture, 8-bit RGB.
+    before: Vec<u8>,
+    /// What it wrote.
+    after: Vec<u8>,
+}
+
+/// Lets a program stylize a picture of this size.
+fn run(mut program: Command, node: &str, settings: &[&str], [width, height]: [u32; 2]) -> Run {
+    let folder = TempDir::new_in(folder()).expect("the folder is writable");
+    let (input, output) = (folder.path().join("in.ppm"), folder.path().join("out.ppm"));
     let before = picture(width, height);
     std::fs::write(&input, &before).expect("the folder is writable");
-    let run = command(&program, under_valgrind)
-        .arg(library::path())
-        .args([&input, &output])
-        .arg(node)
-        .args(settings)
-        .output()
-        .expect("the program can be started");
-    let text = printed(&run, node);
-    assert!(text.contains(&format!("{width}x{height} pixels, 100 % done, 0 samples replaced")), "{text}");
+    program.arg(library::path()).args([&input, &output]).arg(node).args(settings);
+    let text = printed(&program.output().expect("the program can be started"), node);
     let after = std::fs::read(&output).expect("the program wrote a picture");
-    let (before, after) = (pixels(&before, width, height), pixels(&after, width, height));
-    let changed = before.iter().zip(after).filter(|(a, b)| a.abs_diff(**b) > 2).count();
+    let (before, after) = (pixels(&before, width, height).to_vec(), pixels(&after, width, height).to_vec());
+    let changed = before.iter().zip(&after).filter(|(a, b)| a.abs_diff(**b) > 2).count();
     // Sharpening touches the edges alone, which are few.
     assert!(changed * 40 > before.len(), "{node} hardly changed it: {changed} of {}", before.len());
     assert!(after.iter().any(|v| *v != after[0]), "{node}: the picture is blank");
-    let expected = reference(&planned(node, settings, width, height), before);
-    let worst = expected.iter().zip(after).map(|(a, b)| a.abs_diff(*b)).max();
+    Run { text, before, after }
+}
+
+/// Runs the program and compares with the Rust crate; returns what it printed.
+fn stylize(node: &str, settings: &[&str], under_valgrind: bool, width: u32, height: u32) -> Option<String> {
+    let program = compiled("stylize.c")?;
+    let Run { text, before, after } = run(command(&program, under_valgrind), node, settings, [width, height]);
+    assert!(text.contains(&format!("{width}x{height} pixels, 100 % done, 0 samples replaced")), "{text}");
+    let expected = reference(&planned(node, settings, width, height), &before);
+    let worst = expected.iter().zip(&after).map(|(a, b)| a.abs_diff(*b)).max();
     assert_eq!(worst, Some(0), "{node} is another through C");
     Some(text)
 }
@@ -185,6 +196,45 @@ fn a_c_program_lists_the_nodes_and_stylizes_under_valgrind() {
         let listed = text.split(&line).nth(1).and_then(|rest| rest.lines().next());
         let listed: Vec<&str> = listed.unwrap_or_default().split_whitespace().collect();
         assert_eq!(listed, node.params().map(|p| p.id).collect::<Vec<_>>(), "{} in\n{text}", node.id);
+    }
+}
+
+/// Whether a file of a package is there; where it must be, its absence fails.
+fn has_file(path: &str, package: &str) -> bool {
+    if Path::new(path).exists() {
+        return true;
+    }
+    assert!(std::env::var("CI").is_err(), "{package} is missing; install it");
+    eprintln!("\n*** SKIPPED: a part of the test of plans under Vulkan needs {package} ***\n");
+    false
+}
+
+#[test]
+fn a_c_program_runs_plans_with_vulkan() {
+    if !has_file("/usr/include/vulkan/vulkan.h", "libvulkan-dev") {
+        return;
+    }
+    let (Some(executes), Some(processes)) = (compiled("vulkan.c"), compiled("stylize.c")) else { return };
+    let layer = "/usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json";
+    let is_validated =
+        std::env::var_os("VK_LAYER_PATH").is_some() || has_file(layer, "vulkan-validationlayers");
+    let cases: [(&str, &[&str]); 3] =
+        [("cartoon", &[]), ("cartoon", &["posterize=4", "sigma_d=5"]), ("flow_dog", &[])];
+    for (node, settings) in cases {
+        let mut program = Command::new(&executes);
+        // Drivers that compute on the CPU forgive barriers that are missing.
+        program.env("VK_LAYER_ENABLES", "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT");
+        // A message of the validation layer fails the program.
+        let ours = run(program, node, settings, [157, 101]);
+        assert_eq!(ours.text.contains(", validated: "), is_validated, "{}", ours.text);
+        let theirs = run(Command::new(&processes), node, settings, [157, 101]);
+        // The twins agree to less than a step of 8 bits, which may fall on either side of a rounding; where
+        // lines are thresholded a few pixels may tip over.
+        let apart = |steps: u8| {
+            ours.after.iter().zip(&theirs.after).filter(|(a, b)| a.abs_diff(**b) > steps).count()
+        };
+        assert!(apart(0) * 100 <= ours.after.len(), "{node}: {} samples differ", apart(0));
+        assert!(apart(1) * 1000 <= ours.after.len(), "{node}: {} samples differ by more", apart(1));
     }
 }
 

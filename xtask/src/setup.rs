@@ -27,6 +27,17 @@ pub const C_COMPILER: Need =
 pub const CPP_COMPILER: Need =
     Need { what: "a C++ compiler", present: || program("c++"), packages: &["g++"] };
 
+/// What a C program that uses Vulkan is compiled with, and what checks each of its calls.
+pub const VULKAN_HEADERS: Need = Need {
+    what: "the headers and validation layers of Vulkan",
+    present: || {
+        !cfg!(target_os = "linux")
+            || (Path::new("/usr/include/vulkan/vulkan.h").exists()
+                && Path::new("/usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json").exists())
+    },
+    packages: &["libvulkan-dev", "vulkan-validationlayers"],
+};
+
 /// `nm`, to list exported symbols.
 pub const BINUTILS: Need = Need { what: "binutils", present: || program("nm"), packages: &["binutils"] };
 

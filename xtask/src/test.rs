@@ -1,7 +1,7 @@
 //! `cargo xtask test`: everything that must hold before a change lands.
 
 use crate::error::Result;
-use crate::setup::{self, BINUTILS, C_COMPILER, CPP_COMPILER, VALGRIND, VULKAN, XVFB};
+use crate::setup::{self, BINUTILS, C_COMPILER, CPP_COMPILER, VALGRIND, VULKAN, VULKAN_HEADERS, XVFB};
 use crate::tools::{cargo, heading};
 
 /// Options of `cargo xtask test`.
@@ -17,7 +17,7 @@ pub struct Options {
 /// # Errors
 /// The first check that fails.
 pub fn run(options: &Options) -> Result<()> {
-    setup::ensure(&[&C_COMPILER, &CPP_COMPILER, &BINUTILS, &VULKAN, &VALGRIND, &XVFB])?;
+    setup::ensure(&[&C_COMPILER, &CPP_COMPILER, &BINUTILS, &VULKAN, &VULKAN_HEADERS, &VALGRIND, &XVFB])?;
     if !options.tests_only {
         heading("formatting");
         cargo(&["fmt", "--all", "--", "--check"])?;

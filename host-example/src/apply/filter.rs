@@ -16,6 +16,7 @@ use crate::loader::contract::{
     ISOPHOTE_GUIDE_OBJECT_ID, ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR, ISOPHOTE_SPACE_SRGB,
     IsophoteRequest,
 };
+use crate::loader::plan::Texture;
 use crate::loader::{Control, Device, Input, Library};
 use crate::pixels::{Pixels, Precision};
 use crate::stylize::style::Style;
@@ -78,12 +79,8 @@ impl Filter {
                 Guide::ObjectId => ISOPHOTE_GUIDE_OBJECT_ID,
             };
         }
-        let program = self.style.graph.plan(&request).and_then(|plan| plan.program()).map_err(refused)?;
-        let bytes = |t: &isophote_engine::program::Texture| {
-            let (width, height) = (t.window.x1 - t.window.x0, t.window.y1 - t.window.y0);
-            u64::from(width.unsigned_abs()) * u64::from(height.unsigned_abs()) * u64::from(t.channels) * 4
-        };
-        Ok(program.textures.iter().map(bytes).sum())
+        let plan = self.style.graph.plan(&request).map_err(refused)?;
+        Ok(plan.textures().map_err(refused)?.iter().map(Texture::bytes).sum())
     }
 
     /// What the frame `file` needs; nothing when it will be refused, which is reported when its turn comes.

@@ -3,32 +3,33 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use isophote_engine::gpu::{Device, Executor, Prepared};
-
 use super::entry::{Entry, PassEntry};
+use super::timer::Timer;
 use super::{Subject, median};
-use crate::error::{Error, Result};
-use crate::loader::Library;
+use crate::error::Result;
+use crate::loader::plan::Pass;
+use crate::loader::{Answer, Library, Plan, Refusal};
 use crate::pixels::Pixels;
 use crate::render::gpu::Gpu;
+use crate::stylize::plan_runner::{Kernels, PlanRunner};
 use crate::stylize::style::Style;
 
 /// A device to measure on.
 pub struct Bench {
     gpu: Gpu,
-    device: Arc<Device>,
+    kernels: Arc<Kernels>,
 }
 
 impl Bench {
     /// Measures on `gpu`.
     pub fn new(gpu: Gpu) -> Self {
-        let device = Device::wrap(gpu.device.clone(), gpu.queue.clone());
-        Self { gpu, device }
+        let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
+        Self { gpu, kernels }
     }
 
     /// Name of the adapter.
     pub fn adapter(&self) -> String {
-        self.device.name().to_owned()
+        self.gpu.adapter.get_info().name
     }
 
     /// Measures one node: the whole without timestamps, which cost something, then each pass with them, where
@@ -40,76 +41,85 @@ impl Bench {
         picture: &Pixels,
         runs: u32,
     ) -> Result<Entry> {
-        let node = &subject.node;
+        let refused = |e: Refusal| e.at(&subject.node, "leave it out with --node");
         let size = (picture.width(), picture.height());
-        let style = Style::any(library, node, &subject.settings)?;
+        let style = Style::any(library, &subject.node, &subject.settings)?;
         let request = library.request(size).map_err(|e| e.at("--size", "choose another size"))?;
-        let plan = style.graph.plan(&request).map_err(|e| e.at(node, "leave it out with --node"))?;
-        let program = plan.program().map_err(|e| e.at(node, "leave it out with --node"))?;
-        let executor = Executor::new(Arc::clone(&self.device));
-        let mut prepared = executor.prepare(&program).map_err(failed)?;
-        if program.input("color").is_some() {
-            self.upload(&prepared.own_input("color").map_err(failed)?, picture);
-        }
-        prepared.own_output("output").map_err(failed)?;
+        let plan = style.graph.plan(&request).map_err(refused)?;
+        let mut runner = PlanRunner::new(&self.kernels, &plan)?;
+        runner.bind(&[("color", &self.upload(picture))])?;
         // The first run compiles, and is not counted.
-        self.once(&prepared)?;
-        let totals = (0..runs).map(|_| self.once(&prepared)).collect::<Result<Vec<f64>>>()?;
-        let mut measured = Vec::new();
-        if self.device.has_timestamps() {
-            prepared.record_times(true).map_err(failed)?;
-            for _ in 0..runs {
-                self.once(&prepared)?;
-                measured.push(prepared.times().map_err(failed)?);
+        self.once(&runner)?;
+        let totals = (0..runs).map(|_| self.once(&runner)).collect::<Result<Vec<f64>>>()?;
+        let mut passes = passes(&plan).map_err(refused)?;
+        match Timer::new(&self.gpu, passes.len()) {
+            Some(timer) => {
+                let times =
+                    (0..runs).map(|_| timer.run(&self.gpu, &runner)).collect::<Result<Vec<Vec<f64>>>>()?;
+                for (at, pass) in passes.iter_mut().enumerate() {
+                    pass.seconds = median(times.iter().filter_map(|t| t.get(at).copied()).collect());
+                }
             }
+            None => passes.clear(),
         }
-        let seconds = |at: usize| {
-            median(measured.iter().filter_map(|times| Some(times.get(at)?.time.as_secs_f64())).collect())
-        };
-        let passes = measured.first().map_or(&[][..], Vec::as_slice);
         Ok(Entry {
             node: subject.label.clone(),
             backend: "gpu",
             size,
             seconds: median(totals),
             call_seconds: None,
-            passes: passes
-                .iter()
-                .enumerate()
-                .map(|(at, pass)| PassEntry {
-                    kernel: pass.kernel.clone(),
-                    seconds: seconds(at),
-                    pixels: pass.pixels,
-                    work: None,
-                })
-                .collect(),
+            passes,
         })
     }
 
     /// From the first command recorded to the last one done, in seconds.
-    fn once(&self, prepared: &Prepared) -> Result<f64> {
+    fn once(&self, runner: &PlanRunner) -> Result<f64> {
         let started = Instant::now();
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        prepared.encode(&mut encoder).map_err(failed)?;
+        runner.encode(&mut encoder)?;
         self.gpu.queue.submit([encoder.finish()]);
         self.gpu.wait()?;
         Ok(started.elapsed().as_secs_f64())
     }
 
-    fn upload(&self, view: &wgpu::TextureView, picture: &Pixels) {
+    fn upload(&self, picture: &Pixels) -> wgpu::TextureView {
+        let texture = self.gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("picture"),
+            size: wgpu::Extent3d {
+                width: picture.width(),
+                height: picture.height(),
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
         self.gpu.queue.write_texture(
-            view.texture().as_image_copy(),
+            texture.as_image_copy(),
             picture.bytes(),
             wgpu::TexelCopyBufferLayout {
                 offset: 0,
                 bytes_per_row: Some(picture.width() * 16),
                 rows_per_image: None,
             },
-            view.texture().size(),
+            texture.size(),
         );
+        texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 }
 
-fn failed(error: isophote_engine::Error) -> Error {
-    Error::failure(error, "use a smaller size or --backend cpu")
+/// The passes of a plan, not measured yet.
+fn passes(plan: &Plan) -> Answer<Vec<PassEntry>> {
+    let textures = plan.textures()?;
+    let written = |i: &u32| textures.get(*i as usize).map(|t| u64::from(t.size[0]) * u64::from(t.size[1]));
+    let entry = |pass: Pass<'_>| PassEntry {
+        kernel: pass.kernel.to_owned(),
+        seconds: 0.0,
+        pixels: pass.outputs.first().and_then(written).unwrap_or(0),
+        work: None,
+    };
+    Ok(plan.passes()?.map(entry).collect())
 }

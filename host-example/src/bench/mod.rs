@@ -9,6 +9,7 @@ mod peers;
 pub mod report;
 pub mod sequence;
 mod throughput;
+mod timer;
 
 use crate::pixels::{Pixels, Samples};
 use crate::stylize::style::Setting;

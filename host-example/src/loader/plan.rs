@@ -1,13 +1,7 @@
 //! Plans as data: the library says what to run, the host runs it on a device of its own.
 
-use std::borrow::Cow;
 use std::cell::Cell;
-use std::collections::HashMap;
 use std::marker::PhantomData;
-use std::sync::Arc;
-
-use isophote_engine::program::{Dispatch, Grid, Program, Role, Shader, Texture};
-use isophote_engine::{Class, Rect};
 
 use super::contract::{self as c, IsophoteApi, IsophotePass, IsophotePlan, IsophoteRequest, IsophoteTexture};
 use super::{Answer, Graph, Refusal, check, text};
@@ -27,6 +21,79 @@ pub enum Change {
     Uniforms,
     /// Passes and textures are others now.
     Structure,
+}
+
+/// What a texture of a plan is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// The host binds its own texture.
+    Input,
+    /// A result.
+    Output,
+    /// Scratch memory; its contents need not survive from one run to the next.
+    Transient,
+}
+
+/// Texel format of a texture of a plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// One 32-bit float.
+    R32Float,
+    /// Two 32-bit floats.
+    Rg32Float,
+    /// Four 32-bit floats.
+    Rgba32Float,
+}
+
+/// One texture of a plan: two-dimensional, one mip level, one sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Texture<'a> {
+    /// Name of an input or output; empty for transients.
+    pub name: &'a str,
+    /// What it is for.
+    pub role: Role,
+    /// Format of its texels. An input may have any format of as many channels that is read as floats.
+    pub format: Format,
+    /// Columns and rows; at least so many.
+    pub size: [u32; 2],
+}
+
+/// One dispatch of a plan.
+#[derive(Clone, Copy, Debug)]
+pub struct Pass<'a> {
+    /// The kernel; passes of the same kernel have the same shader.
+    pub kernel: &'a str,
+    /// Bytes of the uniform at binding 0.
+    pub grid: &'a [u8],
+    /// Bytes of the uniform at binding 1; empty for kernels without parameters, which have no such binding.
+    pub params: &'a [u8],
+    /// Indices of the textures read, at bindings 2, 3, ...
+    pub inputs: &'a [u32],
+    /// Indices of the textures written, at the bindings after those.
+    pub outputs: &'a [u32],
+    /// Workgroups to dispatch in x, y and z.
+    pub workgroups: [u32; 3],
+}
+
+/// A shader in WGSL.
+#[derive(Clone, Copy, Debug)]
+pub struct Wgsl {
+    /// The whole module.
+    pub source: &'static str,
+    /// Name of its entry point.
+    pub entry_point: &'static str,
+}
+
+impl Texture<'_> {
+    /// Bytes of all its texels.
+    pub fn bytes(&self) -> u64 {
+        let texel = match self.format {
+            Format::R32Float => 4,
+            Format::Rg32Float => 8,
+            Format::Rgba32Float => 16,
+        };
+        u64::from(self.size[0]) * u64::from(self.size[1]) * texel
+    }
 }
 
 impl Graph {
@@ -58,106 +125,50 @@ impl Plan {
         Ok(if change == c::ISOPHOTE_CHANGE_UNIFORMS { Change::Uniforms } else { Change::Structure })
     }
 
-    /// The plan as a program for the executor: shaders in WGSL, textures, bindings, uniform bytes, dispatches.
+    /// All textures; passes name them by their index.
     ///
     /// # Errors
-    /// [`Refusal`] when the library fails or its plan is not of the form that the contract names.
-    pub fn program(&self) -> Answer<Program> {
-        let mut program = Program::default();
-        for texture in self.textures()? {
-            // SAFETY: the texture and its name are the plan's, which is borrowed.
-            program.textures.push(unsafe { engine_texture(texture) }?);
-        }
-        let mut shaders: HashMap<&str, Arc<Shader>> = HashMap::new();
-        for (index, pass) in (0..).zip(self.passes()?) {
-            // SAFETY: the pass and what it points to are the plan's, which is borrowed.
-            let (kernel, inputs, outputs, params) = unsafe {
-                (
-                    text::kept(pass.kernel),
-                    text::slice(pass.inputs, pass.input_count),
-                    text::slice(pass.outputs, pass.output_count),
-                    text::slice(pass.params.cast::<u8>(), pass.params_size),
-                )
-            };
-            let channels = |i: &u32| program.textures.get(*i as usize).map(|t| t.channels);
-            let channels: Option<Vec<u32>> = inputs.iter().chain(outputs).map(channels).collect();
-            let Some(channels) = channels else {
-                return Err(mistaken(format!("pass {index} ({kernel}) names a texture that does not exist")));
-            };
-            let shader = match shaders.get(kernel) {
-                Some(shader) => Arc::clone(shader),
-                None => {
-                    let shader = Arc::new(Shader {
-                        name: Cow::Owned(kernel.to_owned()),
-                        source: Cow::Borrowed(self.wgsl(index)?),
-                        inputs: inputs.len(),
-                        outputs: Cow::Owned(channels[inputs.len()..].to_vec()),
-                        params_size: params.len(),
-                    });
-                    shaders.insert(kernel, Arc::clone(&shader));
-                    shader
-                }
-            };
-            program.dispatches.push(Dispatch {
-                shader,
-                grid: self.grid(pass)?,
-                params: params.to_vec(),
-                inputs: inputs.to_vec(),
-                outputs: outputs.to_vec(),
-                workgroups: pass.workgroups,
-            });
-        }
-        Ok(program)
-    }
-
-    /// Takes the uniform bytes over into a program that was made from this plan and has its structure still.
-    ///
-    /// # Errors
-    /// As [`Plan::program`].
-    pub fn repack(&self, program: &mut Program) -> Answer<()> {
-        for (dispatch, pass) in program.dispatches.iter_mut().zip(self.passes()?) {
-            dispatch.grid = self.grid(pass)?;
-            // SAFETY: the bytes are the plan's, which is borrowed.
-            let params = unsafe { text::slice(pass.params.cast::<u8>(), pass.params_size) };
-            dispatch.params.clear();
-            dispatch.params.extend_from_slice(params);
-        }
-        Ok(())
-    }
-
-    fn textures(&self) -> Answer<&[IsophoteTexture]> {
+    /// [`Refusal`] when the library fails or a texture is not of a form that the contract names.
+    pub fn textures(&self) -> Answer<Vec<Texture<'_>>> {
         let (mut textures, mut count) = (std::ptr::null(), 0);
         // SAFETY: the handle is this object's; the other two may be written during the call.
         let status = unsafe { (self.api.plan_textures)(self.handle, &raw mut textures, &raw mut count) };
         self.check(status)?;
         // SAFETY: the array is the plan's until it is updated or destroyed, which needs it not to be borrowed.
-        Ok(unsafe { text::slice(textures, count) })
+        let textures = unsafe { text::slice(textures, count) };
+        // SAFETY: so are the names that the array points to.
+        textures.iter().map(|t| unsafe { texture(t) }).collect()
     }
 
-    fn passes(&self) -> Answer<&[IsophotePass]> {
+    /// All passes in the order of execution. Nothing is allocated.
+    ///
+    /// # Errors
+    /// [`Refusal`] when the library fails.
+    pub fn passes(&self) -> Answer<impl ExactSizeIterator<Item = Pass<'_>>> {
         let (mut passes, mut count) = (std::ptr::null(), 0);
         // SAFETY: the handle is this object's; the other two may be written during the call.
         let status = unsafe { (self.api.plan_passes)(self.handle, &raw mut passes, &raw mut count) };
         self.check(status)?;
         // SAFETY: the array is the plan's until it is updated or destroyed, which needs it not to be borrowed.
-        Ok(unsafe { text::slice(passes, count) })
+        let passes = unsafe { text::slice(passes, count) };
+        // SAFETY: so is everything that the array points to.
+        Ok(passes.iter().map(|p| unsafe { pass(p) }))
     }
 
-    fn grid(&self, pass: &IsophotePass) -> Answer<Grid> {
-        // SAFETY: the bytes are the plan's, which is borrowed.
-        let bytes = unsafe { text::slice(pass.grid.cast::<u8>(), pass.grid_size) };
-        bytemuck::try_pod_read_unaligned(bytes)
-            .map_err(|_| mistaken(format!("a grid has {} bytes, not {}", bytes.len(), size_of::<Grid>())))
-    }
-
-    fn wgsl(&self, pass: u32) -> Answer<&'static str> {
+    /// The shader of a pass.
+    ///
+    /// # Errors
+    /// [`Refusal`] when there is no such pass or the library fails.
+    pub fn wgsl(&self, pass: u32) -> Answer<Wgsl> {
         let mut shader = std::ptr::null();
         // SAFETY: the handle is this object's; `shader` may be written during the call.
         let status =
             unsafe { (self.api.plan_shader)(self.handle, pass, c::ISOPHOTE_LANGUAGE_WGSL, &raw mut shader) };
         self.check(status)?;
-        // SAFETY: success means that `shader` and its text live until the process ends.
-        Ok(unsafe { text::constant((*shader).code.cast()) })
+        // SAFETY: success means that `shader` and its texts live until the process ends.
+        let (source, entry_point) =
+            unsafe { (text::constant((*shader).code.cast()), text::constant((*shader).entry_point)) };
+        Ok(Wgsl { source, entry_point })
     }
 
     fn check(&self, status: c::IsophoteStatus) -> Answer<()> {
@@ -177,29 +188,44 @@ impl Drop for Plan {
 }
 
 /// # Safety
-/// The texture's name is null or text that ends with a zero.
-unsafe fn engine_texture(texture: &IsophoteTexture) -> Answer<Texture> {
-    // SAFETY: as the caller promised.
-    let name = unsafe { text::kept(texture.name) }.to_owned();
-    let window = texture.window;
+/// The texture's name is null or text that ends with a zero and stays for `'a`.
+unsafe fn texture<'a>(texture: &IsophoteTexture) -> Answer<Texture<'a>> {
     Ok(Texture {
+        // SAFETY: as the caller promised.
+        name: unsafe { text::kept(texture.name) },
         role: match texture.role {
-            c::ISOPHOTE_ROLE_INPUT => Role::Input(name),
-            c::ISOPHOTE_ROLE_OUTPUT => Role::Output(name),
+            c::ISOPHOTE_ROLE_INPUT => Role::Input,
+            c::ISOPHOTE_ROLE_OUTPUT => Role::Output,
             c::ISOPHOTE_ROLE_TRANSIENT => Role::Transient,
-            other => return Err(mistaken(format!("a texture has the unknown role {other}"))),
+            other => return Err(malformed(format!("a texture has the unknown role {other}"))),
         },
-        channels: match texture.format {
-            c::ISOPHOTE_FORMAT_R32F => 1,
-            c::ISOPHOTE_FORMAT_RG32F => 2,
-            c::ISOPHOTE_FORMAT_RGBA32F => 4,
-            other => return Err(mistaken(format!("a texture has the unknown format {other}"))),
+        format: match texture.format {
+            c::ISOPHOTE_FORMAT_R32F => Format::R32Float,
+            c::ISOPHOTE_FORMAT_RG32F => Format::Rg32Float,
+            c::ISOPHOTE_FORMAT_RGBA32F => Format::Rgba32Float,
+            other => return Err(malformed(format!("a texture has the unknown format {other}"))),
         },
-        class: if texture.field != 0 { Class::Field } else { Class::Colour },
-        window: Rect { x0: window.x0, y0: window.y0, x1: window.x1, y1: window.y1 },
+        size: [texture.width, texture.height],
     })
 }
 
-fn mistaken(message: String) -> Refusal {
+/// # Safety
+/// What the pass points to has the sizes that it says and stays for `'a`.
+unsafe fn pass<'a>(pass: &IsophotePass) -> Pass<'a> {
+    // SAFETY: as the caller promised.
+    unsafe {
+        Pass {
+            kernel: text::kept(pass.kernel),
+            grid: text::slice(pass.grid.cast(), pass.grid_size),
+            params: text::slice(pass.params.cast(), pass.params_size),
+            inputs: text::slice(pass.inputs, pass.input_count),
+            outputs: text::slice(pass.outputs, pass.output_count),
+            workgroups: pass.workgroups,
+        }
+    }
+}
+
+/// A plan that the library should not have given.
+fn malformed(message: String) -> Refusal {
     Refusal { status: c::ISOPHOTE_INTERNAL, message: format!("the library's plan cannot be run: {message}") }
 }

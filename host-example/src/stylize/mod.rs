@@ -4,16 +4,15 @@
 //! after the scene's, and read the renderer's textures directly. Once warm, a frame creates no GPU object and
 //! is one submission.
 
+pub mod plan_runner;
 pub mod preset;
 pub mod style;
 
 use std::sync::Arc;
 
-use isophote_engine::gpu::{self, Executor, Prepared};
-use isophote_engine::program::Program;
-
+use self::plan_runner::{Counts, Kernels, PlanRunner};
 use self::style::{Setting, Style};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::loader::catalogue::Kind;
 use crate::loader::contract::{
     ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID, ISOPHOTE_SPACE_LINEAR,
@@ -23,35 +22,29 @@ use crate::loader::plan::Change;
 use crate::loader::{Library, Plan};
 use crate::render::targets::Targets;
 
-/// Name of the one output of every graph.
-const OUTPUT: &str = "output";
-
 /// A style for frames of one size, ready to be recorded.
 #[derive(Debug)]
 pub struct Stylizer {
     style: Style,
     request: IsophoteRequest,
     plan: Plan,
-    program: Program,
-    executor: Executor,
-    prepared: Prepared,
+    runner: PlanRunner,
     output: wgpu::TextureView,
     edited: bool,
 }
 
 impl Stylizer {
-    /// Makes `style` ready for frames of `size`, with all guides that the renderer has. `device` is the
-    /// renderer's, wrapped by [`gpu::Device::wrap`] once.
+    /// Makes `style` ready for frames of `size`, with all guides that the renderer has. `kernels` are
+    /// those of the renderer's device.
     ///
     /// # Errors
-    /// [`Error::Input`] when an input that the style needs is open, [`Error::Failure`] when the device refuses.
-    pub fn new(device: &Arc<gpu::Device>, library: &Library, style: Style, size: (u32, u32)) -> Result<Self> {
+    /// [`crate::error::Error::Input`] when an input that the style needs is open, [`crate::error::Error::Failure`] when the device refuses.
+    pub fn new(kernels: &Arc<Kernels>, library: &Library, style: Style, size: (u32, u32)) -> Result<Self> {
         let request = request(library, size)?;
         let plan = style.plan(&request)?;
-        let program = plan.program().map_err(|e| e.at(&style.name, "choose another style"))?;
-        let executor = Executor::new(Arc::clone(device));
-        let (prepared, output) = prepare(&executor, &program)?;
-        Ok(Self { style, request, plan, program, executor, prepared, output, edited: false })
+        let runner = PlanRunner::new(kernels, &plan)?;
+        let output = runner.output()?.clone();
+        Ok(Self { style, request, plan, runner, output, edited: false })
     }
 
     /// Whether the output is a colour (linear Rec.709, premultiplied alpha, `Rgba32Float`) or a scalar
@@ -90,25 +83,24 @@ impl Stylizer {
     /// [`Stylizer::bind`] must be called. Parameters that are not structural cost one small upload.
     ///
     /// # Errors
-    /// [`Error::Failure`] when the device refuses; the style must then be made anew.
+    /// [`crate::error::Error::Failure`] when the device refuses; the style must then be made anew.
     pub fn update(&mut self) -> Result<bool> {
         if !std::mem::take(&mut self.edited) {
             return Ok(false);
         }
         let refused = |e: crate::loader::Refusal| e.at(&self.style.name, "choose another value");
         if self.plan.update(&self.style.graph).map_err(refused)? == Change::Uniforms {
-            self.plan.repack(&mut self.program).map_err(refused)?;
-            self.prepared.repack(&self.program).map_err(engine)?;
+            self.runner.repack(&self.plan)?;
             return Ok(false);
         }
-        self.prepare()?;
+        self.rebuild()?;
         Ok(true)
     }
 
     /// Changes the size of the frames; [`Stylizer::bind`] must be called then.
     ///
     /// # Errors
-    /// [`Error::Input`] for impossible sizes, [`Error::Failure`] when the device refuses; the style must then be
+    /// [`crate::error::Error::Input`] for impossible sizes, [`crate::error::Error::Failure`] when the device refuses; the style must then be
     /// made anew.
     pub fn resize(&mut self, size: (u32, u32)) -> Result<()> {
         let request = IsophoteRequest { width: size.0, height: size.1, ..self.request };
@@ -118,13 +110,12 @@ impl Stylizer {
         self.plan = self.style.plan(&request)?;
         self.request = request;
         self.edited = false;
-        self.prepare()
+        self.rebuild()
     }
 
-    fn prepare(&mut self) -> Result<()> {
-        let program = self.plan.program().map_err(|e| e.at(&self.style.name, "choose another style"))?;
-        (self.prepared, self.output) = prepare(&self.executor, &program)?;
-        self.program = program;
+    fn rebuild(&mut self) -> Result<()> {
+        self.runner.rebuild(&self.plan)?;
+        self.output = self.runner.output()?.clone();
         Ok(())
     }
 
@@ -132,7 +123,7 @@ impl Stylizer {
     /// again cost nothing.
     ///
     /// # Errors
-    /// [`Error::Failure`] when they are too small or the device refuses.
+    /// [`crate::error::Error::Failure`] when they are too small or the device refuses.
     pub fn bind(&mut self, targets: &Targets) -> Result<()> {
         let inputs = [
             ("color", &targets.color.view),
@@ -140,20 +131,25 @@ impl Stylizer {
             ("depth", &targets.depth.view),
             ("object_id", &targets.object_id.view),
         ];
-        self.prepared.bind(&inputs, &[]).map_err(engine)
+        self.runner.bind(&inputs)
     }
 
     /// Records the whole style. Nothing is created and nothing submitted.
     ///
     /// # Errors
-    /// [`Error::Failure`] when nothing is bound or the device is lost.
+    /// [`crate::error::Error::Failure`] when nothing is bound.
     pub fn encode(&self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
-        self.prepared.encode(encoder).map_err(engine)
+        self.runner.encode(encoder)
     }
 
     /// The passes with their textures.
-    pub fn program(&self) -> &Program {
-        &self.program
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// What was made on the device for this style so far.
+    pub fn counts(&self) -> Counts {
+        self.runner.counts()
     }
 }
 
@@ -176,15 +172,4 @@ fn request(library: &Library, size: (u32, u32)) -> Result<IsophoteRequest> {
         guides: ISOPHOTE_GUIDE_NORMAL | ISOPHOTE_GUIDE_DEPTH | ISOPHOTE_GUIDE_OBJECT_ID,
         ..request
     })
-}
-
-fn prepare(executor: &Executor, program: &Program) -> Result<(Prepared, wgpu::TextureView)> {
-    let mut prepared = executor.prepare(program).map_err(engine)?;
-    let output = prepared.own_output(OUTPUT).map_err(engine)?;
-    Ok((prepared, output))
-}
-
-/// The executor's errors are the device's.
-fn engine(error: isophote_engine::Error) -> Error {
-    Error::failure(error, "use a smaller picture or update the graphics driver")
 }

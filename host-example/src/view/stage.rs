@@ -5,7 +5,6 @@
 
 use std::sync::Arc;
 
-use isophote_engine::gpu;
 use winit::dpi::PhysicalSize;
 use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
@@ -21,12 +20,13 @@ use crate::scene::Scene;
 use crate::scene::camera::View;
 use crate::scene::pose::Pose;
 use crate::stylize::Stylizer;
+use crate::stylize::plan_runner::Kernels;
 use crate::stylize::style::Style;
 
 /// Surface, renderer and style of one device. Fields are dropped in order: what uses the device before it.
 pub struct Stage {
     stylizer: Option<Stylizer>,
-    device: Arc<gpu::Device>,
+    kernels: Arc<Kernels>,
     renderer: Renderer,
     present: Present,
     surface: wgpu::Surface<'static>,
@@ -67,9 +67,9 @@ impl Stage {
         surface.configure(&gpu.device, &config);
         let renderer = Renderer::new(&gpu.device, &gpu.queue, scene, size)?;
         let present = Present::new(&gpu.device, config.format);
-        let device = gpu::Device::wrap(gpu.device.clone(), gpu.queue.clone());
+        let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
         gpu.check()?;
-        let mut stage = Self { stylizer: None, device, renderer, present, surface, config, gpu };
+        let mut stage = Self { stylizer: None, kernels, renderer, present, surface, config, gpu };
         stage.show();
         Ok(stage)
     }
@@ -80,7 +80,7 @@ impl Stage {
     /// As [`Stylizer::new`]; the style before stays.
     pub fn set_style(&mut self, library: &Library, style: Option<Style>) -> Result<()> {
         let size = (self.config.width, self.config.height);
-        let mut stylizer = style.map(|s| Stylizer::new(&self.device, library, s, size)).transpose()?;
+        let mut stylizer = style.map(|s| Stylizer::new(&self.kernels, library, s, size)).transpose()?;
         if let Some(stylizer) = &mut stylizer {
             stylizer.bind(self.renderer.targets())?;
         }

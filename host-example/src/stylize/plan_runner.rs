@@ -1,0 +1,441 @@
+//! A plan of the library on the host's own device, with nothing but wgpu: **the example to copy**.
+//!
+//! The library says what is to be computed, as data: textures, compute passes, uniform bytes and shaders. The
+//! rest is up to the host, and all of it is here:
+//!
+//! 1. [`Kernels`] compiles the shader of a kernel when a plan first names it.
+//! 2. [`PlanRunner::new`] makes the plan's textures and one buffer for all uniform blocks.
+//! 3. [`PlanRunner::bind`] connects the host's textures. They are read where they are; nothing is copied.
+//! 4. [`PlanRunner::encode`] records the passes into the host's command encoder. It makes no object and submits
+//!    nothing, so that a frame is scene, style and presentation in one submission.
+//! 5. After a parameter has changed, [`PlanRunner::repack`] uploads a few bytes, or [`PlanRunner::rebuild`] takes
+//!    over other passes, as `plan_update` says.
+//!
+//! Everything is bound in group 0: at 0 the grid, which says where textures lie in the picture, at 1 the kernel's
+//! parameters, if it has any, from 2 the textures that are read and then those that are written. wgpu puts the
+//! barriers between passes; `tests/c/vulkan.c` does the same work by hand.
+
+use std::collections::HashMap;
+use std::num::NonZeroU64;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::error::{Error, Result};
+use crate::loader::Plan;
+use crate::loader::plan::{Format, Pass, Role, Texture};
+
+/// WGSL rounds the size of a uniform block up to its alignment, which is at most this.
+const BLOCK_ALIGNMENT: u64 = 16;
+
+/// The kernels that were compiled for a device; all runners of the device share them.
+#[derive(Debug)]
+pub struct Kernels {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    /// Whether kernels hold windows of neighbours in workgroup memory, which pays on hardware alone.
+    shared_windows: bool,
+    compiled: Mutex<HashMap<String, Kernel>>,
+}
+
+#[derive(Clone, Debug)]
+struct Kernel {
+    pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+impl Kernels {
+    /// No kernels yet. Errors that come later than the calls here are for the device's own handler.
+    pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Arc<Self> {
+        let shared_windows = device.adapter_info().device_type != wgpu::DeviceType::Cpu;
+        Arc::new(Self { device, queue, shared_windows, compiled: Mutex::default() })
+    }
+
+    /// The kernel of pass `index`, and whether it had to be compiled.
+    fn get(&self, plan: &Plan, index: u32, pass: &Pass<'_>, formats: &[Format]) -> Result<(Kernel, bool)> {
+        let mut compiled = self.compiled.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(kernel) = compiled.get(pass.kernel) {
+            return Ok((kernel.clone(), false));
+        }
+        let shader = plan.wgsl(index).map_err(refused)?;
+        let label = Some(pass.kernel);
+        let kernel = checked(&self.device, || {
+            let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label,
+                source: wgpu::ShaderSource::Wgsl(shader.source.into()),
+            });
+            let entries = layout_entries(pass, formats);
+            let layout = self
+                .device
+                .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
+            let pipeline_layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label,
+                bind_group_layouts: &[Some(&layout)],
+                ..Default::default()
+            });
+            // Constants may be given to shaders only that declare them.
+            let constants = [("shared_windows", f64::from(u8::from(self.shared_windows)))];
+            let count = usize::from(shader.source.contains("override shared_windows:"));
+            let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label,
+                layout: Some(&pipeline_layout),
+                module: &module,
+                entry_point: Some(shader.entry_point),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &constants[..count],
+                    // Kernels read no workgroup memory that they have not written.
+                    zero_initialize_workgroup_memory: false,
+                },
+                cache: None,
+            });
+            Ok(Kernel { pipeline, layout })
+        })?;
+        compiled.insert(pass.kernel.to_owned(), kernel.clone());
+        Ok((kernel, true))
+    }
+}
+
+/// What a kernel binds, as its first pass shows it; `formats` are those of the textures written.
+fn layout_entries(pass: &Pass<'_>, formats: &[Format]) -> Vec<wgpu::BindGroupLayoutEntry> {
+    let uniform = |block: &[u8]| wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: NonZeroU64::new(block_size(block)),
+    };
+    let sampled = |_| wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: false },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let storage = |format: &Format| wgpu::BindingType::StorageTexture {
+        access: wgpu::StorageTextureAccess::WriteOnly,
+        format: texture_format(*format),
+        view_dimension: wgpu::TextureViewDimension::D2,
+    };
+    let params = Some(pass.params).filter(|p| !p.is_empty());
+    let textures = pass.inputs.iter().map(sampled).chain(formats.iter().map(storage));
+    [(0, uniform(pass.grid))]
+        .into_iter()
+        .chain(params.map(|p| (1, uniform(p))))
+        .chain((2..).zip(textures))
+        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty,
+            count: None,
+        })
+        .collect()
+}
+
+/// What a runner has done so far. A warm frame changes neither.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Textures, buffers, bind groups and pipelines made.
+    pub objects: u64,
+    /// Uploads of uniform bytes.
+    pub uploads: u64,
+}
+
+/// A plan, ready to be recorded again and again.
+///
+/// One submission may hold it once only, since uniform bytes that are uploaded hold for all of a submission.
+#[derive(Debug)]
+pub struct PlanRunner {
+    kernels: Arc<Kernels>,
+    textures: Vec<Slot>,
+    passes: Vec<ReadyPass>,
+    uniforms: wgpu::Buffer,
+    /// What lies in `uniforms`.
+    bytes: Vec<u8>,
+    counts: Counts,
+}
+
+/// A texture of the plan, by its index there.
+#[derive(Debug)]
+struct Slot {
+    name: String,
+    role: Role,
+    format: Format,
+    size: [u32; 2],
+    /// The runner's own, or what the host has bound; missing for inputs until then.
+    view: Option<wgpu::TextureView>,
+}
+
+#[derive(Debug)]
+struct ReadyPass {
+    kernel: Kernel,
+    grid: Block,
+    params: Option<Block>,
+    /// Indices of the textures read and written.
+    textures: Vec<u32>,
+    workgroups: [u32; 3],
+    /// Missing until all textures are there.
+    group: Option<wgpu::BindGroup>,
+}
+
+/// Where the bytes of a uniform block lie in the buffer.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    at: u64,
+    bound: u64,
+}
+
+impl PlanRunner {
+    /// Compiles what `plan` needs and makes its textures, but for the inputs, which are the host's.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the device refuses or has no memory.
+    pub fn new(kernels: &Arc<Kernels>, plan: &Plan) -> Result<Self> {
+        Self::build(kernels, plan, Vec::new(), Counts::default())
+    }
+
+    /// Takes over a plan whose structure has changed; textures of unchanged size are used again. The inputs must
+    /// be bound anew.
+    ///
+    /// # Errors
+    /// As [`PlanRunner::new`]; the runner must then be made anew.
+    pub fn rebuild(&mut self, plan: &Plan) -> Result<()> {
+        *self = Self::build(&self.kernels, plan, std::mem::take(&mut self.textures), self.counts)?;
+        Ok(())
+    }
+
+    fn build(kernels: &Arc<Kernels>, plan: &Plan, mut old: Vec<Slot>, mut counts: Counts) -> Result<Self> {
+        let wanted = plan.textures().map_err(refused)?;
+        old.retain(|slot| slot.role != Role::Input && wanted.iter().any(|t| slot.is_like(t)));
+        let mut textures = Vec::with_capacity(wanted.len());
+        for texture in &wanted {
+            let found = old.iter().position(|slot| slot.is_like(texture));
+            let view = match (texture.role, found) {
+                (Role::Input, _) => None,
+                (_, Some(at)) => old.swap_remove(at).view,
+                (_, None) => {
+                    counts.objects += 1;
+                    Some(create_texture(&kernels.device, texture)?)
+                }
+            };
+            let Texture { name, role, format, size } = *texture;
+            textures.push(Slot { name: name.to_owned(), role, format, size, view });
+        }
+        let alignment = u64::from(kernels.device.limits().min_uniform_buffer_offset_alignment);
+        let mut end = 0;
+        let mut place = |block: &[u8]| {
+            let block = Block { at: end, bound: block_size(block) };
+            end += block.bound.next_multiple_of(alignment);
+            block
+        };
+        let mut passes = Vec::new();
+        for (index, pass) in (0..).zip(plan.passes().map_err(refused)?) {
+            let named: Vec<u32> = pass.inputs.iter().chain(pass.outputs).copied().collect();
+            let formats: Option<Vec<Format>> =
+                named.iter().map(|i| Some(wanted.get(*i as usize)?.format)).collect();
+            let formats = formats
+                .ok_or_else(|| mistaken(format!("kernel '{}' names an unknown texture", pass.kernel)))?;
+            let (kernel, is_new) = kernels.get(plan, index, &pass, &formats[pass.inputs.len()..])?;
+            counts.objects += u64::from(is_new);
+            passes.push(ReadyPass {
+                kernel,
+                grid: place(pass.grid),
+                params: Some(pass.params).filter(|p| !p.is_empty()).map(&mut place),
+                textures: named,
+                workgroups: pass.workgroups,
+                group: None,
+            });
+        }
+        let uniforms = checked(&kernels.device, || {
+            Ok(kernels.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("uniforms of a plan"),
+                size: end,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }))
+        })?;
+        counts.objects += 1;
+        let bytes = vec![0; end as usize];
+        let mut runner = Self { kernels: Arc::clone(kernels), textures, passes, uniforms, bytes, counts };
+        runner.repack(plan)?;
+        Ok(runner)
+    }
+
+    /// Takes over the uniform bytes of the plan, after an update that changed nothing else: one small upload, or
+    /// none where the bytes are the same.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the library fails.
+    pub fn repack(&mut self, plan: &Plan) -> Result<()> {
+        let mut changed = false;
+        let mut put = |block: Block, new: &[u8]| {
+            let old = &mut self.bytes[block.at as usize..][..new.len()];
+            changed |= old != new;
+            old.copy_from_slice(new);
+        };
+        for (ready, pass) in self.passes.iter().zip(plan.passes().map_err(refused)?) {
+            put(ready.grid, pass.grid);
+            if let Some(params) = ready.params {
+                put(params, pass.params);
+            }
+        }
+        if changed {
+            self.kernels.queue.write_buffer(&self.uniforms, 0, &self.bytes);
+            self.counts.uploads += 1;
+        }
+        Ok(())
+    }
+
+    /// Connects the host's textures with the plan's inputs of their names; those that the plan does not read are
+    /// ignored, and the same ones again cost nothing.
+    ///
+    /// An input may have any format that is read as floats without filtering, and be larger than the plan says:
+    /// its first texel is the window's.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] for an input that is missing or too small, and when the device refuses a view.
+    pub fn bind(&mut self, inputs: &[(&str, &wgpu::TextureView)]) -> Result<()> {
+        for (index, slot) in (0..).zip(&mut self.textures).filter(|(_, slot)| slot.role == Role::Input) {
+            let given = inputs.iter().find(|(name, _)| *name == slot.name);
+            let (_, view) =
+                given.ok_or_else(|| mistaken(format!("no texture is given for '{}'", slot.name)))?;
+            let texture = view.texture();
+            if texture.width() < slot.size[0] || texture.height() < slot.size[1] {
+                return Err(mistaken(format!("the texture given for '{}' is too small", slot.name)));
+            }
+            if slot.view.as_ref() != Some(*view) {
+                slot.view = Some((*view).clone());
+                self.passes.iter_mut().filter(|p| p.textures.contains(&index)).for_each(|p| p.group = None);
+            }
+        }
+        for pass in self.passes.iter_mut().filter(|p| p.group.is_none()) {
+            pass.group = Some(checked(&self.kernels.device, || {
+                bind_group(&self.kernels.device, pass, &self.uniforms, &self.textures)
+            })?);
+            self.counts.objects += 1;
+        }
+        Ok(())
+    }
+
+    /// What the plan computes, until [`PlanRunner::rebuild`]; it can be sampled and copied from.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the plan has no output.
+    pub fn output(&self) -> Result<&wgpu::TextureView> {
+        let output = self.textures.iter().find(|slot| slot.role == Role::Output);
+        output.and_then(|slot| slot.view.as_ref()).ok_or_else(|| mistaken("the plan has no output".into()))
+    }
+
+    /// Records all passes.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the inputs are not bound.
+    pub fn encode(&self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
+        let descriptor = wgpu::ComputePassDescriptor { label: Some("stylize"), timestamp_writes: None };
+        let mut compute = encoder.begin_compute_pass(&descriptor);
+        (0..self.passes.len()).try_for_each(|index| self.encode_pass(&mut compute, index))
+    }
+
+    /// Records the pass of an index alone, for hosts that measure each.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when there is no such pass, or its inputs are not bound.
+    pub fn encode_pass(&self, compute: &mut wgpu::ComputePass<'_>, index: usize) -> Result<()> {
+        let pass = self.passes.get(index).filter(|p| p.group.is_some());
+        let pass = pass.ok_or_else(unbound)?;
+        let [x, y, z] = pass.workgroups;
+        compute.set_pipeline(&pass.kernel.pipeline);
+        compute.set_bind_group(0, &pass.group, &[]);
+        compute.dispatch_workgroups(x, y, z);
+        Ok(())
+    }
+
+    /// Objects made and uploads so far.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+}
+
+impl Slot {
+    fn is_like(&self, texture: &Texture<'_>) -> bool {
+        (self.role, self.format, self.size) == (texture.role, texture.format, texture.size)
+    }
+}
+
+fn create_texture(device: &wgpu::Device, texture: &Texture<'_>) -> Result<wgpu::TextureView> {
+    let [width, height] = texture.size;
+    checked(device, || {
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("texture of a plan"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: texture_format(texture.format),
+            usage: wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::STORAGE_BINDING
+                | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+    })
+}
+
+fn bind_group(
+    device: &wgpu::Device,
+    pass: &ReadyPass,
+    uniforms: &wgpu::Buffer,
+    textures: &[Slot],
+) -> Result<wgpu::BindGroup> {
+    let uniform = |block: Block| {
+        wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: uniforms,
+            offset: block.at,
+            size: NonZeroU64::new(block.bound),
+        })
+    };
+    let blocks = [(0, uniform(pass.grid))].into_iter().chain(pass.params.map(|block| (1, uniform(block))));
+    let mut entries: Vec<wgpu::BindGroupEntry<'_>> =
+        blocks.map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+    for (binding, index) in (2..).zip(&pass.textures) {
+        let view = textures.get(*index as usize).and_then(|slot| slot.view.as_ref());
+        let view = view.ok_or_else(unbound)?;
+        entries.push(wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) });
+    }
+    Ok(device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("pass of a plan"),
+        layout: &pass.kernel.layout,
+        entries: &entries,
+    }))
+}
+
+fn block_size(block: &[u8]) -> u64 {
+    (block.len() as u64).next_multiple_of(BLOCK_ALIGNMENT)
+}
+
+fn texture_format(format: Format) -> wgpu::TextureFormat {
+    match format {
+        Format::R32Float => wgpu::TextureFormat::R32Float,
+        Format::Rg32Float => wgpu::TextureFormat::Rg32Float,
+        Format::Rgba32Float => wgpu::TextureFormat::Rgba32Float,
+    }
+}
+
+/// What `make` makes, or what the device has to say against it: wgpu reports errors to scopes, and panics where
+/// nobody listens.
+fn checked<T>(device: &wgpu::Device, make: impl FnOnce() -> Result<T>) -> Result<T> {
+    use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
+    let scopes = [Validation, Internal, OutOfMemory].map(|filter| device.push_error_scope(filter));
+    let made = make();
+    // Scopes end in the reverse of the order in which they began.
+    let errors = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop()));
+    match errors.last() {
+        Some(error) => Err(Error::failure(error, "use a smaller picture or update the graphics driver")),
+        None => made,
+    }
+}
+
+fn refused(refusal: crate::loader::Refusal) -> Error {
+    refusal.at("the plan", "choose another style")
+}
+
+fn unbound() -> Error {
+    mistaken("a pass is to be recorded before its textures are bound".into())
+}
+
+fn mistaken(problem: String) -> Error {
+    Error::failure(problem, "this is a mistake in the program; please report it")
+}
