@@ -2,11 +2,11 @@
 //! threads. Benchmarks state the share of it that a pass attains.
 
 use std::hint::black_box;
-use std::sync::Mutex;
 use std::time::Instant;
 
-use isophote_engine::cpu::Threads;
-use isophote_engine::fearless_simd::{Level, Simd, dispatch, f32x8, f32x16, prelude::*};
+use fearless_simd::{Level, Simd, dispatch, f32x8, f32x16, prelude::*};
+use rayon::ThreadPool;
+use rayon::prelude::*;
 
 /// The machine's peak.
 #[derive(Clone, Copy, Debug)]
@@ -27,21 +27,19 @@ const REPEATS: usize = 7;
 const BYTES: usize = 128 << 20;
 
 /// Measures on `threads` with the instructions of `level`; takes about a second.
-pub fn measure(level: Level, threads: &dyn Threads) -> Peak {
+pub fn measure(level: Level, threads: &ThreadPool) -> Peak {
     let narrow = multiply_adds(threads, 8, &|| dispatch!(level, simd => chains_of_8(simd)));
     let wide = multiply_adds(threads, 16, &|| dispatch!(level, simd => chains_of_16(simd)));
     Peak { multiply_adds: narrow.max(wide), copied: copied(threads) }
 }
 
-fn multiply_adds(threads: &dyn Threads, lanes: usize, chains: &(dyn Fn() -> f32 + Sync)) -> f64 {
-    let jobs = threads.count();
+fn multiply_adds(threads: &ThreadPool, lanes: usize, chains: &(dyn Fn() -> f32 + Sync)) -> f64 {
+    let jobs = threads.current_num_threads();
     let work = (jobs * lanes * CHAINS * ROUNDS) as f64;
     let mut best: f64 = 0.0;
     for _ in 0..REPEATS {
         let started = Instant::now();
-        threads.run(jobs, &|_| {
-            black_box(chains());
-        });
+        threads.broadcast(|_| black_box(chains()));
         best = best.max(work / started.elapsed().as_secs_f64());
     }
     best
@@ -72,24 +70,20 @@ macro_rules! chains {
 chains!(chains_of_8, f32x8);
 chains!(chains_of_16, f32x16);
 
-fn copied(threads: &dyn Threads) -> f64 {
+fn copied(threads: &ThreadPool) -> f64 {
     let from = vec![1.0f32; BYTES / 4];
     let mut to = vec![0.0f32; BYTES / 4];
     // Several parts for each thread even out that some are slower.
-    let part = from.len().div_ceil(threads.count() * 4);
+    let part = from.len().div_ceil(threads.current_num_threads() * 4);
     let mut best: f64 = 0.0;
     for _ in 0..REPEATS {
-        let parts: Vec<_> = to.chunks_mut(part).zip(from.chunks(part)).map(Mutex::new).collect();
         let started = Instant::now();
-        threads.run(parts.len(), &|i| {
-            // A part is locked once, by the one job that owns it.
-            if let Ok(mut part) = parts[i].lock() {
-                let (to, from) = &mut *part;
-                to.copy_from_slice(from);
-            }
+        threads.install(|| {
+            to.par_chunks_mut(part)
+                .zip(from.par_chunks(part))
+                .for_each(|(to, from)| to.copy_from_slice(from));
         });
         best = best.max(2.0 * BYTES as f64 / started.elapsed().as_secs_f64());
-        drop(parts);
         black_box(&to);
     }
     best
@@ -97,13 +91,11 @@ fn copied(threads: &dyn Threads) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use isophote_engine::cpu::CallingThread;
-
     use super::*;
 
     #[test]
     fn the_peak_is_that_of_a_computer() {
-        let peak = measure(Level::new(), &CallingThread);
+        let peak = measure(Level::new(), &rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap());
         // From a small board to the fastest core there will be for a while.
         assert!((1e8..1e13).contains(&peak.multiply_adds), "{peak:?}");
         assert!((1e8..1e13).contains(&peak.copied), "{peak:?}");

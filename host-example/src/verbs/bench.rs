@@ -7,8 +7,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use isophote_engine::cpu::{Pool, Threads};
-use isophote_engine::fearless_simd::Level;
+use fearless_simd::Level;
 
 use super::shared::parse_size;
 use crate::bench::compare::Saved;
@@ -87,9 +86,10 @@ pub fn run(args: &BenchArgs) -> Result<()> {
     };
     let mut gpu = gpu.map(gpu::Bench::new);
     let on_cpu = args.backend != Some(BenchBackend::Gpu);
-    let pool = Pool::new(0).map_err(|e| Error::failure(e, "close other programs"))?;
+    let pool = rayon::ThreadPoolBuilder::new().build();
+    let pool = pool.map_err(|e| Error::failure(e, "close other programs"))?;
     let machine = Machine::new(
-        Threads::count(&pool),
+        pool.current_num_threads(),
         on_cpu.then(|| peak::measure(Level::new(), &pool)),
         gpu.as_ref().map(gpu::Bench::adapter),
     );
