@@ -230,9 +230,8 @@ fn a_c_program_runs_plans_with_vulkan() {
         let theirs = run(Command::new(&processes), node, settings, [157, 101]);
         // The twins agree to less than a step of 8 bits, which may fall on either side of a rounding; where
         // lines are thresholded a few pixels may tip over.
-        let apart = |steps: u8| {
-            ours.after.iter().zip(&theirs.after).filter(|(a, b)| a.abs_diff(**b) > steps).count()
-        };
+        let apart =
+            |steps: u8| ours.after.iter().zip(&theirs.after).filter(|(a, b)| a.abs_diff(**b) > steps).count();
         assert!(apart(0) * 100 <= ours.after.len(), "{node}: {} samples differ", apart(0));
         assert!(apart(1) * 1000 <= ours.after.len(), "{node}: {} samples differ by more", apart(1));
     }
