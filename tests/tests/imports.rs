@@ -81,6 +81,15 @@ fn a_module_and_its_child_can_make_a_circle() {
 }
 
 #[test]
+fn a_macro_is_imported_from_the_file_that_defines_it() {
+    let a = ("a.rs", "#[macro_export]\nmacro_rules! made { () => { 1 } }\n");
+    let b = ("b.rs", "use crate::made;\npub const B: i32 = made!();\n");
+    assert!(circles_of(&[("lib.rs", "mod a;\nmod b;\npub use b::B;\n"), a, b]).is_empty());
+    let a = ("a.rs", "macro_rules! made { () => { $crate::b::B } }\n");
+    assert_eq!(circles_of(&[("lib.rs", "mod a;\nmod b;\n"), a, b]).len(), 1);
+}
+
+#[test]
 fn tests_comments_and_names_of_other_things_are_no_imports() {
     let b = "use crate::a::A;\npub fn a() {}\n";
     for a in [

@@ -56,11 +56,14 @@ struct Module {
 /// The modules of a crate; the first is its root.
 struct Crate {
     modules: Vec<Module>,
+    /// Files of the macros, which are named as if the root held them.
+    macros: BTreeMap<String, PathBuf>,
 }
 
 impl Crate {
     fn new(root: &Path) -> Self {
-        let mut krate = Self { modules: vec![Module { file: Some(root.to_owned()), ..Module::default() }] };
+        let first = Module { file: Some(root.to_owned()), ..Module::default() };
+        let mut krate = Self { modules: vec![first], macros: BTreeMap::new() };
         krate.read(0, root, root.parent().unwrap_or(root).to_owned());
         krate
     }
@@ -158,7 +161,12 @@ impl Crate {
         }
         for (index, module) in self.modules.iter().enumerate() {
             for (path, line, _) in &module.paths {
-                let found = self.find(index, path, &names).and_then(|(m, _)| self.modules[m].file.as_ref());
+                let found = match self.find(index, path, &names) {
+                    Some((0, 1)) if path.len() == 2 => {
+                        self.macros.get(&path[1]).map(PathBuf::as_path).or(self.file_of(0))
+                    }
+                    found => found.and_then(|(module, _)| self.file_of(module)),
+                };
                 if let (Some(to), Some(from)) = (found, self.file_of(index)) {
                     imports.add(from, to, *line, &path.join("::"));
                 }
@@ -241,6 +249,11 @@ impl Code<'_> {
             } else if self.word(0) == Some("use") && !self.is(1, '<') {
                 self.at += 1;
                 self.imported(module, &[]);
+            } else if self.word(0) == Some("macro_rules") && self.is(1, '!') {
+                self.at += 2;
+                if let Some(name) = self.word(0).map(str::to_owned) {
+                    self.krate.macros.insert(name, self.file.to_owned());
+                }
             } else if self.word(0).is_some() {
                 self.path(module);
             } else {
