@@ -4,7 +4,7 @@ use crate::pictures::Kind;
 use crate::random::Random;
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
-use isophote::spec::{ImageKind, NodeSpec, Param, ParamKind, Unit};
+use isophote::spec::{ImageKind, NodeSpec, Param, Unit};
 use isophote::{ColourSpace, Graph, NodeId, Request, Value};
 
 /// A node in a graph that can be planned, with the nodes that stand before it.
@@ -122,10 +122,10 @@ pub fn settings(spec: &'static NodeSpec, count: usize) -> Vec<Setting> {
         set("slider's greatest", &|p| extreme(p, 1, true)),
     ];
     for param in spec.params() {
-        let others: Vec<Value> = match param.kind {
-            ParamKind::Bool { default } => vec![Value::Bool(!default)],
-            ParamKind::Choice { default, options } => {
-                (0..options.len()).filter(|o| *o != default).map(Value::Choice).collect()
+        let others: Vec<Value> = match param.default {
+            Value::Bool(default) => vec![Value::Bool(!default)],
+            Value::Choice(default) => {
+                (0..param.options.len()).filter(|o| *o != default).map(Value::Choice).collect()
             }
             _ => Vec::new(),
         };
@@ -154,42 +154,38 @@ pub fn other(param: &Param, now: Value, random: &mut Random) -> Option<Value> {
 /// The least (`end` 0) or greatest (1) value. Choices and switches have no ends: they take the first
 /// and the last.
 fn extreme(param: &Param, end: usize, of_slider: bool) -> Value {
-    match param.kind {
-        ParamKind::Float { range, slider, .. } => Value::Float(if of_slider { slider } else { range }[end]),
-        ParamKind::Int { range, slider, .. } => Value::Int(if of_slider { slider } else { range }[end]),
-        ParamKind::Bool { .. } => Value::Bool(end == 1),
-        ParamKind::Choice { options, .. } => Value::Choice(end * (options.len() - 1)),
-        ParamKind::Color { .. } => Value::Color([end as f32, 0.5, 0.25, end as f32]),
-    }
+    let form = param.default.form();
+    let number = f64::from(if of_slider { param.slider } else { param.range }[end]);
+    // Of colours the red and the alpha.
+    (form.value)(if form.count == 1 { [number; 4] } else { [number, 0.5, 0.25, number] })
 }
 
 fn any(param: &Param, random: &mut Random) -> Value {
-    match param.kind {
+    match param.default {
         // Lengths decide the cost; the sliders hold what people use.
-        ParamKind::Float { range, .. } if param.unit != Unit::Pixels && random.below(3) == 0 => {
-            Value::Float(random.range(range[0], range[1]))
+        Value::Float(_) if param.unit != Unit::Pixels && random.below(3) == 0 => {
+            Value::Float(random.range(param.range[0], param.range[1]))
         }
         _ => within_slider(param, random),
     }
 }
 
 fn within_slider(param: &Param, random: &mut Random) -> Value {
-    match param.kind {
-        ParamKind::Float { slider, .. } => Value::Float(random.range(slider[0], slider[1])),
-        ParamKind::Int { slider, .. } => {
-            Value::Int(slider[0] + random.below((slider[1] - slider[0]) as usize + 1) as i32)
-        }
-        ParamKind::Bool { .. } => Value::Bool(random.below(2) == 1),
-        ParamKind::Choice { options, .. } => Value::Choice(random.below(options.len())),
-        ParamKind::Color { .. } => Value::Color([(); 4].map(|()| random.unit() as f32)),
+    let [low, high] = param.slider;
+    match param.default {
+        Value::Float(_) => Value::Float(random.range(low, high)),
+        Value::Int(_) => Value::Int(low as i32 + random.below((high - low) as usize + 1) as i32),
+        Value::Bool(_) => Value::Bool(random.below(2) == 1),
+        Value::Choice(_) => Value::Choice(random.below(param.options.len())),
+        Value::Color(_) => Value::Color([(); 4].map(|()| random.unit() as f32)),
     }
 }
 
 fn name_of(param: &Param, value: Value) -> String {
-    match (param.kind, value) {
-        (ParamKind::Choice { options, .. }, Value::Choice(index)) => options[index].id.to_owned(),
-        (_, Value::Bool(on)) => on.to_string(),
-        (_, other) => format!("{other:?}"),
+    match value {
+        Value::Choice(index) => param.options[index].id.to_owned(),
+        Value::Bool(on) => on.to_string(),
+        other => format!("{other:?}"),
     }
 }
 

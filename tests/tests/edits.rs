@@ -107,7 +107,7 @@ fn an_edited_plan_gives_the_picture_of_a_new_one() {
 }
 
 fn float_default(param: &isophote::spec::Param) -> Option<f32> {
-    match param.default_value() {
+    match param.default {
         Value::Float(v) => Some(v),
         _ => None,
     }

@@ -4,6 +4,7 @@
 use isophote::kernels::shared::stream::Integrator;
 use isophote::kernels::smoothing::cabral_leedom;
 use isophote::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
+use isophote::nodes::smoothing::line_integral_convolution::options;
 use isophote_engine::{Class, Image, PlanBuilder};
 use isophote_tests::compare::psnr;
 use isophote_tests::pictures::{self, Kind, from_fn};
@@ -80,7 +81,7 @@ fn stretched_steps_are_better_than_short_ones_of_first_order() {
         &["largest turn", "not filtered", "Euler", "Runge-Kutta", "two-step, stretched"],
     );
     for max_angle in [0.0, 90.0] {
-        let styles = Options { max_angle, ..Options::default() };
+        let styles = Options { max_angle, ..options() };
         let short = |integrator: Integrator, step: f32| Options { integrator, step, stretch: 1.0, ..styles };
         let exact = filtered(&short(Integrator::Midpoint, 0.25));
         let none = psnr(&picture, &exact);
@@ -103,7 +104,7 @@ fn long_lines_of_short_steps_weigh_as_the_gaussian() {
     let sigma = 40.0;
     let picture = from_fn(400, 3, |x, _| if x == 200 { [1.0; 4] } else { [0.0, 0.0, 0.0, 1.0] });
     let tensors = from_fn(400, 3, |_, _| [0.0, 0.0, 1.0, 1.0]);
-    let options = Options { sigma, step: 0.25, stretch: 1.0, adapt: Adapt::None, ..Options::default() };
+    let options = Options { sigma, step: 0.25, stretch: 1.0, adapt: Adapt::None, ..options() };
     let mut plan = PlanBuilder::new(400, 3).unwrap();
     let color = plan.input("color", 4, Class::Colour);
     let tensor = plan.input("tensor", 4, Class::Field);
@@ -174,7 +175,7 @@ fn cabral_leedom_integrates_the_gaussian_exactly_on_pixels() {
             stretch: 1.0,
             integrator: Integrator::Midpoint,
             adapt: Adapt::None,
-            ..Options::default()
+            ..options()
         };
         let filtered = |exactly: bool| {
             let mut plan = PlanBuilder::new(SIDE, SIDE).unwrap();

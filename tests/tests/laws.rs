@@ -2,8 +2,8 @@
 
 use isophote::kernels::KERNELS;
 use isophote::registry;
-use isophote::spec::{NodeSpec, ParamKind};
-use isophote::{Graph, Planned, Request};
+use isophote::spec::NodeSpec;
+use isophote::{Graph, Planned, Request, Value};
 use isophote_tests::cases;
 use isophote_tests::shaders;
 use std::collections::BTreeSet;
@@ -116,31 +116,19 @@ fn faults_of(spec: &NodeSpec) -> Vec<String> {
         let id = param.id;
         check(is_identifier(id) && ids.insert(id), format!("{id} is no good id, or twice"));
         check(!param.label.is_empty() && is_sentence(param.doc), format!("{id} lacks a document"));
-        match param.kind {
-            ParamKind::Float { default, range: [low, high], slider: [from, to] } => {
-                let ordered = low <= from && from < to && to <= high;
-                check(ordered, format!("{id}: slider {from}..{to} is not inside {low}..{high}"));
-                check((from..=to).contains(&default), format!("{id}: default {default} is off its slider"));
-            }
-            ParamKind::Int { default, range: [low, high], slider: [from, to] } => {
-                let ordered = low <= from && from < to && to <= high;
-                check(ordered, format!("{id}: slider {from}..{to} is not inside {low}..{high}"));
-                check((from..=to).contains(&default), format!("{id}: default {default} is off its slider"));
-            }
-            ParamKind::Bool { .. } => {}
-            ParamKind::Choice { default, options } => {
-                let distinct: BTreeSet<&str> = options.iter().map(|o| o.id).collect();
-                check(!options.is_empty() && distinct.len() == options.len(), format!("{id}: its options"));
-                check(default < options.len(), format!("{id}: its default"));
-                check(
-                    options.iter().all(|o| is_identifier(o.id) && !o.label.is_empty()),
-                    format!("{id}: an option's id or label"),
-                );
-            }
-            ParamKind::Color { default } => {
-                check(default.iter().all(|c| (0.0..=1.0).contains(c)), format!("{id}: its default"));
-            }
-        }
+        let ([low, high], [from, to], form) = (param.range, param.slider, param.default.form());
+        let ordered = low <= from && from < to && to <= high;
+        check(ordered, format!("{id}: slider {from}..{to} is not inside {low}..{high}"));
+        let shown = form.numbers[..form.count].iter().all(|n| (from..=to).contains(&(*n as f32)));
+        check(shown, format!("{id}: default {:?} is off its slider", param.default));
+        let ids: BTreeSet<&str> = param.options.iter().map(|o| o.id).collect();
+        check(ids.len() == param.options.len(), format!("{id}: two options of one id"));
+        let is_choice = matches!(param.default, Value::Choice(_));
+        check(is_choice != param.options.is_empty(), format!("{id}: options and type do not fit"));
+        check(
+            param.options.iter().all(|o| is_identifier(o.id) && !o.label.is_empty() && is_sentence(o.doc)),
+            format!("{id}: an option's id, label or document"),
+        );
     }
     faults
 }

@@ -2,9 +2,8 @@
 
 use crate::error::{Error, Result, nearest};
 use crate::registry;
-use crate::request::Request;
-use crate::spec::{ImageKind, NodeSpec};
-use crate::values::{self, Value};
+use crate::spec::{ImageKind, NodeSpec, Param};
+use crate::value::Value;
 
 /// A picture that enters a graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -117,7 +116,7 @@ impl Graph {
         self.nodes.push(Node {
             name: name.to_owned(),
             spec,
-            values: spec.params().map(|p| p.default_value()).collect(),
+            values: spec.params().map(|p| p.default).collect(),
             inputs: vec![None; spec.inputs.len()],
         });
         self.order.push(self.nodes.len() - 1);
@@ -182,7 +181,7 @@ impl Graph {
     pub fn set(&mut self, node: NodeId, param: &str, value: Value) -> Result<()> {
         let spec = self.get(node)?.spec;
         let (index, declared) = find_param(spec, param)?;
-        self.nodes[node.0].values[index] = values::check(spec, declared, value)?;
+        self.nodes[node.0].values[index] = declared.check(spec.id, value)?;
         Ok(())
     }
 
@@ -193,7 +192,7 @@ impl Graph {
     pub fn set_text(&mut self, node: NodeId, param: &str, text: &str) -> Result<()> {
         let spec = self.get(node)?.spec;
         let (index, declared) = find_param(spec, param)?;
-        self.nodes[node.0].values[index] = values::parse(spec, declared, text)?;
+        self.nodes[node.0].values[index] = declared.parse(spec.id, text)?;
         Ok(())
     }
 
@@ -249,42 +248,12 @@ impl Graph {
         self.output_node().map(|(_, kind)| kind)
     }
 
-    /// Fails when `request` cannot be planned: no output, or a required input open.
-    pub(crate) fn check(&self, request: &Request) -> Result<()> {
-        let Some(output) = self.output else {
-            return Err(Error::Connection(
-                "the graph has no output; name the node whose result leaves it".into(),
-            ));
-        };
-        if !(request.scale.is_finite() && request.scale > 0.0 && request.scale <= 64.0) {
-            return Err(Error::Value(format!(
-                "the render scale must be above 0 and at most 64, not {}",
-                request.scale
-            )));
-        }
-        debug_assert!(output < self.nodes.len());
-        for node in &self.nodes {
-            for (port, source) in node.spec.inputs.iter().zip(&node.inputs) {
-                let missing = match source {
-                    None => true,
-                    Some(Source::Input(GraphInput::Color) | Source::Node(_)) => false,
-                    Some(Source::Input(GraphInput::Normal)) => !request.guides.normal,
-                    Some(Source::Input(GraphInput::Depth)) => !request.guides.depth,
-                    Some(Source::Input(GraphInput::ObjectId)) => !request.guides.object_id,
-                };
-                if missing && !port.optional {
-                    return Err(Error::Connection(format!(
-                        "input '{}' of node '{}' ({}) is not connected",
-                        port.id, node.name, node.spec.id
-                    )));
-                }
-            }
-        }
-        Ok(())
-    }
-
     pub(crate) fn order(&self) -> &[usize] {
         &self.order
+    }
+
+    pub(crate) fn nodes(&self) -> &[Node] {
+        &self.nodes
     }
 
     pub(crate) fn node_at(&self, index: usize) -> &Node {
@@ -346,7 +315,7 @@ impl Graph {
     }
 }
 
-fn find_param(spec: &'static NodeSpec, id: &str) -> Result<(usize, &'static crate::spec::Param)> {
+fn find_param(spec: &'static NodeSpec, id: &str) -> Result<(usize, &'static Param)> {
     spec.param(id).ok_or_else(|| {
         Error::Unknown(format!(
             "node '{}' has no parameter '{id}'{}",

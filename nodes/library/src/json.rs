@@ -17,10 +17,10 @@
 
 use crate::error::{Error, Result};
 use crate::graph::{Graph, GraphInput, Source};
-use crate::spec::{NodeSpec, Param, ParamKind};
-use crate::values::{self, Value};
+use crate::spec::{NodeSpec, Param};
+use crate::value::Value;
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value as Json, json};
+use serde_json::{Map, Value as Json};
 
 const FORMAT: &str = "isophote-graph";
 
@@ -121,7 +121,7 @@ impl Graph {
             .spec
             .params()
             .zip(&node.values)
-            .filter(|(param, value)| param.default_value() != **value)
+            .filter(|(param, value)| param.default != **value)
             .map(|(param, value)| (param.id.to_owned(), value_to_json(param, *value)))
             .collect();
         let inputs = node
@@ -142,33 +142,25 @@ impl Graph {
 }
 
 fn value_from_json(spec: &NodeSpec, param: &Param, json: &Json) -> Result<Value> {
-    let value = match (param.kind, json) {
-        (_, Json::Bool(v)) => Value::Bool(*v),
-        (ParamKind::Int { .. }, Json::Number(v)) => match v.as_i64().and_then(|v| i32::try_from(v).ok()) {
+    let value = match json {
+        Json::Bool(v) => Value::Bool(*v),
+        Json::Number(v) => match v.as_i64().and_then(|v| i32::try_from(v).ok()) {
             Some(v) => Value::Int(v),
             None => Value::Float(v.as_f64().unwrap_or(f64::NAN) as f32),
         },
-        (_, Json::Number(v)) => Value::Float(v.as_f64().unwrap_or(f64::NAN) as f32),
-        (_, Json::String(text)) => return values::parse(spec, param, text),
-        (ParamKind::Color { .. }, Json::Array(list)) => {
+        Json::String(text) => return param.parse(spec.id, text),
+        Json::Array(list) if param.default.form().count > 1 => {
             let text: Vec<String> = list.iter().map(Json::to_string).collect();
-            return values::parse(spec, param, &text.join(","));
+            return param.parse(spec.id, &text.join(","));
         }
-        _ => {
+        Json::Array(_) | Json::Object(_) | Json::Null => {
             return Err(Error::Value(format!("parameter '{}' of '{}' cannot be {json}", param.id, spec.id)));
         }
     };
-    values::check(spec, param, value)
+    param.check(spec.id, value)
 }
 
 fn value_to_json(param: &Param, value: Value) -> Json {
-    match (value, param.kind) {
-        // Through text, so that 0.1 stays 0.1 and does not become 0.10000000149.
-        (Value::Float(v), _) => v.to_string().parse::<f64>().map_or(Json::Null, |v| json!(v)),
-        (Value::Int(v), _) => json!(v),
-        (Value::Bool(v), _) => json!(v),
-        (Value::Choice(v), ParamKind::Choice { options, .. }) => json!(options[v].id),
-        (Value::Choice(v), _) => json!(v),
-        (Value::Color(v), _) => json!(v.map(|c| c.to_string().parse::<f64>().unwrap_or(0.0))),
-    }
+    let form = value.form();
+    (form.json)(form.numbers, param.options)
 }

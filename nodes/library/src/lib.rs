@@ -10,24 +10,28 @@
 // Coefficients of polynomials lie near constants and are not them.
 #![allow(clippy::approx_constant)]
 
+pub mod choice;
+pub mod colour_space;
 pub mod error;
 pub mod graph;
 mod json;
 pub mod kernels;
-mod look;
 pub mod nodes;
+pub mod param;
 mod ports;
 pub mod registry;
 pub mod request;
 pub mod spec;
+mod stages;
 pub mod tensor_options;
-pub mod values;
+pub mod value;
 
+pub use colour_space::ColourSpace;
 pub use error::{Error, Result};
 pub use graph::{Graph, NodeId};
 pub use isophote_engine as engine;
-pub use request::{ColourSpace, Planned, Request};
-pub use values::Value;
+pub use request::{Planned, Request};
+pub use value::Value;
 
 /// The README's example, compiled with the documentation tests.
 #[cfg(doctest)]

@@ -1,43 +1,12 @@
 //! From a graph to a plan for one size, and from an edited graph to an edited plan.
 
-use crate::error::Result;
+pub use crate::colour_space::ColourSpace;
+use crate::error::{Error, Result};
 use crate::graph::{Graph, GraphInput, Source};
 use crate::kernels::colour::{colour_export, colour_import, mix};
 use crate::spec::{ImageKind, Scope};
-use crate::values::Value;
+use crate::value::Value;
 use isophote_engine::{ImageId, Plan, PlanBuilder};
-
-/// What the numbers of a colour picture mean. All have their primaries' own encoding extended to
-/// values below 0 and above 1.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum ColourSpace {
-    /// Gamma-encoded sRGB.
-    #[default]
-    Srgb,
-    /// Linear light, Rec. 709 primaries.
-    Linear,
-    /// ACEScg: linear light, AP1 primaries.
-    AcesCg,
-}
-
-impl ColourSpace {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Srgb, Self::Linear, Self::AcesCg];
-
-    /// Stable name.
-    pub const fn id(self) -> &'static str {
-        match self {
-            Self::Srgb => "srgb",
-            Self::Linear => "linear",
-            Self::AcesCg => "acescg",
-        }
-    }
-
-    /// The space of this name.
-    pub fn from_id(id: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|s| s.id() == id)
-    }
-}
 
 /// What a host wants of a graph.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,7 +103,7 @@ impl Planned {
     /// As [`Planned::new`]; the plan is then the old one or, if the structure changed, must not be used
     /// until an update succeeds.
     pub fn update(&mut self, graph: &Graph) -> Result<Change> {
-        graph.check(&self.request)?;
+        check(graph, &self.request)?;
         let (request, scratch) = (&self.request, &mut self.scratch);
         if self.plan.edit(|builder| describe(graph, request, builder, scratch))? {
             return Ok(Change::Uniforms);
@@ -154,8 +123,39 @@ impl Planned {
     }
 }
 
+/// Fails when `request` cannot be planned: no output, a scale out of range, or a required input open.
+fn check(graph: &Graph, request: &Request) -> Result<()> {
+    if graph.output_node().is_none() {
+        return Err(Error::Connection(
+            "the graph has no output; name the node whose result leaves it".into(),
+        ));
+    }
+    if !(request.scale.is_finite() && request.scale > 0.0 && request.scale <= 64.0) {
+        return Err(Error::Value(format!(
+            "the render scale must be above 0 and at most 64, not {}",
+            request.scale
+        )));
+    }
+    for node in graph.nodes() {
+        for (port, source) in node.spec.inputs.iter().zip(&node.inputs) {
+            let connected = match source {
+                None => false,
+                Some(Source::Node(_)) => true,
+                Some(Source::Input(input)) => request.guides.has(*input),
+            };
+            if !connected && !port.optional {
+                return Err(Error::Connection(format!(
+                    "input '{}' of node '{}' ({}) is not connected",
+                    port.id, node.name, node.spec.id
+                )));
+            }
+        }
+    }
+    Ok(())
+}
+
 fn plan(graph: &Graph, request: &Request, scratch: &mut Scratch) -> Result<Plan> {
-    graph.check(request)?;
+    check(graph, request)?;
     let mut builder = PlanBuilder::new(request.width, request.height)?;
     describe(graph, request, &mut builder, scratch)?;
     Ok(builder.finish()?)

@@ -1,9 +1,10 @@
 //! What a node says about itself, once: the catalogue, command lines, hosts and documents all walk
 //! this declaration.
 
+use crate::choice::Selectable;
+pub use crate::param::{Param, Unit};
+use crate::value::Value;
 use isophote_engine::{Class, ImageId, PlanBuilder};
-
-use crate::values::Value;
 
 /// What flows through a port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -60,209 +61,6 @@ pub struct Port {
     pub optional: bool,
     /// One sentence.
     pub doc: &'static str,
-}
-
-/// Unit of a parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unit {
-    /// None.
-    None,
-    /// Pixels of the full-size picture; scaled with the host's render scale.
-    Pixels,
-    /// Share of something, 0..100.
-    Percent,
-    /// Degrees of angle.
-    Degrees,
-}
-
-impl Unit {
-    /// Name in the catalogue; empty for none.
-    pub const fn id(self) -> &'static str {
-        match self {
-            Self::None => "",
-            Self::Pixels => "px",
-            Self::Percent => "%",
-            Self::Degrees => "deg",
-        }
-    }
-}
-
-/// One option of a choice.
-#[derive(Clone, Copy, Debug)]
-pub struct Choice {
-    /// Stable name.
-    pub id: &'static str,
-    /// For people.
-    pub label: &'static str,
-}
-
-/// Type, default and ranges of a parameter.
-#[derive(Clone, Copy, Debug)]
-pub enum ParamKind {
-    /// A number.
-    Float {
-        /// Default.
-        default: f32,
-        /// Hard range; values outside are refused.
-        range: [f32; 2],
-        /// Range of a slider.
-        slider: [f32; 2],
-    },
-    /// A whole number.
-    Int {
-        /// Default.
-        default: i32,
-        /// Hard range.
-        range: [i32; 2],
-        /// Range of a slider.
-        slider: [i32; 2],
-    },
-    /// On or off.
-    Bool {
-        /// Default.
-        default: bool,
-    },
-    /// One of several.
-    Choice {
-        /// Index of the default.
-        default: usize,
-        /// All options; order is for people, ids are for ever.
-        options: &'static [Choice],
-    },
-    /// RGBA, gamma-encoded sRGB, 0..=1.
-    Color {
-        /// Default.
-        default: [f32; 4],
-    },
-}
-
-/// One parameter of a node.
-#[derive(Clone, Copy, Debug)]
-pub struct Param {
-    /// Stable name.
-    pub id: &'static str,
-    /// For people.
-    pub label: &'static str,
-    /// One sentence, with the symbol and source in the thesis.
-    pub doc: &'static str,
-    /// Type, default and ranges.
-    pub kind: ParamKind,
-    /// Unit of a number.
-    pub unit: Unit,
-    /// Heading under which panels show it; empty for the node's own.
-    pub group: &'static str,
-    /// True when changing it may change the list of passes and not only uniform bytes.
-    pub structural: bool,
-    /// True when the node gives its picture back unchanged while this number is 0.
-    pub neutral_at_zero: bool,
-}
-
-impl Param {
-    const fn new(id: &'static str, label: &'static str, kind: ParamKind) -> Self {
-        Self {
-            id,
-            label,
-            doc: "",
-            kind,
-            unit: Unit::None,
-            group: "",
-            structural: false,
-            neutral_at_zero: false,
-        }
-    }
-
-    /// A number with its hard range, which is also its slider's until [`Param::slider`].
-    pub const fn float(id: &'static str, label: &'static str, default: f32, range: [f32; 2]) -> Self {
-        Self::new(id, label, ParamKind::Float { default, range, slider: range })
-    }
-
-    /// A whole number with its range.
-    pub const fn int(id: &'static str, label: &'static str, default: i32, range: [i32; 2]) -> Self {
-        Self::new(id, label, ParamKind::Int { default, range, slider: range })
-    }
-
-    /// On or off.
-    pub const fn bool(id: &'static str, label: &'static str, default: bool) -> Self {
-        Self::new(id, label, ParamKind::Bool { default })
-    }
-
-    /// One of several; structural until said otherwise, since choices usually pick a kernel.
-    pub const fn choice(
-        id: &'static str,
-        label: &'static str,
-        default: usize,
-        options: &'static [Choice],
-    ) -> Self {
-        Self::new(id, label, ParamKind::Choice { default, options }).structural()
-    }
-
-    /// A colour.
-    pub const fn color(id: &'static str, label: &'static str, default: [f32; 4]) -> Self {
-        Self::new(id, label, ParamKind::Color { default })
-    }
-
-    /// The range of a slider, within the hard range.
-    pub const fn slider(mut self, low: f32, high: f32) -> Self {
-        match &mut self.kind {
-            ParamKind::Float { slider, .. } => *slider = [low, high],
-            ParamKind::Int { slider, .. } => *slider = [low as i32, high as i32],
-            _ => {}
-        }
-        self
-    }
-
-    /// The sentence of documentation.
-    pub const fn doc(mut self, doc: &'static str) -> Self {
-        self.doc = doc;
-        self
-    }
-
-    /// Measured in pixels of the full-size picture.
-    pub const fn pixels(mut self) -> Self {
-        self.unit = Unit::Pixels;
-        self
-    }
-
-    /// Measured in degrees.
-    pub const fn degrees(mut self) -> Self {
-        self.unit = Unit::Degrees;
-        self
-    }
-
-    /// Shown under a heading.
-    pub const fn group(mut self, group: &'static str) -> Self {
-        self.group = group;
-        self
-    }
-
-    /// Changing it may change the list of passes.
-    pub const fn structural(mut self) -> Self {
-        self.structural = true;
-        self
-    }
-
-    /// At 0 the node gives its picture back unchanged.
-    pub const fn neutral_at_zero(mut self) -> Self {
-        self.neutral_at_zero = true;
-        self
-    }
-
-    /// Changing it only changes uniform bytes.
-    pub const fn uniform(mut self) -> Self {
-        self.structural = false;
-        self
-    }
-
-    /// The default as a value.
-    pub const fn default_value(&self) -> Value {
-        match self.kind {
-            ParamKind::Float { default, .. } => Value::Float(default),
-            ParamKind::Int { default, .. } => Value::Int(default),
-            ParamKind::Bool { default } => Value::Bool(default),
-            ParamKind::Choice { default, .. } => Value::Choice(default),
-            ParamKind::Color { default } => Value::Color(default),
-        }
-    }
 }
 
 /// Everything a node says about itself, and how it describes its work.
@@ -366,14 +164,10 @@ impl Scope<'_> {
         }
     }
 
-    /// The id of the chosen option.
-    pub fn choice(&self, id: &str) -> &'static str {
-        match self.value(id) {
-            (Value::Choice(index), Param { kind: ParamKind::Choice { options, .. }, .. }) => {
-                options[index].id
-            }
-            (other, _) => panic!("{}.{id} is {other:?}, not a choice", self.spec.id),
-        }
+    /// The chosen option.
+    pub fn option<T: Selectable>(&self, id: &str) -> T {
+        let (value, param) = self.value(id);
+        param.option(value)
     }
 
     /// A colour, gamma-encoded RGBA.

@@ -1,19 +1,78 @@
-//! How a structure tensor is made, and the guide images that count in it.
+//! How a structure tensor is made: the parameters and their values, and the guide images that count in it.
 
+use crate::choice::choice;
 use crate::kernels::structure::gradient_tensor::Derivative;
 use crate::kernels::structure::guide_tensor::Guide;
+use crate::spec::{Param, Scope};
 use isophote_engine::ImageId;
 
-/// What the gradient is taken of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Space {
-    /// Gamma-encoded RGB.
-    Rgb,
-    /// The Rec. 709 luma of gamma-encoded RGB.
-    Luminance,
-    /// CIELAB divided by 100.
-    Lab,
+choice! {
+    /// The derivative operator.
+    pub enum Operator {
+        /// Central differences (2.18).
+        Central ("central", "Central differences"),
+        /// The Sobel operator (2.23).
+        Sobel ("sobel", "Sobel"),
+        /// The 3x3 operator optimized for rotation invariance (2.27).
+        Scharr3 ("scharr3", "Scharr 3x3"),
+        /// The 5x5 operator optimized for rotation invariance (2.29).
+        Scharr5 ("scharr5", "Scharr 5x5"),
+        /// Derivatives of a Gaussian (2.22).
+        Gaussian ("gaussian", "Gaussian"),
+    }
 }
+
+choice! {
+    /// What the gradient is taken of.
+    pub enum Space {
+        /// Gamma-encoded RGB.
+        Rgb ("rgb", "RGB"),
+        /// The Rec. 709 luma of gamma-encoded RGB.
+        Luminance ("luminance", "Luminance"),
+        /// CIELAB divided by 100.
+        Lab ("lab", "CIELAB"),
+    }
+}
+
+pub(crate) const DERIVATIVE: Param = Param::choice("derivative", "Derivative", Operator::Scharr3.selected())
+    .uniform()
+    .doc("Derivative operator: (2.18), (2.23), (2.27), (2.29) or (2.22).");
+pub(crate) const SIGMA_G: Param = Param::float("sigma_g", "Sigma of the derivative", 0.867, [0.2, 6.0])
+    .slider(0.4, 3.0)
+    .pixels()
+    .doc("Standard deviation of the Gaussian derivative (2.22); the other operators ignore it unless oversampled.");
+pub(crate) const RHO: Param = Param::float("rho", "Rho", 2.0, [0.0, 40.0])
+    .slider(0.0, 10.0)
+    .pixels()
+    .doc("Standard deviation of the Gaussian that smooths the tensor.");
+pub(crate) const SPACE: Param = Param::choice("space", "Space", Space::Rgb.selected()).doc(
+    "What the gradient is taken of: gamma-encoded RGB, its Rec. 709 luma, or CIELAB divided by 100, so that \
+     from black to white is a step of 1.",
+);
+pub(crate) const NORMALIZE: Param = Param::bool("normalize", "Normalize", false)
+    .doc("Divides each channel's tensor by the magnitude of its gradient (2.133), so that strong edges dominate less.");
+pub(crate) const RELAX_THRESHOLD: Param =
+    Param::float("relax_threshold", "Relaxation threshold", 0.0, [0.0, 10.0])
+        .slider(0.0, 0.2)
+        .structural()
+        .doc(
+            "Keeps tensors where sqrt(lambda1) is above this before smoothing (2.164) and fills the others \
+             smoothly; 0 keeps all.",
+        );
+pub(crate) const RELAX_STEPS: Param = Param::int("relax_steps", "Relaxation steps", 1, [1, 3])
+    .structural()
+    .doc("Jacobi steps on each level of the pyramid (2.171).");
+pub(crate) const LEVELS: Param = Param::int("levels", "Levels", 1, [1, 8]).structural().doc(
+    "Levels of the multi-scale estimation (2.172): each further one halves the picture, and its tensor, \
+     upsampled, joins by its anisotropy (2.173). Guides join on the finest.",
+);
+pub(crate) const OVERSAMPLE: Param = Param::bool("oversample", "Oversample", false).structural().doc(
+    "Takes derivatives at twice the resolution (2.4.6), those of the Gaussian of sigma_g whatever the \
+     operator: exact also for the finest texture, at about ten times the cost.",
+);
+pub(crate) const GUIDE_WEIGHT: Param = Param::float("guide_weight", "Guide weight", 1.0, [0.0, 100.0])
+    .slider(0.0, 4.0)
+    .doc("Factor on the tensors of normals, depth and object numbers.");
 
 /// How a tensor is made; lengths in pixels of the picture that is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,28 +95,57 @@ pub struct TensorOptions {
     pub oversample: Option<f32>,
     /// Factor on the tensors of the guides.
     pub guide_weight: f32,
-    /// Size of the picture over its full size, as far as the smoothing is to make good for it.
+    /// Size of the picture over its full size, as far as the smoothing has to compensate for it.
     pub scale: f32,
 }
 
 impl Default for TensorOptions {
+    /// The defaults of the parameters, for a picture of full size.
     fn default() -> Self {
         Self {
-            derivative: Derivative::Scharr3,
-            rho: 2.0,
-            space: Space::Rgb,
-            normalize: false,
-            relax_threshold: 0.0,
-            relax_steps: 1,
-            levels: 1,
-            oversample: None,
-            guide_weight: 1.0,
+            derivative: derivative(DERIVATIVE.default_option(), SIGMA_G.default_float()),
+            rho: RHO.default_float(),
+            space: SPACE.default_option(),
+            normalize: NORMALIZE.default_bool(),
+            relax_threshold: RELAX_THRESHOLD.default_float(),
+            relax_steps: RELAX_STEPS.default_int(),
+            levels: LEVELS.default_int(),
+            oversample: OVERSAMPLE.default_bool().then_some(SIGMA_G.default_float()),
+            guide_weight: GUIDE_WEIGHT.default_float(),
             scale: 1.0,
         }
     }
 }
 
+/// The operator as its kernel takes it; `sigma_g` is the width of the Gaussian one.
+fn derivative(operator: Operator, sigma_g: f32) -> Derivative {
+    match operator {
+        Operator::Central => Derivative::Central,
+        Operator::Sobel => Derivative::Sobel,
+        Operator::Scharr3 => Derivative::Scharr3,
+        Operator::Scharr5 => Derivative::Scharr5,
+        Operator::Gaussian => Derivative::Gaussian(sigma_g),
+    }
+}
+
 impl TensorOptions {
+    /// The values of the parameters.
+    pub(crate) fn of(scope: &Scope<'_>) -> Self {
+        let sigma_g = scope.float("sigma_g");
+        Self {
+            derivative: derivative(scope.option("derivative"), sigma_g),
+            rho: scope.float("rho"),
+            space: scope.option("space"),
+            normalize: scope.bool("normalize"),
+            relax_threshold: scope.float("relax_threshold"),
+            relax_steps: scope.int("relax_steps"),
+            levels: scope.int("levels"),
+            oversample: scope.bool("oversample").then_some(sigma_g),
+            guide_weight: scope.float("guide_weight"),
+            scale: scope.scale(),
+        }
+    }
+
     /// Standard deviation of the smoothing that gives a proxy the tensors of the full picture. A pixel of
     /// a proxy is a mean over several, and its operator reaches over several, so that gradients come
     /// smoothed by that much more. Smoothed squares are as wide as squares of something smoother: of a

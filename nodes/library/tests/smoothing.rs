@@ -3,7 +3,6 @@
 
 use isophote::engine::cpu::{CallingThread, Control, CpuExecutor};
 use isophote::engine::{Image, Rect};
-use isophote::spec::ParamKind;
 use isophote::{Graph, Planned, Request, Value, registry};
 
 const NODES: &[&str] = &["line_integral_convolution", "oriented_bilateral", "flow_bilateral"];
@@ -64,11 +63,12 @@ fn variants(id: &str) -> Vec<Graph> {
     let mut graphs = vec![node(id, &[])];
     let spec = registry::find(id).unwrap();
     for param in spec.params() {
-        match param.kind {
-            ParamKind::Choice { options, .. } => {
-                graphs.extend((0..options.len()).map(|i| node(id, &[(param.id, Value::Choice(i))])));
+        match param.default {
+            Value::Choice(_) => {
+                graphs.extend((0..param.options.len()).map(|i| node(id, &[(param.id, Value::Choice(i))])));
             }
-            ParamKind::Float { range, slider, .. } if param.id != "mix" => {
+            Value::Float(_) if param.id != "mix" => {
+                let (range, slider) = (param.range, param.slider);
                 for value in [range[0], slider[0] + 0.37 * (slider[1] - slider[0])] {
                     graphs.push(node(id, &[(param.id, Value::Float(value))]));
                 }

@@ -1,7 +1,7 @@
 //! Loading and describing: what every effect says of itself.
 
 use crate::reference::{Expected, binary, expected, identifier, no_faults};
-use isophote::spec::{ImageKind, Param, ParamKind};
+use isophote::spec::{ImageKind, Param};
 use isophote_tests::ofx::effect::{Described, Effect};
 use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::properties::Value;
@@ -99,27 +99,28 @@ fn check(effect: &Effect, name: &str, param: &Param) {
             kOfxParamPropMax,
         ]
         .map(|p| set.numbers(p).first().map(|v| *v as f32));
-        match param.kind {
-            ParamKind::Float { default, range: [low, high], slider: [from, to] } => {
+        let ([low, high], [from, to]) = (param.range, param.slider);
+        match param.default {
+            isophote::Value::Float(default) => {
                 assert_eq!(control.kind.as_c_str(), kOfxParamTypeDouble);
                 assert_eq!(ranges, [default, low, from, to, high].map(Some), "{name}");
                 assert!(set.int(kOfxParamPropDigits) > Some(0));
             }
-            ParamKind::Int { default, range: [low, high], slider: [from, to] } => {
+            isophote::Value::Int(default) => {
                 assert_eq!(control.kind.as_c_str(), kOfxParamTypeInteger);
-                assert_eq!(ranges, [default, low, from, to, high].map(|v| Some(v as f32)), "{name}");
+                assert_eq!(ranges, [default as f32, low, from, to, high].map(Some), "{name}");
             }
-            ParamKind::Bool { default } => {
+            isophote::Value::Bool(default) => {
                 assert_eq!(control.kind.as_c_str(), kOfxParamTypeBoolean);
                 assert_eq!(set.int(kOfxParamPropDefault), Some(default.into()));
             }
-            ParamKind::Choice { default, options } => {
+            isophote::Value::Choice(default) => {
                 assert_eq!(control.kind.as_c_str(), kOfxParamTypeChoice);
                 assert_eq!(set.int(kOfxParamPropDefault), Some(default as i32));
-                let labels: Vec<&str> = options.iter().map(|o| o.label).collect();
+                let labels: Vec<&str> = param.options.iter().map(|o| o.label).collect();
                 assert_eq!(set.texts(kOfxParamPropChoiceOption), labels);
             }
-            ParamKind::Color { default } => {
+            isophote::Value::Color(default) => {
                 assert_eq!(control.kind.as_c_str(), kOfxParamTypeRGBA);
                 let got: Vec<f32> = set.numbers(kOfxParamPropDefault).iter().map(|v| *v as f32).collect();
                 assert_eq!(got, default);

@@ -2,7 +2,8 @@
 
 use crate::reference::*;
 use isophote::ColourSpace;
-use isophote::spec::{ParamKind, Unit};
+use isophote::Value;
+use isophote::spec::Unit;
 use isophote_tests::ofx::effect::{Described, Instance, Wanted};
 use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::picture::{Layout, Picture};
@@ -268,8 +269,8 @@ fn identity_is_what_is_rendered() {
         let node = nodes[usize::from(effect.is_lines())];
         for param in node.params().filter(|p| p.neutral_at_zero && p.id != "mix") {
             let name = if effect.is_lines() { format!("lines_{}", param.id) } else { param.id.to_owned() };
-            match param.kind {
-                ParamKind::Int { .. } => instance.set(&name, 0),
+            match param.default {
+                Value::Int(_) => instance.set(&name, 0),
                 _ => instance.set(&name, if param.unit == Unit::Pixels { 0.009 } else { 0.0 }),
             }
             assert!(instance.is_identity(), "{} {name}", effect.plugin.identifier());
@@ -277,12 +278,12 @@ fn identity_is_what_is_rendered() {
             // And what the filter itself makes of it is no other picture.
             let mut graph = effect.graph(effect.is_lines());
             let id = graph.find(if effect.is_lines() { "l" } else { "n" }).unwrap();
-            let zero = if matches!(param.kind, ParamKind::Int { .. }) { "0" } else { "0.0" };
+            let zero = if matches!(param.default, Value::Int(_)) { "0" } else { "0.0" };
             graph.set_text(id, param.id, zero).unwrap();
             let filtered = through(&graph, &source, layout, ColourSpace::Srgb);
             let worst = difference(&filtered, &source.packed(), &layout);
             assert!(worst < 2e-6, "{} {name}: {worst}", effect.plugin.identifier());
-            let ParamKind::Float { .. } = param.kind else {
+            let Value::Float(_) = param.default else {
                 instance.set(&name, 1);
                 continue;
             };

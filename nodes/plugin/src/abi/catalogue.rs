@@ -4,8 +4,10 @@ use super::args;
 use super::contract::*;
 use super::failure::{Failure, Outcome};
 use super::guard;
+use isophote::Value;
 use isophote::registry;
-use isophote::spec::{Choice, ImageKind, NodeSpec, Param, ParamKind, Port, Unit};
+use isophote::spec::{ImageKind, NodeSpec, Param, Port, Unit};
+use isophote::value::{Choice, decimal};
 use std::collections::HashMap;
 use std::ffi::{CString, c_char};
 use std::ptr::null;
@@ -113,12 +115,15 @@ fn port(port: &Port) -> IsophotePort {
 }
 
 fn param(param: &Param) -> IsophoteParam {
-    let mut out = IsophoteParam {
+    let choices: Vec<IsophoteChoice> = param.options.iter().map(choice).collect();
+    let [minimum, maximum] = param.range.map(decimal);
+    let [slider_minimum, slider_maximum] = param.slider.map(decimal);
+    IsophoteParam {
         id: lasting(param.id),
         label: lasting(param.label),
         doc: lasting(param.doc),
         group: lasting(param.group),
-        kind: param_kind(&param.kind),
+        kind: param_type(param.default).kind,
         unit: match param.unit {
             Unit::None => ISOPHOTE_UNIT_NONE,
             Unit::Pixels => ISOPHOTE_UNIT_PIXELS,
@@ -126,52 +131,38 @@ fn param(param: &Param) -> IsophoteParam {
             Unit::Degrees => ISOPHOTE_UNIT_DEGREES,
         },
         structural: u32::from(param.structural),
-        choice_count: 0,
-        choices: null(),
-        default_value: [0.0; 4],
-        minimum: 0.0,
-        maximum: 1.0,
-        slider_minimum: 0.0,
-        slider_maximum: 1.0,
-    };
-    match param.kind {
-        ParamKind::Float { default, range, slider } => {
-            out.default_value[0] = decimal(default);
-            [out.minimum, out.maximum] = range.map(decimal);
-            [out.slider_minimum, out.slider_maximum] = slider.map(decimal);
-        }
-        ParamKind::Int { default, range, slider } => {
-            out.default_value[0] = f64::from(default);
-            [out.minimum, out.maximum] = range.map(f64::from);
-            [out.slider_minimum, out.slider_maximum] = slider.map(f64::from);
-        }
-        ParamKind::Bool { default } => out.default_value[0] = f64::from(u8::from(default)),
-        ParamKind::Choice { default, options } => {
-            let choices: Vec<IsophoteChoice> = options.iter().map(choice).collect();
-            out.default_value[0] = default as f64;
-            out.maximum = choices.len().saturating_sub(1) as f64;
-            out.slider_maximum = out.maximum;
-            out.choice_count = choices.len() as u32;
-            out.choices = choices.leak().as_ptr();
-        }
-        ParamKind::Color { default } => out.default_value = default.map(decimal),
+        choice_count: choices.len() as u32,
+        choices: if choices.is_empty() { null() } else { choices.leak().as_ptr() },
+        default_value: param.default.decimals(),
+        minimum,
+        maximum,
+        slider_minimum,
+        slider_maximum,
     }
-    out
 }
 
 fn choice(choice: &Choice) -> IsophoteChoice {
     IsophoteChoice { id: lasting(choice.id), label: lasting(choice.label) }
 }
 
-/// The number of a type of parameter.
-pub fn param_kind(kind: &ParamKind) -> IsophoteParamKind {
-    match kind {
-        ParamKind::Float { .. } => ISOPHOTE_PARAM_FLOAT,
-        ParamKind::Int { .. } => ISOPHOTE_PARAM_INT,
-        ParamKind::Bool { .. } => ISOPHOTE_PARAM_BOOL,
-        ParamKind::Choice { .. } => ISOPHOTE_PARAM_CHOICE,
-        ParamKind::Color { .. } => ISOPHOTE_PARAM_COLOR,
-    }
+/// A type of parameter in the C interface.
+pub struct ParamType {
+    /// Its number.
+    pub kind: IsophoteParamKind,
+    /// For messages: what it is, and what sets it.
+    pub name: &'static str,
+}
+
+/// The type of a value.
+pub fn param_type(value: Value) -> ParamType {
+    let (kind, name) = match value {
+        Value::Float(_) => (ISOPHOTE_PARAM_FLOAT, "a number; set it with graph_set_float"),
+        Value::Int(_) => (ISOPHOTE_PARAM_INT, "a whole number; set it with graph_set_int"),
+        Value::Bool(_) => (ISOPHOTE_PARAM_BOOL, "a switch; set it with graph_set_bool"),
+        Value::Choice(_) => (ISOPHOTE_PARAM_CHOICE, "a choice; set it with graph_set_choice"),
+        Value::Color(_) => (ISOPHOTE_PARAM_COLOR, "a colour; set it with graph_set_color"),
+    };
+    ParamType { kind, name }
 }
 
 /// The number of a kind of image.
@@ -184,11 +175,6 @@ pub fn kind(kind: ImageKind) -> IsophoteKind {
         ImageKind::Depth => ISOPHOTE_KIND_DEPTH,
         ImageKind::ObjectId => ISOPHOTE_KIND_OBJECT_ID,
     }
-}
-
-/// The double that prints like the float: 0.1, not 0.10000000149.
-pub fn decimal(value: f32) -> f64 {
-    value.to_string().parse().unwrap_or(f64::from(value))
 }
 
 /// Text with a closing zero that is never freed.

@@ -3,8 +3,10 @@
 use super::effects::{Control, Effect, SPACES, Target, WORKING_SPACE};
 use super::host::{Host, Outcome, Properties};
 use super::interface::*;
+use isophote::Value;
 use isophote::graph::GraphInput;
-use isophote::spec::{ParamKind, Unit};
+use isophote::spec::{Param, Unit};
+use isophote::value::decimal;
 use std::ffi::{CStr, c_int};
 use std::ptr::null_mut;
 
@@ -177,16 +179,12 @@ fn define_control(
 ) -> Outcome<()> {
     let define = |kind| define_param(host, params, kind, &control.name);
     let set = match control.target {
-        Target::Param(_, param) => match param.kind {
-            ParamKind::Float { default, range, slider } => {
-                float(define(kOfxParamTypeDouble)?, param.unit, default, range, slider)
-            }
-            ParamKind::Int { default, range, slider } => {
-                int(define(kOfxParamTypeInteger)?, default, range, slider)
-            }
-            ParamKind::Bool { default } => switch(define(kOfxParamTypeBoolean)?, default),
-            ParamKind::Choice { default, .. } => choice(define(kOfxParamTypeChoice)?, control, default),
-            ParamKind::Color { default } => color(define(kOfxParamTypeRGBA)?, default),
+        Target::Param(_, param) => match param.default {
+            Value::Float(_) => number(define(kOfxParamTypeDouble)?, param),
+            Value::Int(_) => whole_number(define(kOfxParamTypeInteger)?, param),
+            Value::Bool(default) => switch(define(kOfxParamTypeBoolean)?, default),
+            Value::Choice(default) => choice(define(kOfxParamTypeChoice)?, control, default),
+            Value::Color(_) => colour(define(kOfxParamTypeRGBA)?, param),
         },
         Target::LinesOutput => choice(define(kOfxParamTypeChoice)?, control, 0),
         Target::WorkingSpace => {
@@ -204,42 +202,42 @@ fn define_control(
     Ok(())
 }
 
-fn float(set: Properties<'_>, unit: Unit, default: f32, range: [f32; 2], slider: [f32; 2]) -> Properties<'_> {
-    let kind = if unit == Unit::Degrees { kOfxParamDoubleTypeAngle } else { kOfxParamDoubleTypePlain };
+/// Default, range and slider, by the names of their properties.
+fn range(param: &Param) -> [(&'static CStr, f64); 5] {
+    let ([low, high], [from, to]) = (param.range.map(decimal), param.slider.map(decimal));
+    [
+        (kOfxParamPropDefault, param.default.decimals()[0]),
+        (kOfxParamPropMin, low),
+        (kOfxParamPropMax, high),
+        (kOfxParamPropDisplayMin, from),
+        (kOfxParamPropDisplayMax, to),
+    ]
+}
+
+fn number<'h>(set: Properties<'h>, param: &Param) -> Properties<'h> {
+    let kind = if param.unit == Unit::Degrees { kOfxParamDoubleTypeAngle } else { kOfxParamDoubleTypePlain };
     set.set_string(kOfxParamPropDoubleType, 0, kind);
-    for (name, value) in [
-        (kOfxParamPropDefault, default),
-        (kOfxParamPropMin, range[0]),
-        (kOfxParamPropMax, range[1]),
-        (kOfxParamPropDisplayMin, slider[0]),
-        (kOfxParamPropDisplayMax, slider[1]),
-    ] {
-        set.set_doubles(name, &[exact(value)]);
+    for (name, value) in range(param) {
+        set.set_doubles(name, &[value]);
     }
     // A hundredth of the slider, as a round number, and one digit more.
-    let digits = (2.0 - (slider[1] - slider[0]).log10().floor()).clamp(0.0, 6.0);
+    let digits = (2.0 - (param.slider[1] - param.slider[0]).log10().floor()).clamp(0.0, 6.0);
     set.set_doubles(kOfxParamPropIncrement, &[10_f64.powf(-f64::from(digits))]);
     set.set_int(kOfxParamPropDigits, digits as c_int + 1);
     set.set_int(kOfxParamPropAnimates, 1);
     set
 }
 
-fn int(set: Properties<'_>, default: c_int, range: [c_int; 2], slider: [c_int; 2]) -> Properties<'_> {
-    for (name, value) in [
-        (kOfxParamPropDefault, default),
-        (kOfxParamPropMin, range[0]),
-        (kOfxParamPropMax, range[1]),
-        (kOfxParamPropDisplayMin, slider[0]),
-        (kOfxParamPropDisplayMax, slider[1]),
-        (kOfxParamPropAnimates, 1),
-    ] {
-        set.set_int(name, value);
+fn whole_number<'h>(set: Properties<'h>, param: &Param) -> Properties<'h> {
+    for (name, value) in range(param) {
+        set.set_int(name, value as c_int);
     }
+    set.set_int(kOfxParamPropAnimates, 1);
     set
 }
 
-fn color(set: Properties<'_>, default: [f32; 4]) -> Properties<'_> {
-    set.set_doubles(kOfxParamPropDefault, &default.map(exact));
+fn colour<'h>(set: Properties<'h>, param: &Param) -> Properties<'h> {
+    set.set_doubles(kOfxParamPropDefault, &param.default.decimals());
     set.set_int(kOfxParamPropAnimates, 1);
     set
 }
@@ -257,9 +255,4 @@ fn choice<'h>(set: Properties<'h>, control: &'static Control, default: usize) ->
     set.set_int(kOfxParamPropDefault, default as c_int);
     set.set_int(kOfxParamPropAnimates, 0);
     set
-}
-
-/// The decimal number that was meant: 0.99 and not 0.9900000095.
-fn exact(value: f32) -> f64 {
-    value.to_string().parse().unwrap_or_else(|_| value.into())
 }

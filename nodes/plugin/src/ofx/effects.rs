@@ -205,9 +205,7 @@ impl Effect {
     fn add(&mut self, name: &str, label: &str, hint: &str, group: &str, target: Target) {
         let group = (!group.is_empty()).then(|| self.group(group));
         let options = match target {
-            Target::Param(_, Param { kind: isophote::spec::ParamKind::Choice { options, .. }, .. }) => {
-                options.iter().map(|o| text(o.label)).collect()
-            }
+            Target::Param(_, param) => param.options.iter().map(|o| text(o.label)).collect(),
             Target::LinesOutput => LINE_OUTPUTS.map(CStr::to_owned).to_vec(),
             Target::WorkingSpace => SPACES.map(|(label, _)| label.to_owned()).to_vec(),
             _ => Vec::new(),

@@ -4,7 +4,7 @@
 use super::effects::{AS_IS, Effect, Form, SPACES, Target};
 use super::host::{Host, Outcome};
 use super::interface::*;
-use isophote::spec::{ParamKind, Unit};
+use isophote::spec::{Param, Unit};
 use isophote::{ColourSpace, Graph, Value};
 use std::ffi::{CStr, c_int};
 use std::ptr::null_mut;
@@ -62,17 +62,12 @@ impl Settings {
         let last = if effect.form == Form::Lines && !over { 0 } else { ids.len() - 1 };
         for control in &effect.controls {
             let Target::Param(node, param) = control.target else { continue };
-            let Some(value) = values.value(&control.name, &param.kind) else { continue };
+            let Some(value) = values.value(&control.name, param) else { continue };
             graph.set(ids[node], param.id, value).map_err(|_| kOfxStatFailed)?;
             // Lines alone are never the picture.
             if node == last && param.neutral_at_zero && shows_colour {
-                let number = match value {
-                    Value::Float(v) => v,
-                    Value::Int(v) => v as f32,
-                    _ => continue,
-                };
                 let kind = usize::from(param.unit == Unit::Pixels);
-                least[kind] = least[kind].min(number.abs());
+                least[kind] = least[kind].min(value.form().numbers[0].abs() as f32);
             }
         }
         Ok(Self { graph, space, as_is, process_alpha, mask_apply, least })
@@ -145,18 +140,13 @@ impl Values<'_> {
     }
 
     /// A value within the range of the parameter, which not every host keeps.
-    fn value(&self, name: &CStr, kind: &ParamKind) -> Option<Value> {
-        Some(match *kind {
-            ParamKind::Float { range, .. } => {
-                Value::Float((self.double(name)? as f32).clamp(range[0], range[1]))
-            }
-            ParamKind::Int { range, .. } => Value::Int(self.int(name)?.clamp(range[0], range[1])),
-            ParamKind::Bool { .. } => Value::Bool(self.bool(name)?),
-            ParamKind::Choice { options, .. } => {
-                let index = usize::try_from(self.int(name)?).ok()?;
-                Value::Choice(index.min(options.len().saturating_sub(1)))
-            }
-            ParamKind::Color { .. } => Value::Color(self.color(name)?.map(|v| (v as f32).clamp(0.0, 1.0))),
-        })
+    fn value(&self, name: &CStr, param: &Param) -> Option<Value> {
+        let numbers = match param.default {
+            Value::Float(_) => [self.double(name)?, 0.0, 0.0, 0.0],
+            Value::Int(_) | Value::Choice(_) => [self.int(name)?.into(), 0.0, 0.0, 0.0],
+            Value::Bool(_) => [u8::from(self.bool(name)?).into(), 0.0, 0.0, 0.0],
+            Value::Color(_) => self.color(name)?,
+        };
+        Some(param.nearest(numbers))
     }
 }

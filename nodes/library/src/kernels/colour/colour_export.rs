@@ -2,10 +2,10 @@
 //!
 //! Cost: three powers per pixel.
 
+use crate::colour_space::ColourSpace;
 pub use crate::kernels::shaders::colour_export::Params;
 use crate::kernels::shared::colour::{LINEAR_TO_ACESCG, srgb_decode, transform};
 use crate::kernels::simd::pixels::map_pixels4;
-use crate::request::ColourSpace;
 use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

@@ -4,11 +4,11 @@
 //!
 //! Cost: three powers and a division per pixel.
 
+use crate::colour_space::ColourSpace;
 pub use crate::kernels::shaders::colour_import::Params;
 use crate::kernels::shared::colour::{ACESCG_TO_LINEAR, srgb_encode, transform};
 use crate::kernels::shared::host_colour::plain;
 use crate::kernels::simd::pixels::map_pixels4;
-use crate::request::ColourSpace;
 use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

@@ -6,12 +6,12 @@
 //!
 //! Cost: four powers per pixel; one for a host's linear light, none when the source is Lab already.
 
+use crate::colour_space::ColourSpace;
 use crate::kernels::colour::colour_import;
 pub use crate::kernels::shaders::lightness::Params;
 use crate::kernels::shared::colour::{ACESCG_TO_LINEAR, LUMINANCE, lab_curve, srgb_decode, transform};
 use crate::kernels::shared::host_colour::plain;
 use crate::kernels::simd::pixels::{map_pixels, write2};
-use crate::request::ColourSpace;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
 use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};

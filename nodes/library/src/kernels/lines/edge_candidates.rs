@@ -21,15 +21,16 @@ crate::kernel!(edge_candidates {
     },
 });
 
-/// What makes an edge.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// A maximum of the gradient's magnitude along the gradient.
-    Maximum = 0,
-    /// A zero crossing of the Laplacian.
-    ZeroCrossing = 1,
-    /// The magnitude alone: gives an edge image, dark from `low` to `high` on.
-    Magnitude = 2,
+crate::choice::choice! {
+    /// What makes an edge.
+    pub enum Method {
+        /// A maximum of the gradient's magnitude along the gradient.
+        Maximum = 0 ("canny", "Canny"),
+        /// The magnitude alone: gives an edge image, dark from `low` to `high` on.
+        Magnitude = 2 ("sobel", "Sobel"),
+        /// A zero crossing of the Laplacian.
+        ZeroCrossing = 1 ("log_zero_crossing", "Zero crossings of the Laplacian"),
+    }
 }
 
 /// Two values are told apart from this ratio on: what rounding decides would make ragged lines.

@@ -7,17 +7,18 @@ use isophote_engine::math::Elementary;
 /// Coverage below which a pixel counts as empty.
 pub const LEAST_COVERAGE: f32 = 1e-6;
 
-/// How a response becomes an edge image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Threshold {
-    /// Not at all: the response, in units of L.
-    None = 0,
-    /// 1 from epsilon on, 0 below (4.6).
-    Binary = 1,
-    /// 1 from epsilon on, 1 + tanh(phi (u - epsilon)) below (4.8).
-    Tanh = 2,
-    /// 2 smoothstep(-2, 2, phi (u - epsilon)), 1 from epsilon on.
-    Smoothstep = 3,
+crate::choice::choice! {
+    /// How a response becomes an edge image.
+    pub enum Threshold {
+        /// Not at all: the response, in units of L.
+        None = 0 ("none", "None"),
+        /// 1 from epsilon on, 0 below (4.6).
+        Binary = 1 ("binary", "Binary"),
+        /// 1 from epsilon on, 1 + tanh(phi (u - epsilon)) below (4.8).
+        Tanh = 2 ("tanh", "Tanh"),
+        /// 2 smoothstep(-2, 2, phi (u - epsilon)), 1 from epsilon on.
+        Smoothstep = 3 ("smoothstep", "Smoothstep"),
+    }
 }
 
 /// Weights and threshold of an extended difference of Gaussians, in the one form that both

@@ -9,8 +9,7 @@ pub use crate::kernels::shaders::line_integral_convolution::Params;
 use crate::kernels::shared::coverage::{Covered, full_or};
 use crate::kernels::shared::sampling::sample_linear4;
 use crate::kernels::shared::stream::{
-    FEW_STEPS, Integrator, NearField, STRETCH, Stream, StreamField, acos, centres, few_steps, holds,
-    stretched,
+    FEW_STEPS, Integrator, NearField, Stream, StreamField, acos, centres, few_steps, holds, stretched,
 };
 use crate::kernels::shared::tensor::{anisotropy, tangent};
 use crate::kernels::simd::pixels::{BLOCK, for_blocks_in_tiles, get_pixels4, put_pixels4};
@@ -36,15 +35,16 @@ crate::kernel!(line_integral_convolution {
     },
 });
 
-/// How the length of the lines is adapted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Adapt {
-    /// Not at all.
-    None = 0,
-    /// sigma (1 + A)^2 / 4, A the anisotropy at the centre (§ 6.3.1).
-    Anisotropy = 1,
-    /// The arc length runs faster where the line turns (§ 6.3.2).
-    Angle = 2,
+crate::choice::choice! {
+    /// How the length of the lines is adapted.
+    pub enum Adapt {
+        /// Not at all.
+        None = 0 ("none", "Off"),
+        /// sigma (1 + A)^2 / 4, A the anisotropy at the centre (§ 6.3.1).
+        Anisotropy = 1 ("anisotropy", "By anisotropy"),
+        /// The arc length runs faster where the line turns (§ 6.3.2).
+        Angle = 2 ("angle", "By turning angle"),
+    }
 }
 
 /// What a convolution is asked for.
@@ -62,20 +62,6 @@ pub struct Options {
     pub adapt: Adapt,
     /// A side ends at a step that turns by more, degrees; 0 for never.
     pub max_angle: f32,
-}
-
-impl Default for Options {
-    /// What styles take: second order, which long lines need (§ 6.3), in steps that are stretched.
-    fn default() -> Self {
-        Self {
-            sigma: 6.0,
-            step: 1.0,
-            stretch: STRETCH,
-            integrator: Integrator::TwoStep,
-            adapt: Adapt::Anisotropy,
-            max_angle: 0.0,
-        }
-    }
 }
 
 /// Smooths a colour along the stream lines of `tensors`; pixels count by their coverage.

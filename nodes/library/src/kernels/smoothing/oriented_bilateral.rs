@@ -39,13 +39,14 @@ pub enum Direction {
     Tangent = 1,
 }
 
-/// Where range weights are applied.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sampling {
-    /// To the interpolated colour.
-    Linear = 0,
-    /// To both pixels, before the interpolation (3.9).
-    Manual = 1,
+crate::choice::choice! {
+    /// Where range weights are applied.
+    pub enum Sampling {
+        /// To the interpolated colour.
+        Linear = 0 ("linear", "Linear"),
+        /// To both pixels, before the interpolation (3.9).
+        Manual = 1 ("manual", "Manual"),
+    }
 }
 
 /// What a pass is asked for.

@@ -28,13 +28,14 @@ crate::kernel!(perona_malik {
     },
 });
 
-/// The diffusivity g (3.2).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Diffusivity {
-    /// 1 / (1 + s^2 / lambda^2), which favours wide regions.
-    Rational = 0,
-    /// exp(-s^2 / K^2), which favours edges of high contrast.
-    Exponential = 1,
+crate::choice::choice! {
+    /// The diffusivity g (3.2).
+    pub enum Diffusivity {
+        /// 1 / (1 + s^2 / lambda^2), which favours wide regions.
+        Rational = 0 ("rational", "Rational"),
+        /// exp(-s^2 / K^2), which favours edges of high contrast.
+        Exponential = 1 ("exponential", "Exponential"),
+    }
 }
 
 /// A step by `time_step`; `contrast` is K or lambda, in the unit of the colour.

@@ -40,13 +40,14 @@ crate::kernel!(edge_tangent_flow {
     },
 });
 
-/// Spatial weight w_s of the neighbours.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Window {
-    /// 1 nearer than the radius.
-    Box,
-    /// A Gaussian that is cut at the radius, three standard deviations.
-    Gaussian,
+crate::choice::choice! {
+    /// Spatial weight w_s of the neighbours.
+    pub enum Window {
+        /// 1 nearer than the radius.
+        Box ("box", "Box"),
+        /// A Gaussian that is cut at the radius, three standard deviations.
+        Gaussian ("gaussian", "Gaussian"),
+    }
 }
 
 /// The neighbours of a pass.

@@ -2,12 +2,14 @@
 //! tensor and sharpening across them, in turn. Long lines are followed in stretched steps
 //! ([`few_steps`](crate::kernels::shared::stream::few_steps)).
 
+use crate::choice::choice;
 use crate::kernels::coherence::carried_tensor;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
 use crate::nodes::coherence::shock::{self, Directed};
+use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
-use crate::spec::{Choice, NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -67,23 +69,10 @@ pub(crate) const SIGMA_T: Param = Param::float("sigma_t", "Sigma t", 6.0, [0.0, 
 pub(crate) const MAX_ANGLE: Param = Param::float("max_angle", "Largest turn", 22.5, [0.0, 90.0])
     .degrees()
     .doc("A stream line ends where it turns by more in one step; 0 for never.");
-pub(crate) const ADAPT: Param = Param::choice(
-    "adapt",
-    "Adapt length",
-    0,
-    &[Choice { id: "anisotropy", label: "By anisotropy" }, Choice { id: "angle", label: "By turning angle" }],
-)
-.uniform()
-.doc("Shortens stream lines where the orientation is uncertain (6.3.1), or as they turn (6.3.2).");
-pub(crate) const SHOCK: Param = Param::choice(
-    "shock",
-    "Shock filter",
-    0,
-    &[
-        Choice { id: "gradient_directed", label: "Gradient-directed" },
-        Choice { id: "coherence_enhancing", label: "Coherence-enhancing" },
-    ],
-)
+pub(crate) const ADAPT: Param = Param::choice("adapt", "Adapt length", Adaption::Anisotropy.selected())
+    .uniform()
+    .doc("Shortens stream lines where the orientation is uncertain (6.3.1), or as they turn (6.3.2).");
+pub(crate) const SHOCK: Param = Param::choice("shock", "Shock filter", Shock::GradientDirected.selected())
 .doc("What sharpens: the local filter (6.4.3), or three steps of Weickert's equation (6.4.2), which only `sigma_i` controls.");
 pub(crate) const SIGMA_A: Param = Param::float("sigma_a", "Edge smoothing", 1.5, [0.0, 20.0])
     .slider(0.0, 5.0)
@@ -91,8 +80,25 @@ pub(crate) const SIGMA_A: Param = Param::float("sigma_a", "Edge smoothing", 1.5,
     .structural()
     .doc("Standard deviation of the last smoothing along the edges, against the jagged steps of the shocks; 0 for none.");
 
-/// Steps of Weickert's equation in each iteration, and their length (§ 6.4.2).
-const PDE_STEPS: [f32; 3] = [0.4; 3];
+choice! {
+    /// What shortens the stream lines.
+    enum Adaption {
+        /// An uncertain orientation (6.3.1).
+        Anisotropy ("anisotropy", "By anisotropy"),
+        /// Turns (6.3.2).
+        Angle ("angle", "By turning angle"),
+    }
+}
+
+choice! {
+    /// What sharpens.
+    pub(crate) enum Shock {
+        /// The local filter (6.4.3).
+        GradientDirected ("gradient_directed", "Gradient-directed"),
+        /// Steps of Weickert's equation (6.4.2).
+        CoherenceEnhancing ("coherence_enhancing", "Coherence-enhancing"),
+    }
+}
 
 /// How a picture is filtered; lengths in pixels of the picture that is rendered.
 #[derive(Clone, Copy, Debug)]
@@ -105,10 +111,10 @@ pub(crate) struct Filter {
     pub relax_threshold: f32,
     /// The smoothing.
     pub smoothing: Lic,
-    /// The sharpening.
-    pub shock: Directed,
-    /// Sharpen by Weickert's equation instead.
-    pub weickert: bool,
+    /// What sharpens.
+    pub shock: Shock,
+    /// The gradient-directed shock filter.
+    pub directed: Directed,
     /// Standard deviation of the last smoothing.
     pub sigma_a: f32,
 }
@@ -122,12 +128,15 @@ impl Filter {
             relax_threshold: scope.float("relax_threshold"),
             smoothing: Lic {
                 sigma: scope.float("sigma_t"),
-                adapt: if scope.choice("adapt") == "angle" { Adapt::Angle } else { Adapt::Anisotropy },
+                adapt: match scope.option("adapt") {
+                    Adaption::Anisotropy => Adapt::Anisotropy,
+                    Adaption::Angle => Adapt::Angle,
+                },
                 max_angle: scope.float("max_angle"),
-                ..Lic::default()
+                ..lic::options()
             },
-            shock: Directed::of(scope),
-            weickert: scope.choice("shock") == "coherence_enhancing",
+            shock: scope.option("shock"),
+            directed: Directed::of(scope),
             sigma_a: scope.float("sigma_a"),
         }
     }
@@ -157,16 +166,18 @@ impl Filter {
             let along = self.tensor(plan, color, tensor);
             color = line_integral_convolution::color(plan, color, along, &self.smoothing);
             let mut across = self.tensor(plan, color, Some(along));
-            if self.weickert {
-                for (i, time_step) in PDE_STEPS.into_iter().enumerate() {
-                    if i > 0 {
-                        across = self.tensor(plan, color, Some(across));
+            match self.shock {
+                Shock::GradientDirected => color = self.directed.apply(plan, color, across),
+                // In steps as many and as long as those of the shock filter by itself (§ 6.4.2).
+                Shock::CoherenceEnhancing => {
+                    for i in 0..shock::ITERATIONS.default_int() {
+                        if i > 0 {
+                            across = self.tensor(plan, color, Some(across));
+                        }
+                        let (sigma_i, time_step) = (self.directed.sigma_i, shock::TIME_STEP.default_float());
+                        color = shock::coherence_enhancing_step(plan, color, across, sigma_i, time_step);
                     }
-                    color =
-                        shock::coherence_enhancing_step(plan, color, across, self.shock.sigma_i, time_step);
                 }
-            } else {
-                color = self.shock.apply(plan, color, across);
             }
             tensor = Some(across);
         }

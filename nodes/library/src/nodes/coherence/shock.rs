@@ -1,11 +1,12 @@
 //! Shock filters (§ 6.4): sharp edges by eroding about minima and dilating about maxima.
 
+use crate::choice::choice;
 use crate::kernels::coherence::directed_shock::{self, Options};
 use crate::kernels::coherence::{laplacian, second_derivative, shock_step};
 use crate::kernels::smoothing::gaussian_blur;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
-use crate::spec::{Choice, NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -21,17 +22,7 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR, ports::TENSOR],
     output: ports::color_output("The sharpened picture."),
     own_params: &[
-        Param::choice(
-            "variant",
-            "Variant",
-            2,
-            &[
-                Choice { id: "osher_rudin", label: "Osher-Rudin" },
-                Choice { id: "coherence_enhancing", label: "Coherence-enhancing" },
-                Choice { id: "gradient_directed", label: "Gradient-directed" },
-            ],
-        )
-        .doc(
+        Param::choice("variant", "Variant", Variant::GradientDirected.selected()).doc(
             "The classical filter, by the Laplacian (6.4.1); Weickert's, by the second derivative along the \
              gradient (6.4.2); or the local filter along the gradient (6.4.3).",
         ),
@@ -39,12 +30,8 @@ pub static NODE: NodeSpec = NodeSpec {
         SIGMA_I,
         RADIUS,
         THRESHOLD,
-        Param::int("iterations", "Iterations", 3, [1, 100])
-            .slider(1.0, 20.0)
-            .structural()
-            .doc("Steps of the two variants that solve an equation."),
-        Param::float("time_step", "Time step", 0.4, [0.01, 0.5])
-            .doc("Length of a step of these variants; beyond 1/2 they would not be stable."),
+        ITERATIONS,
+        TIME_STEP,
     ],
     build,
 };
@@ -68,6 +55,25 @@ pub(crate) const THRESHOLD: Param = Param::float("threshold", "Threshold", 0.005
         "Second derivative, in units of luma, up to which a pixel stays as it is (tau_s): keeps shocks out of \
          smooth parts.",
     );
+
+pub(crate) const ITERATIONS: Param = Param::int("iterations", "Iterations", 3, [1, 100])
+    .slider(1.0, 20.0)
+    .structural()
+    .doc("Steps of the two variants that solve an equation.");
+pub(crate) const TIME_STEP: Param = Param::float("time_step", "Time step", 0.4, [0.01, 0.5])
+    .doc("Length of a step of these variants; beyond 1/2 they would not be stable.");
+
+choice! {
+    /// The shock filter.
+    enum Variant {
+        /// The classical filter, by the Laplacian (6.4.1).
+        OsherRudin ("osher_rudin", "Osher-Rudin"),
+        /// Weickert's, by the second derivative along the gradient (6.4.2).
+        CoherenceEnhancing ("coherence_enhancing", "Coherence-enhancing"),
+        /// The local filter along the gradient (6.4.3).
+        GradientDirected ("gradient_directed", "Gradient-directed"),
+    }
+}
 
 /// The gradient-directed filter; lengths in pixels of the picture that is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,14 +145,14 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let mut color = scope.required("color");
     let (sigma_i, time_step) = (scope.float("sigma_i"), scope.float("time_step"));
     let iterations = scope.int("iterations");
-    match scope.choice("variant") {
-        "osher_rudin" => {
+    match scope.option("variant") {
+        Variant::OsherRudin => {
             for _ in 0..iterations {
                 color = osher_rudin_step(scope.plan, color, sigma_i, time_step);
             }
             color
         }
-        "coherence_enhancing" => {
+        Variant::CoherenceEnhancing => {
             let options = TensorOptions::at_scale(scope.scale());
             for _ in 0..iterations {
                 // The orientation evolves with the picture, unless one is given.
@@ -158,7 +164,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
             }
             color
         }
-        _ => {
+        Variant::GradientDirected => {
             let tensor = structure_tensor::connected(scope, color);
             Directed::of(scope).apply(scope.plan, color, tensor)
         }

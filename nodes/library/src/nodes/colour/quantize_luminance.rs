@@ -17,7 +17,7 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR],
     output: ports::color_output("The flattened picture."),
     own_params: &[
-        Param::int("bins", "Bins", 8, [1, 256]).slider(2.0, 24.0).doc("Levels between black and white."),
+        BINS,
         PHI_Q,
         Param::bool("adaptive", "Adaptive", true).doc(
             "Steepness from the gradient of L instead of `phi_q`: flat parts step softly and flicker less.",
@@ -30,6 +30,8 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
+pub(crate) const BINS: Param =
+    Param::int("bins", "Bins", 8, [1, 256]).slider(2.0, 24.0).doc("Levels between black and white.");
 pub(crate) const PHI_Q: Param = Param::float("phi_q", "Phi q", 3.4, [0.0, 1000.0])
     .slider(0.2, 10.0)
     .doc("Steepness of the steps, per unit of L; counts when not adaptive.");

@@ -1,10 +1,11 @@
 //! The extended difference of Gaussians filter (§ 4.2-4.4).
 
+use crate::choice::choice;
 use crate::kernels::colour::lightness;
 use crate::kernels::lines::dog_columns;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::ports;
-use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
+use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
 use isophote_engine::ImageId;
 
 /// The node.
@@ -36,14 +37,9 @@ pub(crate) const SIGMA_E: Param = Param::float("sigma_e", "Sigma e", 1.0, [0.1, 
 pub(crate) const K: Param = Param::float("k", "k", 1.6, [1.01, 4.0])
     .slider(1.1, 3.0)
     .doc("Ratio of the two standard deviations (4.5); 1.6 after Marr and Hildreth.");
-pub(crate) const FORM: Param = Param::choice(
-    "form",
-    "Form",
-    0,
-    &[Choice { id: "tau", label: "Tau" }, Choice { id: "sharpen", label: "Sharpen" }],
-)
-.uniform()
-.doc("Which parameters count: `tau`, `epsilon`, `phi` (4.7, 4.8), or `p`, `epsilon_p`, `phi_p` (4.10).");
+pub(crate) const FORM: Param = Param::choice("form", "Form", Form::Tau.selected())
+    .uniform()
+    .doc("Which parameters count: `tau`, `epsilon`, `phi` (4.7, 4.8), or `p`, `epsilon_p`, `phi_p` (4.10).");
 pub(crate) const TAU: Param = Param::float("tau", "Tau", 0.99, [0.0, 1.0])
     .slider(0.9, 1.0)
     .doc("Weight of the wider Gaussian (4.7); the nearer to 1, the weaker the edges that draw a line.");
@@ -62,32 +58,28 @@ pub(crate) const EPSILON_P: Param = Param::float("epsilon_p", "Epsilon (sharpen)
 pub(crate) const PHI_P: Param = Param::float("phi_p", "Phi (sharpen)", 0.017, [0.0, 100.0])
     .slider(0.0, 1.0)
     .doc("Steepness of the ramp to black, per unit of L of the sharpened picture (4.10).");
-pub(crate) const THRESHOLD: Param = Param::choice(
-    "threshold",
-    "Threshold",
-    2,
-    &[
-        Choice { id: "none", label: "None" },
-        Choice { id: "binary", label: "Binary" },
-        Choice { id: "tanh", label: "Tanh" },
-        Choice { id: "smoothstep", label: "Smoothstep" },
-    ],
-)
-.uniform()
-.doc("Curve from response to edge image: none, binary (4.6), tanh (4.8) or a smooth step of like slope.");
+pub(crate) const THRESHOLD: Param = Param::choice("threshold", "Threshold", Threshold::Tanh.selected())
+    .uniform()
+    .doc("Curve from response to edge image: none, binary (4.6), tanh (4.8) or a smooth step of like slope.");
+
+choice! {
+    /// Which parameters count.
+    enum Form {
+        /// `tau`, `epsilon` and `phi` (4.7, 4.8).
+        Tau ("tau", "Tau"),
+        /// `p`, `epsilon_p` and `phi_p` (4.10).
+        Sharpen ("sharpen", "Sharpen"),
+    }
+}
 
 /// Weights and threshold as the parameters above say.
 pub(crate) fn xdog(scope: &Scope<'_>) -> Xdog {
-    let threshold = match scope.choice("threshold") {
-        "none" => Threshold::None,
-        "binary" => Threshold::Binary,
-        "smoothstep" => Threshold::Smoothstep,
-        _ => Threshold::Tanh,
-    };
-    if scope.choice("form") == "sharpen" {
-        Xdog::sharpen(scope.float("p"), scope.float("epsilon_p"), scope.float("phi_p"), threshold)
-    } else {
-        Xdog::tau(scope.float("tau"), scope.float("epsilon"), scope.float("phi"), threshold)
+    let threshold = scope.option("threshold");
+    match scope.option("form") {
+        Form::Tau => Xdog::tau(scope.float("tau"), scope.float("epsilon"), scope.float("phi"), threshold),
+        Form::Sharpen => {
+            Xdog::sharpen(scope.float("p"), scope.float("epsilon_p"), scope.float("phi_p"), threshold)
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use crate::kernels::lines::edge_candidates::{self, Method};
 use crate::kernels::lines::{edge_gradient, edge_hysteresis};
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::ports;
-use crate::spec::{Choice, NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, Scope};
 use isophote_engine::ImageId;
 
 /// The node.
@@ -21,17 +21,7 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR],
     output: dog::EDGES,
     own_params: &[
-        Param::choice(
-            "method",
-            "Method",
-            0,
-            &[
-                Choice { id: "canny", label: "Canny" },
-                Choice { id: "sobel", label: "Sobel" },
-                Choice { id: "log_zero_crossing", label: "Zero crossings of the Laplacian" },
-            ],
-        )
-        .doc(
+        Param::choice("method", "Method", Method::Maximum.selected()).doc(
             "Canny: thin, joined lines at maxima of the gradient. Sobel: the magnitude of the gradient, from \
              `low` (paper) to `high` (line). Zero crossings: where the Laplacian of Gaussian changes its \
              sign (4.3), joined like Canny's.",
@@ -60,11 +50,7 @@ pub static NODE: NodeSpec = NodeSpec {
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = scope.required("color");
-    let method = match scope.choice("method") {
-        "sobel" => Method::Magnitude,
-        "log_zero_crossing" => Method::ZeroCrossing,
-        _ => Method::Maximum,
-    };
+    let method = scope.option("method");
     let (sigma, low, high) = (scope.float("sigma"), scope.float("low"), scope.float("high"));
     let lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
     let gradient = edge_gradient::of_lab(scope.plan, lab, sigma, method == Method::Magnitude);

@@ -1,6 +1,7 @@
 //! The flow-based difference of Gaussians filter (§ 4.5), separable or with its two-dimensional kernel, with
 //! lines where geometry breaks.
 
+use crate::choice::choice;
 use crate::kernels::colour::lightness;
 use crate::kernels::lines::flow_dog_two_dimensional::{self, Stepping};
 use crate::kernels::lines::{
@@ -12,7 +13,7 @@ use crate::kernels::shared::stream::Integrator;
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::structure::structure_tensor::{Guides, TensorOptions, of_color_and_guides};
 use crate::ports;
-use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
+use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -73,35 +74,39 @@ pub(crate) const SIGMA_M: Param = Param::float("sigma_m", "Sigma m", 3.0, [0.0, 
     .slider(0.0, 15.0)
     .pixels()
     .doc("Standard deviation of the smoothing along the edges; longer lines and less noise.");
-pub(crate) const INTEGRATOR: Param = Param::choice(
-    "integrator",
-    "Integrator",
-    1,
-    &[
-        Choice { id: "euler", label: "Euler" },
-        Choice { id: "rk2", label: "Runge-Kutta, second order" },
-        Choice { id: "cabral_leedom", label: "Cabral-Leedom" },
-        Choice { id: "two_step", label: "Two-step midpoint, second order" },
-    ],
-)
-.doc(
+const INTEGRATOR: Param = Param::choice("integrator", "Integrator", Tracing::Midpoint.selected()).doc(
     "How stream lines are stepped: Euler (2.176), second order (2.182), from pixel boundary to pixel \
      boundary with the Gaussian integrated exactly (Cabral and Leedom, 2.193), or second order with the tangent \
-     here foreseen from the last steps, which takes less time.",
+     here extrapolated from the last steps, which takes less time.",
 );
-const KERNEL: Param = Param::choice(
-    "kernel",
-    "Kernel",
-    0,
-    &[
-        Choice { id: "separable", label: "Separable" },
-        Choice { id: "two_dimensional", label: "Two-dimensional" },
-    ],
-)
-.doc(
+const KERNEL: Param = Param::choice("kernel", "Kernel", Kernel::Separable.selected()).doc(
     "Separable: across the tangent at each pixel, then along its stream line. Two-dimensional: across the \
-     tangent at every point of the stream line, as first proposed; costly, and hardly to be told apart.",
+     tangent at every point of the stream line, as first proposed; costly, and hardly different to the eye.",
 );
+
+choice! {
+    /// How stream lines are stepped.
+    enum Tracing {
+        /// Euler's method (2.176).
+        Euler ("euler", "Euler"),
+        /// The midpoint method, a second-order Runge-Kutta method (2.182).
+        Midpoint ("rk2", "Runge-Kutta, second order"),
+        /// From pixel boundary to pixel boundary, with the Gaussian integrated exactly (2.193).
+        CabralLeedom ("cabral_leedom", "Cabral-Leedom"),
+        /// The midpoint method with an extrapolated tangent, of second order too and faster.
+        TwoStep ("two_step", "Two-step midpoint, second order"),
+    }
+}
+
+choice! {
+    /// The window of the filter.
+    pub(crate) enum Kernel {
+        /// Across the tangent at each pixel, then along its stream line.
+        Separable ("separable", "Separable"),
+        /// Across the tangent at every point of the stream line.
+        TwoDimensional ("two_dimensional", "Two-dimensional"),
+    }
+}
 
 /// How lines are drawn along the flow; lengths in pixels of the picture that is rendered.
 #[derive(Clone, Copy, Debug)]
@@ -112,7 +117,7 @@ pub(crate) struct FlowDog {
     pub xdog: Xdog,
     pub iterations: i32,
     pub stepping: Stepping,
-    pub two_dimensional: bool,
+    pub kernel: Kernel,
     pub guide_weight: f32,
 }
 
@@ -135,14 +140,24 @@ impl FlowDog {
                 // Only an edge image can darken the input of the next iteration.
                 xdog.threshold = Threshold::Tanh;
             }
-            edges = if self.two_dimensional {
-                let marked = self.marked(plan, source, field, guides);
-                let sigmas = [self.sigma_e, self.k, self.sigma_m];
-                flow_dog_two_dimensional::edges(plan, [source, field, marked], sigmas, self.stepping, &xdog)
-            } else {
-                let response = flow_dog_gradient::response(plan, source, field, self.sigma_e, self.k, &xdog);
-                let response = self.marked(plan, response, field, guides);
-                self.along(plan, response, field, &xdog)
+            edges = match self.kernel {
+                Kernel::Separable => {
+                    let response =
+                        flow_dog_gradient::response(plan, source, field, self.sigma_e, self.k, &xdog);
+                    let response = self.marked(plan, response, field, guides);
+                    self.along(plan, response, field, &xdog)
+                }
+                Kernel::TwoDimensional => {
+                    let marked = self.marked(plan, source, field, guides);
+                    let sigmas = [self.sigma_e, self.k, self.sigma_m];
+                    flow_dog_two_dimensional::edges(
+                        plan,
+                        [source, field, marked],
+                        sigmas,
+                        self.stepping,
+                        &xdog,
+                    )
+                }
             };
             if !last {
                 source = darken_by_lines::darken(plan, lightness, edges);
@@ -168,10 +183,14 @@ impl FlowDog {
 
     /// The second pass of the separable filter.
     fn along(&self, plan: &mut PlanBuilder, response: ImageId, field: ImageId, xdog: &Xdog) -> ImageId {
-        let Stepping::Along(integrator) = self.stepping else {
-            return flow_dog_cabral_leedom::edges(plan, response, field, self.sigma_m, xdog);
-        };
-        flow_dog_tangent::edges(plan, response, field, self.sigma_m, integrator, xdog)
+        match self.stepping {
+            Stepping::Along(integrator) => {
+                flow_dog_tangent::edges(plan, response, field, self.sigma_m, integrator, xdog)
+            }
+            Stepping::CabralLeedom => {
+                flow_dog_cabral_leedom::edges(plan, response, field, self.sigma_m, xdog)
+            }
+        }
     }
 }
 
@@ -197,13 +216,13 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         sigma_m: scope.float("sigma_m"),
         xdog: dog::xdog(scope),
         iterations: scope.int("iterations"),
-        stepping: match scope.choice("integrator") {
-            "euler" => Stepping::Along(Integrator::Euler),
-            "cabral_leedom" => Stepping::CabralLeedom,
-            "two_step" => Stepping::Along(Integrator::TwoStep),
-            _ => Stepping::Along(Integrator::Midpoint),
+        stepping: match scope.option("integrator") {
+            Tracing::Euler => Stepping::Along(Integrator::Euler),
+            Tracing::Midpoint => Stepping::Along(Integrator::Midpoint),
+            Tracing::TwoStep => Stepping::Along(Integrator::TwoStep),
+            Tracing::CabralLeedom => Stepping::CabralLeedom,
         },
-        two_dimensional: scope.choice("kernel") == "two_dimensional",
+        kernel: scope.option("kernel"),
         guide_weight: scope.float("guide_weight"),
     };
     let guides = guides(scope, lines.guide_weight);

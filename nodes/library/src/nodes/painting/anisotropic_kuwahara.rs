@@ -1,12 +1,13 @@
 //! The anisotropic Kuwahara filter (§ 5.4), at one scale or at several (§ 5.5).
 
+use crate::choice::choice;
 use crate::kernels::painting::anisotropic_kuwahara::{self as polynomial, Options};
 use crate::kernels::painting::propagate_colour::{self, Params as Propagation};
 use crate::kernels::painting::{anisotropic_kuwahara_texture as texture, lanczos_half, propagate_tensor};
 use crate::nodes::painting::generalized_kuwahara::{Q, SECTORS, THRESHOLD, sectors};
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
-use crate::spec::{Choice, NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, Port, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -27,13 +28,7 @@ pub static NODE: NodeSpec = NodeSpec {
         Q,
         THRESHOLD,
         ALPHA,
-        Param::choice(
-            "weights",
-            "Weights",
-            1,
-            &[Choice { id: "texture", label: "Texture" }, Choice { id: "polynomial", label: "Polynomial" }],
-        )
-        .doc(
+        Param::choice("weights", "Weights", Weights::Polynomial.selected()).doc(
             "Weighting functions of the sectors: sampled from their definition (5.33), or polynomials (5.38), \
              which hardly differ and are faster on CPUs.",
         ),
@@ -50,7 +45,7 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
-const TENSOR: crate::spec::Port = crate::spec::Port {
+const TENSOR: Port = Port {
     doc: "The orientation to follow, in all iterations and at the finest level; the smoothed structure tensor \
           of the picture when open.",
     ..ports::TENSOR
@@ -80,13 +75,23 @@ pub(crate) const TAU_W: Param = Param::float("tau_w", "Least deviation", 0.02, [
     .slider(0.001, 0.1)
     .doc("With several levels: least standard deviation of a sector in the measure of variation (tau_w of 5.5.2).");
 
+choice! {
+    /// The weighting functions of the sectors.
+    pub(crate) enum Weights {
+        /// Sampled from their definition (5.33).
+        Texture ("texture", "Texture"),
+        /// Polynomials (5.38).
+        Polynomial ("polynomial", "Polynomial"),
+    }
+}
+
 /// The filter at several scales.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Painting {
     /// At each scale.
     pub options: Options,
-    /// Sampled weights instead of polynomials.
-    pub texture: bool,
+    /// The weighting functions of the sectors.
+    pub weights: Weights,
     /// Scales, at least 1.
     pub levels: i32,
     /// Detail kept at all scales.
@@ -99,7 +104,7 @@ pub(crate) struct Painting {
 
 impl Painting {
     /// The values of the parameters of these names, which nodes that paint share.
-    pub(crate) fn of(scope: &Scope<'_>, texture: bool) -> Self {
+    pub(crate) fn of(scope: &Scope<'_>, weights: Weights) -> Self {
         Self {
             options: Options {
                 radius: scope.float("radius"),
@@ -109,7 +114,7 @@ impl Painting {
                 alpha: scope.float("alpha"),
                 deviation_floor: scope.float("tau_w"),
             },
-            texture,
+            weights,
             levels: scope.int("levels"),
             p_s: scope.float("p_s"),
             p_d: scope.float("p_d"),
@@ -154,7 +159,10 @@ impl Painting {
                     below.map_or(own, |[.., coarse]| propagate_tensor::merged(plan, own, coarse))
                 }
             };
-            let filter = if self.texture { texture::pass } else { polynomial::pass };
+            let filter = match self.weights {
+                Weights::Texture => texture::pass,
+                Weights::Polynomial => polynomial::pass,
+            };
             let colour = filter(plan, merged, orientation, &self.options);
             below = Some([colour, plan.sibling(colour, 1), orientation]);
         }
@@ -171,7 +179,7 @@ const SMALLEST: i32 = 8;
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = scope.required("color");
     let tensor = scope.input("tensor");
-    let painting = Painting::of(scope, scope.choice("weights") == "texture");
+    let painting = Painting::of(scope, scope.option("weights"));
     let (iterations, scale) = (scope.int("iterations"), scope.scale());
     (0..iterations).fold(color, |color, _| painting.apply(scope.plan, color, tensor, scale))
 }

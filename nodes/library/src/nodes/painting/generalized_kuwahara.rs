@@ -1,8 +1,9 @@
 //! The generalized Kuwahara filter of Papari et al. (§ 5.3).
 
+use crate::choice::choice;
 use crate::kernels::painting::generalized_kuwahara::{self, Options};
 use crate::ports;
-use crate::spec::{Choice, NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, Scope};
 use isophote_engine::ImageId;
 
 /// The node.
@@ -25,20 +26,23 @@ pub static NODE: NodeSpec = NodeSpec {
         SECTORS,
         Q,
         THRESHOLD,
-        Param::choice(
-            "method",
-            "Method",
-            0,
-            &[Choice { id: "spatial", label: "Spatial" }, Choice { id: "fft", label: "Fourier transform" }],
-        )
-        .uniform()
-        .doc(
+        Param::choice("method", "Method", Method::Spatial.selected()).uniform().doc(
             "How the CPU sums up the sectors: pixel by pixel, or by the fast Fourier transform (5.16), whose \
              cost hardly grows with the radius. The picture is the same.",
         ),
     ],
     build,
 };
+
+choice! {
+    /// How the CPU sums up the sectors.
+    enum Method {
+        /// Pixel by pixel.
+        Spatial ("spatial", "Spatial"),
+        /// By the fast Fourier transform (5.16).
+        Fourier ("fft", "Fourier transform"),
+    }
+}
 
 /// N.
 pub(crate) const SECTORS: Param = Param::int("sectors", "Sectors", 8, [4, 8])
@@ -64,7 +68,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         sectors: sectors(scope),
         q: scope.float("q"),
         threshold: scope.float("threshold"),
-        fft: scope.choice("method") == "fft",
+        fft: scope.option::<Method>("method") == Method::Fourier,
     };
     generalized_kuwahara::filter(scope.plan, color, &options)
 }

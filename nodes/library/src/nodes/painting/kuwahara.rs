@@ -1,9 +1,10 @@
 //! The classical Kuwahara filter (§ 5.2) and its Gaussian variant.
 
+use crate::choice::choice;
 use crate::kernels::painting::kuwahara;
 use crate::kernels::painting::kuwahara_rows::Side;
 use crate::ports;
-use crate::spec::{Choice, NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, Scope};
 use isophote_engine::ImageId;
 
 /// The node.
@@ -24,14 +25,7 @@ pub static NODE: NodeSpec = NodeSpec {
             .slider(0.0, 20.0)
             .pixels()
             .doc("Reach of the regions from the pixel (r); squares take the nearest whole number."),
-        Param::choice(
-            "regions",
-            "Regions",
-            0,
-            &[Choice { id: "squares", label: "Squares" }, Choice { id: "gaussian", label: "Gaussian" }],
-        )
-        .uniform()
-        .doc(
+        Param::choice("regions", "Regions", Regions::Squares.selected()).uniform().doc(
             "Squares that share the pixel as a corner (5.1), or Gaussians with the squares' means and \
              variances (5.6), which leave no ringing.",
         ),
@@ -39,10 +33,22 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
+choice! {
+    /// The regions whose variances are compared.
+    enum Regions {
+        /// Squares that share the pixel as a corner (5.1).
+        Squares ("squares", "Squares"),
+        /// Gaussians with the means and variances of the squares (5.6).
+        Gaussian ("gaussian", "Gaussian"),
+    }
+}
+
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = scope.required("color");
     let radius = scope.float("radius");
-    let side =
-        if scope.choice("regions") == "gaussian" { Side::gaussian(radius) } else { Side::square(radius) };
+    let side = match scope.option("regions") {
+        Regions::Squares => Side::square(radius),
+        Regions::Gaussian => Side::gaussian(radius),
+    };
     kuwahara::filter(scope.plan, color, &side)
 }

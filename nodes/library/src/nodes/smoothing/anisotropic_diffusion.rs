@@ -1,12 +1,13 @@
 //! Anisotropic diffusion (§ 3.1): Perona and Malik's, and Weickert's edge-enhancing and
 //! coherence-enhancing schemes.
 
+use crate::choice::choice;
 use crate::kernels::smoothing::diffusion_tensor::{self, Scheme};
 use crate::kernels::smoothing::perona_malik::{self, Diffusivity};
 use crate::kernels::smoothing::{diffusion_step, gaussian_blur};
 use crate::kernels::structure::gradient_tensor::{self, Derivative, Measure};
 use crate::ports;
-use crate::spec::{Choice, NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, Scope};
 use isophote_engine::{Class, ImageId, PlanBuilder};
 
 /// The node.
@@ -22,17 +23,7 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR],
     output: ports::color_output("The diffused picture."),
     own_params: &[
-        Param::choice(
-            "scheme",
-            "Scheme",
-            0,
-            &[
-                Choice { id: "perona_malik", label: "Perona-Malik" },
-                Choice { id: "edge_enhancing", label: "Edge-enhancing" },
-                Choice { id: "coherence_enhancing", label: "Coherence-enhancing" },
-            ],
-        )
-        .doc("What stops or guides the diffusion."),
+        Param::choice("scheme", "Scheme", Diffusion::PeronaMalik.selected()).doc("What stops or guides the diffusion."),
         Param::int("iterations", "Iterations", 10, [0, 60]).neutral_at_zero()
             .slider(0.0, 40.0)
             .structural()
@@ -44,14 +35,7 @@ pub static NODE: NodeSpec = NodeSpec {
              neighbours (Perona-Malik), or per pixel. Of the coherence-enhancing scheme, four times the \
              gradient above which lines are drawn out.",
         ),
-        Param::choice(
-            "diffusivity",
-            "Diffusivity",
-            0,
-            &[Choice { id: "rational", label: "Rational" }, Choice { id: "exponential", label: "Exponential" }],
-        )
-        .uniform()
-        .doc(
+        Param::choice("diffusivity", "Diffusivity", Diffusivity::Rational.selected()).uniform().doc(
             "Perona-Malik only: 1 / (1 + s^2 / lambda^2), which favours wide regions, or exp(-s^2 / K^2), \
              which favours strong edges (3.2).",
         ),
@@ -67,16 +51,27 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
+choice! {
+    /// What stops or guides the diffusion.
+    enum Diffusion {
+        /// A diffusivity that falls with the difference between neighbours (3.2, 3.3).
+        PeronaMalik ("perona_malik", "Perona-Malik"),
+        /// A diffusion tensor that smooths along edges and not across them.
+        EdgeEnhancing ("edge_enhancing", "Edge-enhancing"),
+        /// A diffusion tensor that smooths along lines and closes them.
+        CoherenceEnhancing ("coherence_enhancing", "Coherence-enhancing"),
+    }
+}
+
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let mut color = scope.required("color");
     let (time_step, contrast) = (scope.float("time_step"), scope.float("contrast") * 0.01);
     let iterations = scope.int("iterations");
-    let scheme = match scope.choice("scheme") {
-        "edge_enhancing" => Scheme::EdgeEnhancing,
-        "coherence_enhancing" => Scheme::CoherenceEnhancing,
-        _ => {
-            let exponential = scope.choice("diffusivity") == "exponential";
-            let diffusivity = if exponential { Diffusivity::Exponential } else { Diffusivity::Rational };
+    let scheme = match scope.option("scheme") {
+        Diffusion::EdgeEnhancing => Scheme::EdgeEnhancing,
+        Diffusion::CoherenceEnhancing => Scheme::CoherenceEnhancing,
+        Diffusion::PeronaMalik => {
+            let diffusivity = scope.option("diffusivity");
             for _ in 0..iterations {
                 color = perona_malik::step(scope.plan, color, time_step, contrast, diffusivity);
             }

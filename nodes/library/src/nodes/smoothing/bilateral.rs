@@ -2,10 +2,11 @@
 //!
 //! Other nodes interleave single iterations with work of their own by `iteration`.
 
+use crate::choice::choice;
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::bilateral::{self, Options, Window};
 use crate::ports;
-use crate::spec::{Choice, NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -21,13 +22,8 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR],
     output: ports::color_output("The abstracted picture."),
     own_params: &[
-        Param::choice(
-            "kernel",
-            "Kernel",
-            0,
-            &[Choice { id: "full", label: "Full" }, Choice { id: "xy", label: "Separable along x and y" }],
-        )
-        .doc("The full window (3.2), or rows and then columns (3.3)."),
+        Param::choice("kernel", "Kernel", Kernel::Full.selected())
+            .doc("The full window (3.2), or rows and then columns (3.3)."),
         Param::float("sigma_d", "Sigma d", 3.0, [0.0, 20.0])
             .slider(0.0, 10.0)
             .pixels()
@@ -40,55 +36,70 @@ pub static NODE: NodeSpec = NodeSpec {
             .slider(0.0, 10.0)
             .structural()
             .doc("How often the filter runs."),
-        Param::choice(
-            "space",
-            "Colour space",
-            0,
-            &[Choice { id: "lab", label: "CIELAB" }, Choice { id: "rgb", label: "RGB" }],
-        )
-        .doc(
+        Param::choice("space", "Colour space", Space::Lab.selected()).doc(
             "Where differences are measured: CIELAB, L in 0..100; or gamma-encoded RGB times 100, so that \
              white lies 173 from black.",
         ),
-        Param::float("cutoff", "Cut-off", CUTOFF, [1.0, 4.0]).slider(1.0, 3.0).doc(
-            "Radius of the round window in standard deviations, rounded up to pixels. 3 keeps all that \
-             counts; the 9x9 window that is usual for sigma 3 ends at 1.33.",
-        ),
+        CUTOFF,
     ],
     build,
 };
 
+pub(crate) const CUTOFF: Param = Param::float("cutoff", "Cut-off", 3.0, [1.0, 4.0]).slider(1.0, 3.0).doc(
+    "Radius of the round window in standard deviations, rounded up to pixels. 3 keeps all that counts; the \
+     9x9 window that is usual for sigma 3 ends at 1.33.",
+);
+
+choice! {
+    /// The window.
+    pub(crate) enum Kernel {
+        /// A disc (3.2).
+        Full ("full", "Full"),
+        /// A row and then a column (3.3).
+        Separable ("xy", "Separable along x and y"),
+    }
+}
+
+choice! {
+    /// Where differences of colour are measured.
+    enum Space {
+        /// CIELAB, L in 0..100.
+        Lab ("lab", "CIELAB"),
+        /// Gamma-encoded RGB.
+        Rgb ("rgb", "RGB"),
+    }
+}
+
 /// One iteration of the bilateral filter with one of its kernels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Passes {
-    /// Rows and then columns instead of the full window.
-    pub separable: bool,
+    /// The window.
+    pub kernel: Kernel,
     /// What the passes are asked for.
     pub options: Options,
 }
 
-/// Where windows end by default, in standard deviations.
-pub(crate) const CUTOFF: f32 = 3.0;
-
 /// One iteration, usually on a CIELAB image.
 pub(crate) fn iteration(plan: &mut PlanBuilder, color: ImageId, passes: &Passes) -> ImageId {
-    if !passes.separable {
-        return bilateral::pass(plan, color, Window::Disc, &passes.options);
+    match passes.kernel {
+        Kernel::Full => bilateral::pass(plan, color, Window::Disc, &passes.options),
+        Kernel::Separable => {
+            let rows = bilateral::pass(plan, color, Window::Row, &passes.options);
+            bilateral::pass(plan, rows, Window::Column, &passes.options)
+        }
     }
-    let rows = bilateral::pass(plan, color, Window::Row, &passes.options);
-    bilateral::pass(plan, rows, Window::Column, &passes.options)
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let mut color = scope.required("color");
-    let is_lab = scope.choice("space") == "lab";
+    let is_lab = scope.option::<Space>("space") == Space::Lab;
     let unit = if is_lab { 1.0 } else { 0.01 };
     let options = Options {
         sigma_d: scope.float("sigma_d"),
         sigma_r: scope.float("sigma_r") * unit,
         cutoff: scope.float("cutoff"),
     };
-    let passes = Passes { separable: scope.choice("kernel") == "xy", options };
+    let passes = Passes { kernel: scope.option("kernel"), options };
     let iterations = scope.int("iterations");
     if is_lab {
         color = rgb_to_lab::to_lab(scope.plan, color, 1.0);

@@ -3,13 +3,14 @@
 //!
 //! Other nodes interleave single iterations with work of their own by `iteration`.
 
+use crate::choice::choice;
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::flow_bilateral;
-use crate::kernels::smoothing::oriented_bilateral::{self, Direction, Sampling};
-use crate::nodes::smoothing::oriented_bilateral::{SAMPLING, sampling};
+use crate::kernels::smoothing::oriented_bilateral::{self, Direction};
+use crate::nodes::smoothing::oriented_bilateral::SAMPLING;
 use crate::nodes::structure::structure_tensor;
 use crate::ports;
-use crate::spec::{Choice, NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -24,51 +25,64 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR, ports::TENSOR],
     output: ports::color_output("The abstracted picture."),
     own_params: &[
-        Param::float("sigma_dg", "Sigma along gradient", 3.0, [0.0, 40.0])
-            .slider(0.0, 10.0)
-            .pixels()
-            .doc("Standard deviation of the domain weight across edges, cut at 3 sigma."),
-        Param::float("sigma_dt", "Sigma along flow", 8.0, [0.0, 40.0])
-            .slider(0.0, 20.0)
-            .pixels()
-            .doc("Standard deviation of the domain weight along stream lines, cut at 2 sigma."),
-        Param::float("sigma_rg", "Range across", 2.0, [0.01, 200.0])
-            .slider(0.5, 30.0)
-            .doc("Standard deviation of the range weight across edges, in CIELAB units."),
-        Param::float("sigma_rt", "Range along", 14.0, [0.01, 200.0])
-            .slider(0.5, 60.0)
-            .doc("Standard deviation of the range weight along stream lines, in CIELAB units."),
+        SIGMA_DG,
+        SIGMA_DT,
+        SIGMA_RG,
+        SIGMA_RT,
         Param::int("iterations", "Iterations", 4, [0, 20])
             .neutral_at_zero()
             .slider(0.0, 10.0)
             .structural()
             .doc("How often both passes run; the orientation is found once."),
         SAMPLING,
-        Param::choice(
-            "integrator",
-            "Integrator",
-            1,
-            &[Choice { id: "euler", label: "Euler" }, Choice { id: "rk2", label: "Runge-Kutta 2" }],
-        )
-        .uniform()
-        .doc("How lines are stepped: Euler's method (2.177) or the second-order midpoint method (2.182)."),
-        Param::choice(
-            "placement",
-            "Placement",
-            1,
-            &[
-                Choice { id: "equidistant", label: "Equidistant" },
-                Choice { id: "pixel_centres", label: "Pixel centres" },
-            ],
-        )
-        .uniform()
-        .doc(
-            "Where lines are sampled: every pixel of length, or where they cross the centre of a row or \
-             column, which blurs less (Listings 3.2 and 3.3).",
-        ),
+        INTEGRATOR,
+        PLACEMENT,
     ],
     build,
 };
+
+const SIGMA_DG: Param = Param::float("sigma_dg", "Sigma along gradient", 3.0, [0.0, 40.0])
+    .slider(0.0, 10.0)
+    .pixels()
+    .doc("Standard deviation of the domain weight across edges, cut at 3 sigma.");
+const SIGMA_DT: Param = Param::float("sigma_dt", "Sigma along flow", 8.0, [0.0, 40.0])
+    .slider(0.0, 20.0)
+    .pixels()
+    .doc("Standard deviation of the domain weight along stream lines, cut at 2 sigma.");
+const SIGMA_RG: Param = Param::float("sigma_rg", "Range across", 2.0, [0.01, 200.0])
+    .slider(0.5, 30.0)
+    .doc("Standard deviation of the range weight across edges, in CIELAB units.");
+const SIGMA_RT: Param = Param::float("sigma_rt", "Range along", 14.0, [0.01, 200.0])
+    .slider(0.5, 60.0)
+    .doc("Standard deviation of the range weight along stream lines, in CIELAB units.");
+const INTEGRATOR: Param = Param::choice("integrator", "Integrator", Stepping::Midpoint.selected())
+    .uniform()
+    .doc("How lines are stepped: Euler's method (2.177) or the second-order midpoint method (2.182).");
+const PLACEMENT: Param =
+    Param::choice("placement", "Placement", Placement::PixelCentres.selected()).uniform().doc(
+        "Where lines are sampled: every pixel of length, or where they cross the centre of a row or column, \
+         which blurs less (Listings 3.2 and 3.3).",
+    );
+
+choice! {
+    /// How stream lines are stepped.
+    enum Stepping {
+        /// Euler's method (2.177).
+        Euler ("euler", "Euler"),
+        /// The midpoint method, a second-order Runge-Kutta method (2.182).
+        Midpoint ("rk2", "Runge-Kutta 2"),
+    }
+}
+
+choice! {
+    /// Where stream lines are sampled.
+    enum Placement {
+        /// At every pixel of length.
+        Equidistant ("equidistant", "Equidistant"),
+        /// Where they cross the centre of a row or a column (Listings 3.2 and 3.3).
+        PixelCentres ("pixel_centres", "Pixel centres"),
+    }
+}
 
 /// The two passes of an iteration.
 #[derive(Clone, Copy, Debug)]
@@ -80,16 +94,22 @@ pub(crate) struct Passes {
 }
 
 impl Default for Passes {
+    /// The defaults of the parameters.
     fn default() -> Self {
-        let sampling = Sampling::Linear;
+        let sampling = SAMPLING.default_option();
         Self {
-            gradient: oriented_bilateral::Options { sigma_d: 3.0, sigma_r: 2.0, sampling, elongation: 0.0 },
-            flow: flow_bilateral::Options {
-                sigma_d: 8.0,
-                sigma_r: 14.0,
-                midpoint: true,
+            gradient: oriented_bilateral::Options {
+                sigma_d: SIGMA_DG.default_float(),
+                sigma_r: SIGMA_RG.default_float(),
                 sampling,
-                centres: true,
+                elongation: 0.0,
+            },
+            flow: flow_bilateral::Options {
+                sigma_d: SIGMA_DT.default_float(),
+                sigma_r: SIGMA_RT.default_float(),
+                midpoint: INTEGRATOR.default_option::<Stepping>() == Stepping::Midpoint,
+                sampling,
+                centres: PLACEMENT.default_option::<Placement>() == Placement::PixelCentres,
             },
         }
     }
@@ -104,7 +124,7 @@ pub(crate) fn iteration(plan: &mut PlanBuilder, lab: ImageId, tensors: ImageId, 
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = scope.required("color");
     let tensors = structure_tensor::connected(scope, color);
-    let sampling = sampling(scope);
+    let sampling = scope.option("sampling");
     let passes = Passes {
         gradient: oriented_bilateral::Options {
             sigma_d: scope.float("sigma_dg"),
@@ -115,9 +135,9 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         flow: flow_bilateral::Options {
             sigma_d: scope.float("sigma_dt"),
             sigma_r: scope.float("sigma_rt"),
-            midpoint: scope.choice("integrator") == "rk2",
+            midpoint: scope.option::<Stepping>("integrator") == Stepping::Midpoint,
             sampling,
-            centres: scope.choice("placement") == "pixel_centres",
+            centres: scope.option::<Placement>("placement") == Placement::PixelCentres,
         },
     };
     let iterations = scope.int("iterations");

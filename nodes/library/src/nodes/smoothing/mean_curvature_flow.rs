@@ -41,9 +41,6 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
-/// Time step of the shock filter (§ 6.4.2).
-const SHOCK_TIME_STEP: f32 = 0.4;
-
 /// Smoothing before the shock filter's Laplacian, pixels of the full-size picture: details smaller than
 /// that are left to the flow.
 const SHOCK_SIGMA: f32 = 1.0;
@@ -60,7 +57,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     for i in 1..=iterations {
         color = mean_curvature_flow::step(scope.plan, color, tensors, time_step, constraint);
         if shock_every > 0 && i % shock_every == 0 {
-            color = shock::osher_rudin_step(scope.plan, color, sigma_i, SHOCK_TIME_STEP);
+            color = shock::osher_rudin_step(scope.plan, color, sigma_i, shock::TIME_STEP.default_float());
         }
     }
     color

@@ -7,9 +7,10 @@
 //!
 //! Other nodes use the operators by `apply`.
 
+use crate::choice::choice;
 use crate::kernels::smoothing::disc_extremum::{Extremum, within_disc};
 use crate::ports;
-use crate::spec::{Choice, NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -25,20 +26,8 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR],
     output: ports::color_output("The filtered picture."),
     own_params: &[
-        Param::choice(
-            "operator",
-            "Operator",
-            4,
-            &[
-                Choice { id: "dilate", label: "Dilate" },
-                Choice { id: "erode", label: "Erode" },
-                Choice { id: "open", label: "Open" },
-                Choice { id: "close", label: "Close" },
-                Choice { id: "open_close", label: "Open, then close" },
-                Choice { id: "close_open", label: "Close, then open" },
-            ],
-        )
-        .doc("Dilation and erosion, opening (erosion, then dilation), closing (the reverse), or both."),
+        Param::choice("operator", "Operator", Operator::OpenClose.selected())
+            .doc("Dilation and erosion, opening (erosion, then dilation), closing (the reverse), or both."),
         Param::float("radius", "Radius", 3.0, [0.0, 30.0])
             .neutral_at_zero()
             .slider(0.0, 12.0)
@@ -47,6 +36,24 @@ pub static NODE: NodeSpec = NodeSpec {
     ],
     build,
 };
+
+choice! {
+    /// The morphological operator.
+    enum Operator {
+        /// The greatest value.
+        Dilate ("dilate", "Dilate"),
+        /// The least value.
+        Erode ("erode", "Erode"),
+        /// Erosion, then dilation.
+        Open ("open", "Open"),
+        /// Dilation, then erosion.
+        Close ("close", "Close"),
+        /// Opening, then closing.
+        OpenClose ("open_close", "Open, then close"),
+        /// Closing, then opening.
+        CloseOpen ("close_open", "Close, then open"),
+    }
+}
 
 /// Light features smaller than the disc go.
 pub(crate) fn open(plan: &mut PlanBuilder, color: ImageId, radius: f32) -> ImageId {
@@ -62,20 +69,20 @@ pub(crate) fn close(plan: &mut PlanBuilder, color: ImageId, radius: f32) -> Imag
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let (color, radius) = (scope.required("color"), scope.float("radius"));
-    let operator = scope.choice("operator");
+    let operator = scope.option("operator");
     let plan = &mut *scope.plan;
     match operator {
-        "dilate" => within_disc(plan, color, radius, Extremum::Greatest),
-        "erode" => within_disc(plan, color, radius, Extremum::Least),
-        "open" => open(plan, color, radius),
-        "close" => close(plan, color, radius),
-        "close_open" => {
-            let closed = close(plan, color, radius);
-            open(plan, closed, radius)
-        }
-        _ => {
+        Operator::Dilate => within_disc(plan, color, radius, Extremum::Greatest),
+        Operator::Erode => within_disc(plan, color, radius, Extremum::Least),
+        Operator::Open => open(plan, color, radius),
+        Operator::Close => close(plan, color, radius),
+        Operator::OpenClose => {
             let opened = open(plan, color, radius);
             close(plan, opened, radius)
+        }
+        Operator::CloseOpen => {
+            let closed = close(plan, color, radius);
+            open(plan, closed, radius)
         }
     }
 }

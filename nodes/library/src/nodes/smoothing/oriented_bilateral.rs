@@ -7,7 +7,7 @@ use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::oriented_bilateral::{self, Direction, Options, Sampling};
 use crate::nodes::structure::structure_tensor;
 use crate::ports;
-use crate::spec::{Choice, NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -23,51 +23,46 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR, ports::TENSOR],
     output: ports::color_output("The abstracted picture."),
     own_params: &[
-        Param::float("sigma_dg", "Sigma along gradient", 3.0, [0.0, 40.0])
-            .slider(0.0, 10.0)
-            .pixels()
-            .doc("Standard deviation of the domain weight across edges, cut at 3 sigma."),
-        Param::float("sigma_dt", "Sigma along tangent", 3.0, [0.0, 40.0])
-            .slider(0.0, 20.0)
-            .pixels()
-            .doc("Standard deviation of the domain weight along edges, cut at 3 sigma."),
-        Param::float("sigma_rg", "Range across", 4.25, [0.01, 200.0])
-            .slider(0.5, 30.0)
-            .doc("Standard deviation of the range weight across edges, in CIELAB units."),
-        Param::float("sigma_rt", "Range along", 4.25, [0.01, 200.0])
-            .slider(0.5, 30.0)
-            .doc("Standard deviation of the range weight along edges, in CIELAB units."),
+        SIGMA_DG,
+        SIGMA_DT,
+        SIGMA_RG,
+        SIGMA_RT,
         Param::int("iterations", "Iterations", 4, [0, 20])
             .neutral_at_zero()
             .slider(0.0, 10.0)
             .structural()
             .doc("How often both passes run; the orientation is found once."),
         SAMPLING,
-        Param::float("anisotropy", "Elongation", 0.0, [0.0, 4.0]).doc(
-            "Adapts the shape as the ellipse of 5.22 does, with 1/alpha: sigma along the tangent times \
-             1 + elongation A, across it divided by the same, A being the anisotropy. 0 for off.",
-        ),
+        ANISOTROPY,
     ],
     build,
 };
 
-/// Where range weights are applied; the flow-based filter has the same choice.
-pub(crate) const SAMPLING: Param = Param::choice(
-    "sampling",
-    "Sampling",
-    0,
-    &[Choice { id: "linear", label: "Linear" }, Choice { id: "manual", label: "Manual" }],
-)
-.uniform()
-.doc(
-    "Linear compares interpolated colours and gives smooth borders; manual compares both pixels before \
-     it interpolates (3.9) and gives sharp ones.",
+const SIGMA_DG: Param = Param::float("sigma_dg", "Sigma along gradient", 3.0, [0.0, 40.0])
+    .slider(0.0, 10.0)
+    .pixels()
+    .doc("Standard deviation of the domain weight across edges, cut at 3 sigma.");
+const SIGMA_DT: Param = Param::float("sigma_dt", "Sigma along tangent", 3.0, [0.0, 40.0])
+    .slider(0.0, 20.0)
+    .pixels()
+    .doc("Standard deviation of the domain weight along edges, cut at 3 sigma.");
+const SIGMA_RG: Param = Param::float("sigma_rg", "Range across", 4.25, [0.01, 200.0])
+    .slider(0.5, 30.0)
+    .doc("Standard deviation of the range weight across edges, in CIELAB units.");
+const SIGMA_RT: Param = Param::float("sigma_rt", "Range along", 4.25, [0.01, 200.0])
+    .slider(0.5, 30.0)
+    .doc("Standard deviation of the range weight along edges, in CIELAB units.");
+const ANISOTROPY: Param = Param::float("anisotropy", "Elongation", 0.0, [0.0, 4.0]).doc(
+    "Adapts the shape as the ellipse of 5.22 does, with 1/alpha: sigma along the tangent times 1 + elongation \
+     A, across it divided by the same, A being the anisotropy. 0 for off.",
 );
 
-/// The chosen sampling.
-pub(crate) fn sampling(scope: &Scope<'_>) -> Sampling {
-    if scope.choice("sampling") == "manual" { Sampling::Manual } else { Sampling::Linear }
-}
+/// Where range weights are applied; the flow-based filter has the same choice.
+pub(crate) const SAMPLING: Param =
+    Param::choice("sampling", "Sampling", Sampling::Linear.selected()).uniform().doc(
+        "Linear compares interpolated colours and gives smooth borders; manual compares both pixels before \
+         it interpolates (3.9) and gives sharp ones.",
+    );
 
 /// The two passes of an iteration.
 #[derive(Clone, Copy, Debug)]
@@ -79,9 +74,15 @@ pub(crate) struct Passes {
 }
 
 impl Default for Passes {
+    /// The defaults of the parameters.
     fn default() -> Self {
-        let pass = Options { sigma_d: 3.0, sigma_r: 4.25, sampling: Sampling::Linear, elongation: 0.0 };
-        Self { gradient: pass, tangent: pass }
+        let pass = |domain: Param, range: Param| Options {
+            sigma_d: domain.default_float(),
+            sigma_r: range.default_float(),
+            sampling: SAMPLING.default_option(),
+            elongation: ANISOTROPY.default_float(),
+        };
+        Self { gradient: pass(SIGMA_DG, SIGMA_RG), tangent: pass(SIGMA_DT, SIGMA_RT) }
     }
 }
 
@@ -97,7 +98,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let options = |domain, range| Options {
         sigma_d: scope.float(domain),
         sigma_r: scope.float(range),
-        sampling: sampling(scope),
+        sampling: scope.option("sampling"),
         elongation: scope.float("anisotropy"),
     };
     let passes =

@@ -5,7 +5,7 @@ use crate::kernels::structure::edge_tangent_flow::{self, Neighbours, Window};
 use crate::kernels::structure::gradient_tensor::{self, Derivative, Measure};
 use crate::kernels::structure::{flow_maximum, flow_start};
 use crate::ports;
-use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
+use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
 use isophote_engine::ImageId;
 
 /// The node.
@@ -31,14 +31,9 @@ pub static NODE: NodeSpec = NodeSpec {
             .slider(2.0, 12.0)
             .pixels()
             .doc("Neighbours lie nearer than this."),
-        Param::choice(
-            "kernel",
-            "Kernel",
-            0,
-            &[Choice { id: "box", label: "Box" }, Choice { id: "gaussian", label: "Gaussian" }],
-        )
-        .uniform()
-        .doc("Spatial weight: 1 for all neighbours, or a Gaussian of a third of the radius."),
+        Param::choice("kernel", "Kernel", Window::Box.selected())
+            .uniform()
+            .doc("Spatial weight: 1 for all neighbours, or a Gaussian of a third of the radius."),
         Param::int("iterations", "Iterations", 3, [1, 10])
             .structural()
             .doc("Times that the tangents are averaged."),
@@ -52,7 +47,7 @@ pub static NODE: NodeSpec = NodeSpec {
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = scope.required("color");
     let radius = scope.float("radius");
-    let window = if scope.choice("kernel") == "gaussian" { Window::Gaussian } else { Window::Box };
+    let window = scope.option::<Window>("kernel");
     let neighbours: &[Neighbours] =
         if scope.bool("separable") { &[Neighbours::Row, Neighbours::Column] } else { &[Neighbours::Disc] };
     let iterations = scope.int("iterations");

@@ -6,12 +6,16 @@
 
 use crate::kernels::colour::rgb_to_lab;
 use crate::kernels::smoothing::gaussian_blur;
-use crate::kernels::structure::gradient_tensor::{self, Derivative, Measure};
+use crate::kernels::structure::gradient_tensor::{self, Measure};
 use crate::kernels::structure::{
     colour_restrict, guide_tensor, jacobi_step, oversampled_tensor, tensor_combine, tensor_restrict,
 };
 use crate::ports;
-use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
+use crate::spec::{ImageKind, NodeSpec, Port, Scope};
+use crate::tensor_options::{
+    DERIVATIVE, GUIDE_WEIGHT, LEVELS, NORMALIZE, OVERSAMPLE, RELAX_STEPS, RELAX_THRESHOLD, RHO, SIGMA_G,
+    SPACE,
+};
 pub use crate::tensor_options::{Guides, Space, TensorOptions};
 use isophote_engine::{Class, ImageId, PlanBuilder};
 
@@ -22,8 +26,8 @@ pub static NODE: NodeSpec = NodeSpec {
     group: "structure",
     doc: "Local orientation of the picture: the outer product of the colour gradient with itself \
           (2.34), smoothed by a Gaussian. The minor eigenvector runs along edges. Normals, depth and \
-          object numbers, where given, count as further channels; flat parts can be filled from their \
-          surroundings. Several levels make it robust against strong noise: coarser ones, with the same \
+          object numbers, where given, count as further channels; flat parts can be filled from what is around \
+          them. Several levels make it robust against strong noise: coarser ones, with the same \
           rho in their own pixels, take over where they are more anisotropic. Transparent pixels lend no \
           colour to the gradient.",
     section: "2.2-2.4, 2.7.3, 2.8",
@@ -54,75 +58,20 @@ pub static NODE: NodeSpec = NodeSpec {
         optional: false,
         doc: "E, F, G and w, the share of the window that was not filled.",
     },
-    own_params: PARAMS,
+    own_params: &[
+        DERIVATIVE,
+        SIGMA_G,
+        RHO,
+        SPACE,
+        NORMALIZE,
+        RELAX_THRESHOLD,
+        RELAX_STEPS,
+        LEVELS,
+        OVERSAMPLE,
+        GUIDE_WEIGHT,
+    ],
     build,
 };
-
-const PARAMS: &[Param] = &[
-    Param::choice(
-        "derivative",
-        "Derivative",
-        2,
-        &[
-            Choice { id: "central", label: "Central differences" },
-            Choice { id: "sobel", label: "Sobel" },
-            Choice { id: "scharr3", label: "Scharr 3x3" },
-            Choice { id: "scharr5", label: "Scharr 5x5" },
-            Choice { id: "gaussian", label: "Gaussian" },
-        ],
-    )
-    .uniform()
-    .doc("Derivative operator: (2.18), (2.23), (2.27), (2.29) or (2.22)."),
-    Param::float("sigma_g", "Sigma of the derivative", 0.867, [0.2, 6.0])
-        .slider(0.4, 3.0)
-        .pixels()
-        .doc("Standard deviation of the Gaussian derivative (2.22); the other operators ignore it unless oversampled."),
-    Param::float("rho", "Rho", 2.0, [0.0, 40.0])
-        .slider(0.0, 10.0)
-        .pixels()
-        .doc("Standard deviation of the Gaussian that smooths the tensor."),
-    Param::choice(
-        "space",
-        "Space",
-        0,
-        &[
-            Choice { id: "rgb", label: "RGB" },
-            Choice { id: "luminance", label: "Luminance" },
-            Choice { id: "lab", label: "CIELAB" },
-        ],
-    )
-    .doc(
-        "What the gradient is taken of: gamma-encoded RGB, its Rec. 709 luma, or CIELAB divided by \
-         100, so that from black to white is a step of 1.",
-    ),
-    Param::bool("normalize", "Normalize", false)
-        .doc("Divides each channel's tensor by the magnitude of its gradient (2.133), so that strong edges dominate less."),
-    Param::float("relax_threshold", "Relaxation threshold", 0.0, [0.0, 10.0])
-        .slider(0.0, 0.2)
-        .structural()
-        .doc(
-            "Keeps tensors where sqrt(lambda1) is above this before smoothing (2.164) and fills the \
-             others smoothly; 0 keeps all.",
-        ),
-    Param::int("relax_steps", "Relaxation steps", 1, [1, 3])
-        .structural()
-        .doc("Jacobi steps on each level of the pyramid (2.171)."),
-    Param::int("levels", "Levels", 1, [1, 8])
-        .structural()
-        .doc(
-            "Levels of the multi-scale estimation (2.172): each further one halves the picture, and its \
-             tensor, upsampled, joins by its anisotropy (2.173). Guides join on the finest.",
-        ),
-    Param::bool("oversample", "Oversample", false)
-        .structural()
-        .doc(
-            "Takes derivatives at twice the resolution (2.4.6), those of the Gaussian of sigma_g whatever \
-             the operator: exact also for the finest texture, at about ten times the cost.",
-        ),
-    Param::float("guide_weight", "Guide weight", 1.0, [0.0, 100.0])
-        .slider(0.0, 4.0)
-        .doc("Factor on the tensors of normals, depth and object numbers."),
-];
 
 /// The tensor connected to the port `tensor` of a node or, where none is, that of `color` with the
 /// defaults.
@@ -216,28 +165,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         depth: scope.input("depth"),
         object_id: scope.input("object_id"),
     };
-    let options = TensorOptions {
-        derivative: match scope.choice("derivative") {
-            "central" => Derivative::Central,
-            "sobel" => Derivative::Sobel,
-            "scharr5" => Derivative::Scharr5,
-            "gaussian" => Derivative::Gaussian(scope.float("sigma_g")),
-            _ => Derivative::Scharr3,
-        },
-        rho: scope.float("rho"),
-        space: match scope.choice("space") {
-            "luminance" => Space::Luminance,
-            "lab" => Space::Lab,
-            _ => Space::Rgb,
-        },
-        normalize: scope.bool("normalize"),
-        relax_threshold: scope.float("relax_threshold"),
-        relax_steps: scope.int("relax_steps"),
-        levels: scope.int("levels"),
-        oversample: scope.bool("oversample").then(|| scope.float("sigma_g")),
-        guide_weight: scope.float("guide_weight"),
-        scale: scope.scale(),
-    };
+    let options = TensorOptions::of(scope);
     of_color_and_guides(scope.plan, color, &guides, &options)
 }
 

@@ -1,11 +1,14 @@
 //! A tensor field made visible (§ 2.6.1, 2.9).
 
+use crate::choice::choice;
 use crate::kernels::shared::stream::Integrator;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
 use crate::kernels::structure::tensor_display::{self, Show};
 use crate::kernels::structure::{colour_restrict, contrast, noise, tensor_interpolate, tensor_logarithm};
+use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::ports;
-use crate::spec::{Choice, ImageKind, NodeSpec, Param, Port, Scope};
+use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
+use crate::tensor_options;
 use isophote_engine::image::MAX_SIDE;
 use isophote_engine::{ImageId, PlanBuilder};
 
@@ -30,25 +33,7 @@ pub static NODE: NodeSpec = NodeSpec {
     }],
     output: ports::color_output("An opaque picture of it."),
     own_params: &[
-        Param::choice(
-            "show",
-            "Show",
-            0,
-            &[
-                Choice { id: "lic", label: "Line integral convolution" },
-                Choice { id: "orientation", label: "Orientation" },
-                Choice { id: "anisotropy", label: "Anisotropy" },
-                Choice { id: "anisotropy_sqrt", label: "Anisotropy of roots" },
-                Choice { id: "anisotropy_squared", label: "Squared anisotropy" },
-                Choice { id: "magnitude", label: "Gradient magnitude" },
-                Choice { id: "harris", label: "Harris corners" },
-                Choice { id: "foerstner", label: "Foerstner corners" },
-                Choice { id: "tomasi_kanade", label: "Tomasi-Kanade corners" },
-                Choice { id: "rohr", label: "Rohr corners" },
-                Choice { id: "significance", label: "Significance" },
-            ],
-        )
-        .doc(
+        Param::choice("show", "Show", View::StreamLines.selected()).doc(
             "What to show: stream lines (2.186), the angle of the tangent, the anisotropy (2.137), (2.138) or \
              (2.139), sqrt(lambda1), the corner measure (2.159), (2.160), (2.161) or det, or the anisotropy \
              where it is significant (2.154) and else black.",
@@ -63,7 +48,7 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::float("alpha", "Significance level", 0.05, [0.0001, 0.5])
             .slider(0.001, 0.2)
             .doc("Share of pure noise that passes for structure, alpha of (2.154)."),
-        Param::float("rho", "Rho of the tensor", 2.0, [0.0, 40.0])
+        Param::float("rho", "Rho of the tensor", tensor_options::RHO.default_float(), [0.0, 40.0])
             .slider(0.5, 10.0)
             .pixels()
             .doc("Standard deviation that the tensor was smoothed by: significance counts 4 pi rho^2 samples (2.158)."),
@@ -74,33 +59,57 @@ pub static NODE: NodeSpec = NodeSpec {
 /// Standard deviation of the greys that noise along stream lines is stretched to.
 const SPREAD: f32 = 0.22;
 
+choice! {
+    /// What to show.
+    enum View {
+        /// Noise along the stream lines (2.186).
+        StreamLines ("lic", "Line integral convolution"),
+        /// The angle of the tangent as a hue.
+        Orientation ("orientation", "Orientation"),
+        /// The anisotropy (2.137).
+        Anisotropy ("anisotropy", "Anisotropy"),
+        /// The anisotropy of the roots of the eigenvalues (2.138).
+        AnisotropySqrt ("anisotropy_sqrt", "Anisotropy of roots"),
+        /// The squared anisotropy (2.139).
+        AnisotropySquared ("anisotropy_squared", "Squared anisotropy"),
+        /// The magnitude of the gradient, sqrt(lambda1).
+        Magnitude ("magnitude", "Gradient magnitude"),
+        /// The corner measure det - k tr^2 (2.159).
+        Harris ("harris", "Harris corners"),
+        /// The corner measure det / tr (2.160).
+        Foerstner ("foerstner", "Foerstner corners"),
+        /// The corner measure lambda2 (2.161).
+        TomasiKanade ("tomasi_kanade", "Tomasi-Kanade corners"),
+        /// The corner measure det.
+        Rohr ("rohr", "Rohr corners"),
+        /// The anisotropy where it is significant (2.154), else black.
+        Significance ("significance", "Significance"),
+    }
+}
+
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let tensor = scope.required("tensor");
-    match scope.choice("show") {
-        "lic" => {
+    let show = match scope.option("show") {
+        View::StreamLines => {
             let (sigma, scale) = (scope.float("sigma"), scope.scale());
-            stream_lines(scope.plan, tensor, sigma, scale)
+            return stream_lines(scope.plan, tensor, sigma, scale);
         }
-        measure => {
-            let show = match measure {
-                "orientation" => Show::Orientation,
-                "anisotropy_sqrt" => Show::AnisotropySqrt,
-                "anisotropy_squared" => Show::AnisotropySquared,
-                "magnitude" => Show::Magnitude,
-                "harris" => Show::Harris(scope.float("k")),
-                "foerstner" => Show::Foerstner,
-                "tomasi_kanade" => Show::TomasiKanade,
-                "rohr" => Show::Rohr,
-                "significance" => {
-                    let rho = scope.float("rho");
-                    let samples = 4.0 * std::f32::consts::PI * rho * rho;
-                    Show::Significance { alpha: scope.float("alpha"), samples }
-                }
-                _ => Show::Anisotropy,
-            };
-            tensor_display::color(scope.plan, tensor, show)
+        View::Orientation => Show::Orientation,
+        View::Anisotropy => Show::Anisotropy,
+        View::AnisotropySqrt => Show::AnisotropySqrt,
+        View::AnisotropySquared => Show::AnisotropySquared,
+        View::Magnitude => Show::Magnitude,
+        View::Harris => Show::Harris(scope.float("k")),
+        View::Foerstner => Show::Foerstner,
+        View::TomasiKanade => Show::TomasiKanade,
+        View::Rohr => Show::Rohr,
+        View::Significance => {
+            let rho = scope.float("rho");
+            let samples = 4.0 * std::f32::consts::PI * rho * rho;
+            Show::Significance { alpha: scope.float("alpha"), samples }
         }
-    }
+    };
+    tensor_display::color(scope.plan, tensor, show)
 }
 
 /// Levels beyond the picture's own at which a proxy's stream lines are traced.
@@ -125,15 +134,14 @@ fn stream_lines(plan: &mut PlanBuilder, mut tensor: ImageId, sigma: f32, scale: 
         tensor = tensor_logarithm::exponential(plan, tensor);
     }
     let grains = grains.unwrap_or_else(|| noise::white(plan, scale, 0));
-    let options =
-        // Who looks at a field looks at the lines themselves.
-        Options {
-            sigma: sigma * f32::from(1_u8 << finer),
-            stretch: 1.0,
-            integrator: Integrator::Midpoint,
-            adapt: Adapt::None,
-            ..Options::default()
-        };
+    // Who looks at a field looks at the lines themselves.
+    let options = Options {
+        sigma: sigma * f32::from(1_u8 << finer),
+        stretch: 1.0,
+        integrator: Integrator::Midpoint,
+        adapt: Adapt::None,
+        ..lic::options()
+    };
     let lines = line_integral_convolution::color(plan, grains, tensor, &options);
     // The contrast of the full-size picture, which a proxy shows less of.
     let mut shown = contrast::stretch(plan, lines, SPREAD / deviation(sigma / scale));

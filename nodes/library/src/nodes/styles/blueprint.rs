@@ -2,12 +2,12 @@
 
 use crate::kernels::colour::blueprint_paper::{Sheet, draw};
 use crate::kernels::colour::{lightness, rgb_to_lab};
-use crate::look::{self, ADVANCED, LOOK};
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::lines::flow_dog;
-use crate::nodes::styles::cartoon::{self, Abstraction};
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
+use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::{ADVANCED, LOOK, lines};
 use isophote_engine::ImageId;
 
 /// The node.
@@ -21,9 +21,9 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID],
     output: ports::color_output("The blueprint."),
     own_params: &[
-        look::LINE_WIDTH,
-        look::LINE_AMOUNT,
-        look::SUPPRESS_SMALL,
+        lines::LINE_WIDTH,
+        lines::LINE_AMOUNT,
+        lines::SUPPRESS_SMALL,
         Param::color("line_color", "Line colour", [0.92, 0.96, 1.0, 1.0])
             .group(LOOK)
             .doc("Colour of lines and grid; its alpha is their opacity."),
@@ -41,22 +41,22 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::float("fill", "Fill", 0.25, [0.0, 1.0])
             .group(LOOK)
             .doc("How much of the picture's tones shows on the paper."),
-        look::DETAIL,
+        abstraction::DETAIL,
         Param::bool("cover", "Cover", false)
             .group(LOOK)
             .doc("Paper also where the picture is transparent; the result is then opaque."),
-        cartoon::ABSTRACTION,
-        cartoon::N_E,
-        cartoon::SIGMA_D,
-        cartoon::SIGMA_R,
+        abstraction::ABSTRACTION,
+        lines::N_E,
+        abstraction::SIGMA_D,
+        abstraction::SIGMA_R,
         dog::SIGMA_E.group(ADVANCED),
         dog::K.group(ADVANCED),
         flow_dog::SIGMA_M.group(ADVANCED),
         dog::TAU.group(ADVANCED),
         dog::EPSILON.group(ADVANCED),
         dog::PHI.group(ADVANCED),
-        cartoon::LINE_ITERATIONS,
-        cartoon::GUIDE_WEIGHT,
+        lines::LINE_ITERATIONS,
+        lines::GUIDE_WEIGHT,
     ],
     build,
 };
@@ -70,7 +70,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let n_e = scope.int("n_e");
     let lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
     let smooth = abstraction.apply(scope.plan, lab, tensor, n_e);
-    let flow = cartoon::flow(scope, guide_weight);
+    let flow = lines::flow_dog(scope, guide_weight);
     let lightness = lightness::of_lab(scope.plan, smooth);
     let edges = flow.edges(scope.plan, lightness, tensor, &guides);
     let sheet = Sheet {

@@ -1,5 +1,6 @@
 //! Ink and its relatives: the extended difference of Gaussians as drawing (§ 4.3, 4.4, Figure 4.1).
 
+use crate::choice::choice;
 use crate::kernels::colour::ink_sheet::{Sheet, draw};
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
@@ -8,13 +9,15 @@ use crate::kernels::shared::stream::Integrator;
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
 use crate::kernels::structure::{contrast, noise};
-use crate::look::{self, ADVANCED, LOOK};
 use crate::nodes::lines::difference_of_gaussians as dog;
-use crate::nodes::lines::flow_dog::{self, FlowDog};
+use crate::nodes::lines::flow_dog::{self, FlowDog, Kernel};
+use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::nodes::structure::structure_tensor::{TensorOptions, of_color_and_guides};
-use crate::nodes::styles::cartoon::{self, Abstraction};
 use crate::ports;
-use crate::spec::{Choice, NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, Scope};
+use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::lines::{length_factor, width_factor};
+use crate::stages::{ADVANCED, LOOK, lines, tone};
 use isophote_engine::{Class, ImageId, PlanBuilder};
 
 /// The node.
@@ -27,56 +30,41 @@ pub static NODE: NodeSpec = NodeSpec {
           hatching, carved strokes and the paper's grain, at five sets of values; `advanced` trims them. \
           Normals, depth and object ids, where given, draw lines of their own.",
     section: "4.3-4.5",
-    inputs: &[
-        ports::COLOR,
-        flow_dog::NORMAL,
-        flow_dog::DEPTH,
-        flow_dog::OBJECT_ID,
-    ],
+    inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID],
     output: ports::color_output("The drawing."),
     own_params: &[
-        Param::choice(
-            "style",
-            "Style",
-            1,
-            &[
-                Choice { id: "pencil", label: "Pencil" },
-                Choice { id: "ink", label: "Ink" },
-                Choice { id: "charcoal", label: "Charcoal" },
-                Choice { id: "woodcut", label: "Woodcut" },
-                Choice { id: "pastel", label: "Pastel" },
-            ],
-        )
-        .group(LOOK)
-        .doc("What is drawn with; sets every technical value."),
-        look::LINE_WIDTH.doc("Width of lines; 2 is the style's own."),
-        Param::float("line_amount", "Line amount", 0.5, [0.0, 1.0])
+        Param::choice("style", "Style", Style::Ink.selected())
             .group(LOOK)
-            .doc("How many lines: 0 leaves masses and shading alone, 1 draws faint edges too; scales p (4.10)."),
-        Param::float("suppress_small", "Suppress small", 0.0, [0.0, 1.0])
-            .group(LOOK)
-            .doc("Drops short and weak lines: lengthens the smoothing along lines up to three times and halves p."),
-        Param::float("tone", "Tone", 0.5, [0.0, 1.0])
-            .group(LOOK)
-            .doc("How much is dark: 0 leaves lines alone, 1 fills what is not bright; shifts epsilon and scales the shading."),
-        Param::float("grain", "Grain", 0.5, [0.0, 1.0])
-            .group(LOOK)
-            .doc("How much the paper's grain shows, from not at all to twice the style's own."),
-        look::DETAIL,
+            .doc("What is drawn with; sets every technical value."),
+        lines::LINE_WIDTH.doc("Width of lines; 2 is the style's own."),
+        lines::LINE_AMOUNT.doc(
+            "How many lines: 0 leaves masses and shading alone, 1 draws faint edges too; scales p (4.10).",
+        ),
+        lines::SUPPRESS_SMALL.doc(
+            "Drops short and weak lines: lengthens the smoothing along lines up to three times and halves p.",
+        ),
+        TONE,
+        GRAIN,
+        abstraction::DETAIL,
         Param::color("line_color", "Line colour", [0.09, 0.085, 0.1, 1.0])
             .group(LOOK)
             .doc("Colour of what is drawn with; its alpha is its opacity."),
         Param::color("paper_color", "Paper colour", [0.965, 0.955, 0.93, 1.0])
             .group(LOOK)
             .doc("Colour of the paper."),
-        look::SATURATION.doc("Factor on the picture's own colours, in as far as the style shows them."),
+        tone::SATURATION.doc("Factor on the picture's own colours, in as far as the style shows them."),
         Param::bool("cover", "Cover", false)
             .group(LOOK)
             .doc("Paper also where the picture is transparent; the result is then opaque."),
         factor("edge_scale", "Edge scale", "Factor on sigma_e, the scale of edges (4.7)."),
         factor("flow_length", "Flow length", "Factor on sigma_m, the smoothing along lines (4.5)."),
         factor("sharpening", "Sharpening", "Factor on p, the weight of edges (4.10)."),
-        shift("threshold_shift", "Threshold shift", 100.0, "Added to epsilon, the lightness from which on there is no ink (4.8)."),
+        shift(
+            "threshold_shift",
+            "Threshold shift",
+            100.0,
+            "Added to epsilon, the lightness from which on there is no ink (4.8).",
+        ),
         factor("steepness", "Steepness", "Factor on phi, the steepness of the ramp from paper to ink (4.8)."),
         factor("carving", "Carving", "Factor on the strokes that follow the flow."),
         factor("shading", "Shading", "Factor on the shading that is hatched or rubbed in."),
@@ -84,14 +72,21 @@ pub static NODE: NodeSpec = NodeSpec {
         shift("own_color", "Own colour", 1.0, "Added to how much of the picture's own colours shows."),
         factor("edge_smoothing", "Edge smoothing", "Factor on the final smoothing along the edges."),
         dog::K.group(ADVANCED),
-        cartoon::ABSTRACTION,
-        cartoon::N_E,
-        cartoon::SIGMA_D,
-        cartoon::SIGMA_R,
-        cartoon::GUIDE_WEIGHT,
+        abstraction::ABSTRACTION,
+        lines::N_E,
+        abstraction::SIGMA_D,
+        abstraction::SIGMA_R,
+        lines::GUIDE_WEIGHT,
     ],
     build,
 };
+
+const TONE: Param = Param::float("tone", "Tone", 0.5, [0.0, 1.0])
+    .group(LOOK)
+    .doc("How much is dark: 0 leaves lines alone, 1 fills what is not bright; shifts epsilon and scales the shading.");
+const GRAIN: Param = Param::float("grain", "Grain", 0.5, [0.0, 1.0])
+    .group(LOOK)
+    .doc("How much the paper's grain shows, from not at all to twice the style's own.");
 
 const fn factor(id: &'static str, label: &'static str, doc: &'static str) -> Param {
     Param::float(id, label, 1.0, [0.0, 4.0]).slider(0.0, 2.0).group(ADVANCED).doc(doc)
@@ -135,7 +130,7 @@ struct Preset {
     texture: f32,
 }
 
-/// Two tones with soft edges; the others are told by how they differ.
+/// Two tones with soft edges; the others are described by how they differ.
 const INK: Preset = Preset {
     rho: 2.0,
     sigma_e: 1.2,
@@ -228,49 +223,68 @@ const PASTEL: Preset = Preset {
     ..INK
 };
 
-fn preset(style: &str) -> Preset {
-    match style {
-        "pencil" => PENCIL,
-        "charcoal" => CHARCOAL,
-        "woodcut" => WOODCUT,
-        "pastel" => PASTEL,
-        _ => INK,
+choice! {
+    /// What is drawn with.
+    enum Style {
+        /// Thin grey lines, tones hatched in two directions, a fine grain.
+        Pencil ("pencil", "Pencil"),
+        /// Two tones with soft edges.
+        Ink ("ink", "Ink"),
+        /// Wide soft lines and rubbed tones that catch on coarse paper.
+        Charcoal ("charcoal", "Charcoal"),
+        /// Thick lines and masses, carved along the flow.
+        Woodcut ("woodcut", "Woodcut"),
+        /// The picture's colours in chalk, with soft dark lines.
+        Pastel ("pastel", "Pastel"),
     }
 }
 
-/// Controls that scale or shift a preset.
+impl Style {
+    const fn preset(self) -> Preset {
+        match self {
+            Self::Pencil => PENCIL,
+            Self::Ink => INK,
+            Self::Charcoal => CHARCOAL,
+            Self::Woodcut => WOODCUT,
+            Self::Pastel => PASTEL,
+        }
+    }
+}
+
+/// The controls of artists, which scale or shift a preset; neutral at their defaults.
 #[derive(Clone, Copy, Debug)]
-struct Looks {
-    /// 2 is neutral.
+struct Look {
+    /// Pixels of the full-size picture.
     width: f32,
-    /// 0..=1, 0.5 is neutral.
+    /// 0..=1.
     amount: f32,
-    /// 0..=1, 0 is neutral.
+    /// 0..=1.
     suppress: f32,
-    /// 0..=1, 0.5 is neutral.
+    /// 0..=1.
     tone: f32,
-    /// 0..=1, 0.5 is neutral.
+    /// 0..=1.
     grain: f32,
 }
 
 impl Preset {
-    /// The preset as the look controls leave it; every mapping is monotone.
-    fn looking(self, looks: Looks) -> Self {
-        let amount =
-            if looks.amount <= 0.5 { 2.0 * looks.amount } else { 4f32.powf(2.0 * looks.amount - 1.0) };
+    /// The preset after the controls of artists; every mapping is monotone.
+    fn with_look(self, look: Look) -> Self {
+        const NEUTRAL: f32 = lines::LINE_AMOUNT.default_float();
+        let share = look.amount / NEUTRAL;
+        let amount = if look.amount <= NEUTRAL { share } else { 4f32.powf(share - 1.0) };
         Self {
-            rho: self.rho * look::longer(looks.width),
-            sigma_e: self.sigma_e * (looks.width / 2.0),
-            sigma_m: self.sigma_m * look::longer(looks.width) * (1.0 + 2.0 * looks.suppress),
-            p: self.p * amount * (1.0 - 0.5 * looks.suppress),
-            epsilon: self.epsilon + 80.0 * (looks.tone - 0.5),
-            shading: self.shading * 2.0 * looks.tone,
-            grain: self.grain * 2.0 * looks.grain,
+            rho: self.rho * length_factor(look.width),
+            sigma_e: self.sigma_e * width_factor(look.width),
+            sigma_m: self.sigma_m * length_factor(look.width) * (1.0 + 2.0 * look.suppress),
+            p: self.p * amount * (1.0 - 0.5 * look.suppress),
+            epsilon: self.epsilon + 80.0 * (look.tone - TONE.default_float()),
+            shading: self.shading * (look.tone / TONE.default_float()),
+            grain: self.grain * (look.grain / GRAIN.default_float()),
             ..self
         }
     }
 
-    /// The preset as the trims of `advanced` leave it.
+    /// The preset after the trims of `advanced`.
     fn trimmed(self, scope: &Scope<'_>) -> Self {
         Self {
             sigma_e: self.sigma_e * scope.float("edge_scale"),
@@ -294,7 +308,7 @@ fn strokes(plan: &mut PlanBuilder, tensor: ImageId, [width, length]: [f32; 2], s
     let white = noise::white(plan, scale, 19);
     let soft = gaussian_blur::smooth(plan, white, width * scale, Class::Colour);
     // Noise is about as fine as pixels: none may be left out.
-    let options = Lic { sigma: length * scale, adapt: Adapt::None, stretch: 1.0, ..Lic::default() };
+    let options = Lic { sigma: length * scale, adapt: Adapt::None, stretch: 1.0, ..lic::options() };
     let long = line_integral_convolution::color(plan, soft, tensor, &options);
     // Averages of noise are faint: a Gaussian of this width leaves 1 / (2 sqrt(pi) width) of its deviation.
     contrast::stretch(plan, long, 7.0 * width)
@@ -303,8 +317,8 @@ fn strokes(plan: &mut PlanBuilder, tensor: ImageId, [width, length]: [f32; 2], s
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = scope.required("color");
     let scale = scope.scale();
-    let own = preset(scope.choice("style"));
-    let drawing = own.trimmed(scope).looking(Looks {
+    let own = scope.option::<Style>("style").preset();
+    let drawing = own.trimmed(scope).with_look(Look {
         width: scope.float("line_width") / scale,
         amount: scope.float("line_amount"),
         suppress: scope.float("suppress_small"),
@@ -325,7 +339,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         xdog: Xdog::sharpen(drawing.p, 0.0, 1.0, Threshold::None),
         iterations: 1,
         stepping: Stepping::Along(Integrator::TwoStep),
-        two_dimensional: false,
+        kernel: Kernel::Separable,
         guide_weight,
     };
     let lightness = lightness::of_lab(scope.plan, smooth);
@@ -353,7 +367,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     };
     let drawn = draw(scope.plan, response, tinted, carved, &sheet);
     if own.sigma_a > 0.0 {
-        let options = Lic { sigma: drawing.sigma_a * scale, ..Lic::default() };
+        let options = Lic { sigma: drawing.sigma_a * scale, ..lic::options() };
         return line_integral_convolution::color(scope.plan, drawn, tensor, &options);
     }
     drawn
@@ -362,27 +376,33 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::choice::Selectable;
 
-    const NEUTRAL: Looks = Looks { width: 2.0, amount: 0.5, suppress: 0.0, tone: 0.5, grain: 0.5 };
-    const ALL: [Preset; 5] = [PENCIL, INK, CHARCOAL, WOODCUT, PASTEL];
+    const NEUTRAL: Look = Look {
+        width: lines::LINE_WIDTH.default_float(),
+        amount: lines::LINE_AMOUNT.default_float(),
+        suppress: lines::SUPPRESS_SMALL.default_float(),
+        tone: TONE.default_float(),
+        grain: GRAIN.default_float(),
+    };
 
     #[test]
     fn neutral_controls_change_nothing() {
-        for preset in ALL {
-            assert_eq!(preset.looking(NEUTRAL), preset);
+        for preset in Style::ALL.iter().map(|style| style.preset()) {
+            assert_eq!(preset.with_look(NEUTRAL), preset);
         }
     }
 
     #[test]
     fn mappings_are_monotone_and_stay_in_range() {
-        for preset in ALL {
+        for preset in Style::ALL.iter().map(|style| style.preset()) {
             for i in 0..100 {
                 let (a, b) = (i as f32 / 100.0, (i + 1) as f32 / 100.0);
-                let at = |looks: Looks| preset.looking(looks);
-                assert!(at(Looks { amount: a, ..NEUTRAL }).p < at(Looks { amount: b, ..NEUTRAL }).p);
-                assert!(at(Looks { suppress: a, ..NEUTRAL }).p > at(Looks { suppress: b, ..NEUTRAL }).p);
-                assert!(at(Looks { tone: a, ..NEUTRAL }).epsilon < at(Looks { tone: b, ..NEUTRAL }).epsilon);
-                let (low, high) = (at(Looks { grain: a, ..NEUTRAL }), at(Looks { grain: b, ..NEUTRAL }));
+                let at = |look: Look| preset.with_look(look);
+                assert!(at(Look { amount: a, ..NEUTRAL }).p < at(Look { amount: b, ..NEUTRAL }).p);
+                assert!(at(Look { suppress: a, ..NEUTRAL }).p > at(Look { suppress: b, ..NEUTRAL }).p);
+                assert!(at(Look { tone: a, ..NEUTRAL }).epsilon < at(Look { tone: b, ..NEUTRAL }).epsilon);
+                let (low, high) = (at(Look { grain: a, ..NEUTRAL }), at(Look { grain: b, ..NEUTRAL }));
                 assert!(low.grain <= high.grain);
             }
         }

@@ -2,15 +2,16 @@
 //! the flow its strokes.
 
 use crate::kernels::colour::paint_relief::{self, Relief};
-use crate::kernels::colour::{lab_to_rgb, rgb_to_lab, tone_curve};
+use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
 use crate::kernels::smoothing::{flow_dilation, gaussian_blur};
 use crate::kernels::structure::noise;
-use crate::look::{self, ADVANCED, LOOK};
+use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
-use crate::nodes::styles::cartoon::{self, Abstraction};
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
+use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::{ADVANCED, LOOK, tone};
 use isophote_engine::{Class, ImageId};
 
 /// The node.
@@ -25,16 +26,8 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR],
     output: ports::color_output("The painting."),
     own_params: &[
-        Param::float("stroke_length", "Stroke length", 20.0, [0.0, 80.0])
-            .slider(2.0, 50.0)
-            .pixels()
-            .group(LOOK)
-            .doc("Length of strokes: scales `dilation_length`, `sigma_t` and `sigma_b` by length / 20."),
-        Param::float("stroke_width", "Stroke width", 4.0, [0.5, 20.0])
-            .slider(1.0, 12.0)
-            .pixels()
-            .group(LOOK)
-            .doc("Width of strokes: scales `sigma_n` and `rho` by width / 4."),
+        STROKE_LENGTH,
+        STROKE_WIDTH,
         Param::float("bristle", "Bristle", 0.5, [0.0, 1.0])
             .group(LOOK)
             .doc("How dark and light the marks of the bristles are: up to 20 units of L on white."),
@@ -45,18 +38,18 @@ pub static NODE: NodeSpec = NodeSpec {
             .degrees()
             .group(LOOK)
             .doc("Where the light comes from, counter-clockwise from the right; 90 is above."),
-        look::DETAIL,
-        look::SATURATION,
-        look::LIGHTS,
-        look::DARKS,
-        cartoon::ABSTRACTION,
+        abstraction::DETAIL,
+        tone::SATURATION,
+        tone::LIGHTS,
+        tone::DARKS,
+        abstraction::ABSTRACTION,
         Param::int("n_a", "Iterations", 2, [0, 16])
             .slider(0.0, 8.0)
             .structural()
             .group(ADVANCED)
             .doc("Bilateral iterations before the strokes."),
-        cartoon::SIGMA_D,
-        cartoon::SIGMA_R,
+        abstraction::SIGMA_D,
+        abstraction::SIGMA_R,
         Param::float("rho", "Rho", 3.0, [0.0, 20.0])
             .slider(0.0, 8.0)
             .pixels()
@@ -94,6 +87,17 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
+const STROKE_LENGTH: Param = Param::float("stroke_length", "Stroke length", 20.0, [0.0, 80.0])
+    .slider(2.0, 50.0)
+    .pixels()
+    .group(LOOK)
+    .doc("Length of strokes: scales `dilation_length`, `sigma_t` and `sigma_b` by length / 20.");
+const STROKE_WIDTH: Param = Param::float("stroke_width", "Stroke width", 4.0, [0.5, 20.0])
+    .slider(1.0, 12.0)
+    .pixels()
+    .group(LOOK)
+    .doc("Width of strokes: scales `sigma_n` and `rho` by width / 4.");
+
 /// Units of L, on white, of the look controls at 1.
 const MOST_BRISTLE: f32 = 20.0;
 const MOST_SHINE: f32 = 30.0;
@@ -101,8 +105,8 @@ const MOST_SHINE: f32 = 30.0;
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = scope.required("color");
     // Ratios of two lengths have no unit: the scale of the rendering is taken out again.
-    let length = scope.float("stroke_length") / (20.0 * scope.scale());
-    let width = scope.float("stroke_width") / (4.0 * scope.scale());
+    let length = scope.float("stroke_length") / (STROKE_LENGTH.default_float() * scope.scale());
+    let width = scope.float("stroke_width") / (STROKE_WIDTH.default_float() * scope.scale());
     let options = TensorOptions {
         rho: scope.float("rho") * width,
         levels: scope.int("levels"),
@@ -121,7 +125,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let dilation_length = scope.float("dilation_length") * length;
     let strokes = flow_dilation::strokes(scope.plan, flat, tensors, grains, dilation_length);
     // Grains are about as fine as pixels: none may be left out.
-    let along = |sigma: f32, adapt: Adapt| Lic { sigma, adapt, stretch: 1.0, ..Lic::default() };
+    let along = |sigma: f32, adapt: Adapt| Lic { sigma, adapt, stretch: 1.0, ..lic::options() };
     let sigma_t = scope.float("sigma_t") * length;
     let mut painted =
         line_integral_convolution::color(scope.plan, strokes, tensors, &along(sigma_t, Adapt::Anisotropy));
@@ -138,10 +142,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     };
     painted = paint_relief::lit(scope.plan, painted, heights, &relief);
 
-    let (darks, lights) = (scope.float("darks"), scope.float("lights"));
-    if darks != 0.0 || lights != 0.0 {
-        painted = tone_curve::tones(scope.plan, painted, darks, lights);
-    }
+    painted = tone::curve(scope, painted);
     let saturation = scope.float("saturation");
     lab_to_rgb::to_rgb(scope.plan, painted, saturation)
 }

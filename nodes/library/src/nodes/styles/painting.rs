@@ -1,12 +1,15 @@
 //! A painting: the multi-scale anisotropic Kuwahara filter (§ 5.5), which abstracts strongly and keeps the
 //! direction of features as strokes.
 
-use crate::kernels::colour::{lab_to_rgb, rgb_to_lab, tone_curve};
-use crate::look::{self, ADVANCED, LOOK};
-use crate::nodes::painting::anisotropic_kuwahara::{ALPHA, LEVELS, P_D, P_S, Painting, RADIUS, TAU_V, TAU_W};
+use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
+use crate::nodes::painting::anisotropic_kuwahara::{
+    ALPHA, LEVELS, P_D, P_S, Painting, RADIUS, TAU_V, TAU_W, Weights,
+};
 use crate::nodes::painting::generalized_kuwahara::{Q, SECTORS, THRESHOLD};
 use crate::ports;
-use crate::spec::{NodeSpec, Param, ParamKind, Scope};
+use crate::spec::{NodeSpec, Param, Scope};
+use crate::stages::{ADVANCED, LOOK, abstraction, tone};
+use crate::value::Value;
 use isophote_engine::ImageId;
 
 /// The node.
@@ -21,14 +24,15 @@ pub static NODE: NodeSpec = NodeSpec {
     output: ports::color_output("The painting."),
     own_params: &[
         BRUSH_SIZE,
-        look::DETAIL.doc("How much fine detail survives: scales `p_s` from 1/4 to 4 times."),
+        abstraction::DETAIL.doc("How much fine detail survives: scales `p_s` from 1/4 to 4 times."),
         STROKE_LENGTH,
         SHARPNESS,
-        look::SATURATION.structural(),
-        look::LIGHTS,
-        look::DARKS,
+        tone::SATURATION.structural(),
+        tone::LIGHTS,
+        tone::DARKS,
         RADIUS.group(ADVANCED),
-        PAINTING_LEVELS,
+        // More of them than the node has by default.
+        LEVELS.with_default(Value::Int(2)).group(ADVANCED),
         SECTORS.group(ADVANCED),
         Q.group(ADVANCED),
         THRESHOLD.group(ADVANCED),
@@ -52,10 +56,6 @@ const STROKE_LENGTH: Param = Param::float("stroke_length", "Stroke length", 0.5,
 const SHARPNESS: Param = Param::float("sharpness", "Sharpness", 0.5, [0.0, 1.0])
     .group(LOOK)
     .doc("How crisp the borders of strokes are: scales `q` from 1/4 to 4 times.");
-/// The levels of the node, more of them by default.
-const PAINTING_LEVELS: Param =
-    Param { kind: ParamKind::Int { default: 2, range: [1, 8], slider: [1, 6] }, ..LEVELS.group(ADVANCED) };
-
 /// A factor from 1/4 to 4 for a control of 0..=1, 1 at its middle.
 fn quadruple(control: f32) -> f32 {
     4f32.powf(2.0 * control - 1.0)
@@ -65,31 +65,26 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = scope.required("color");
     let tensor = scope.input("tensor");
     let scale = scope.scale();
-    let mut painting = Painting::of(scope, false);
-    let brush = scope.float("brush_size") / (12.0 * scale);
-    painting.options.radius = (painting.options.radius * brush).min(LARGEST_RADIUS * scale);
+    let mut painting = Painting::of(scope, Weights::Polynomial);
+    let brush = scope.float("brush_size") / (BRUSH_SIZE.default_float() * scale);
+    // The limits of the parameters: wider strokes cost more than they show, longer ones gain nothing.
+    painting.options.radius = (painting.options.radius * brush).min(RADIUS.range[1] * scale);
     painting.options.alpha =
-        (painting.options.alpha / quadruple(scope.float("stroke_length"))).max(LEAST_ALPHA);
+        (painting.options.alpha / quadruple(scope.float("stroke_length"))).max(ALPHA.range[0]);
     // Neutral controls leave whole exponents whole, which are the fast ones.
-    painting.options.q = (painting.options.q * quadruple(scope.float("sharpness"))).clamp(1.0, 64.0);
+    painting.options.q =
+        (painting.options.q * quadruple(scope.float("sharpness"))).clamp(Q.range[0], Q.range[1]);
     painting.p_s *= quadruple(scope.float("detail"));
     let painted = painting.apply(scope.plan, color, tensor, scale);
 
-    let (saturation, darks, lights) =
-        (scope.float("saturation"), scope.float("darks"), scope.float("lights"));
-    if saturation == 1.0 && darks == 0.0 && lights == 0.0 {
+    let saturation = scope.float("saturation");
+    if saturation == tone::SATURATION.default_float() && tone::is_neutral(scope) {
         return painted;
     }
     let lab = rgb_to_lab::to_lab(scope.plan, painted, 1.0);
-    let toned = tone_curve::tones(scope.plan, lab, darks, lights);
+    let toned = tone::curve(scope, lab);
     lab_to_rgb::to_rgb(scope.plan, toned, saturation)
 }
-
-/// Wider strokes cost more than they show; pixels of the full-size picture.
-const LARGEST_RADIUS: f32 = 40.0;
-
-/// Longer ellipses reach across the whole picture and gain nothing.
-const LEAST_ALPHA: f32 = 0.25;
 
 #[cfg(test)]
 mod tests {

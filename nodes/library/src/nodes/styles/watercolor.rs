@@ -1,17 +1,16 @@
 //! Watercolour (§ 1.2, 5.1): flat washes with dark borders on grained paper, after Bousseau et al. 2006.
 
 use crate::kernels::colour::watercolor_wash::{self, Wash};
-use crate::kernels::colour::{lab_to_rgb, rgb_to_lab, tone_curve};
+use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::kernels::smoothing::wobble;
-use crate::look::{self, ADVANCED, LOOK};
-use crate::nodes::smoothing::morphology;
-use crate::nodes::structure::structure_tensor;
-use crate::nodes::structure::structure_tensor::TensorOptions;
-use crate::nodes::styles::cartoon::{self, Abstraction};
+use crate::nodes::smoothing::{line_integral_convolution as lic, morphology};
+use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
+use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::{ADVANCED, LOOK, tone};
 use isophote_engine::ImageId;
 
 /// The node.
@@ -31,7 +30,7 @@ pub static NODE: NodeSpec = NodeSpec {
             .pixels()
             .group(LOOK)
             .doc("Radius of the smallest patches of colour that are painted."),
-        look::DETAIL,
+        abstraction::DETAIL,
         Param::float("pigment", "Pigment", 0.85, [0.0, 1.0])
             .slider(0.3, 1.0)
             .group(LOOK)
@@ -50,17 +49,17 @@ pub static NODE: NodeSpec = NodeSpec {
             .pixels()
             .group(LOOK)
             .doc("How far outlines waver; far ones in waves that are longer than `wavelength`, so that none folds."),
-        look::SATURATION,
-        look::LIGHTS,
-        look::DARKS,
-        cartoon::ABSTRACTION,
+        tone::SATURATION,
+        tone::LIGHTS,
+        tone::DARKS,
+        abstraction::ABSTRACTION,
         Param::int("n_a", "Iterations", 4, [0, 16])
             .slider(0.0, 8.0)
             .structural()
             .group(ADVANCED)
             .doc("Bilateral iterations."),
-        cartoon::SIGMA_D,
-        cartoon::SIGMA_R,
+        abstraction::SIGMA_D,
+        abstraction::SIGMA_R,
         Param::float("sigma_a", "Edge smoothing", 2.0, [0.0, 20.0])
             .slider(0.0, 5.0)
             .pixels()
@@ -99,10 +98,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let n_a = scope.int("n_a");
     let lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
     let mut flat = abstraction.apply(scope.plan, lab, tensors, n_a);
-    let (darks, lights) = (scope.float("darks"), scope.float("lights"));
-    if darks != 0.0 || lights != 0.0 {
-        flat = tone_curve::tones(scope.plan, flat, darks, lights);
-    }
+    flat = tone::curve(scope, flat);
     let saturation = scope.float("saturation");
     let rgb = lab_to_rgb::to_rgb(scope.plan, flat, saturation);
 
@@ -110,14 +106,14 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let radius = scope.float("wash_size");
     let closed = morphology::close(scope.plan, rgb, radius);
     let patches = morphology::open(scope.plan, closed, radius);
-    let smooth = Lic { sigma: scope.float("sigma_a"), ..Lic::default() };
+    let smooth = Lic { sigma: scope.float("sigma_a"), ..lic::options() };
     let patches = line_integral_convolution::color(scope.plan, patches, tensors, &smooth);
     let (amount, wavelength, scale) = (scope.float("wobble"), scope.float("wavelength"), scope.scale());
     let wavelength = wavelength.max(SHORTEST_WAVE * amount / scale);
     let drawn = wobble::waver(scope.plan, patches, amount, wavelength, scale);
 
     let edge_width = scope.float("edge_width");
-    let surroundings = gaussian_blur::color(scope.plan, drawn, edge_width);
+    let blurred = gaussian_blur::color(scope.plan, drawn, edge_width);
     let wash = Wash {
         scale,
         pigment: scope.float("pigment"),
@@ -126,5 +122,5 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         grain: scope.float("granulation") * MOST_GRAIN,
         grain_size: scope.float("grain_size"),
     };
-    watercolor_wash::painted(scope.plan, drawn, surroundings, &wash)
+    watercolor_wash::painted(scope.plan, drawn, blurred, &wash)
 }

@@ -2,11 +2,11 @@
 
 use super::{node, on_graph};
 use crate::abi::args;
-use crate::abi::catalogue::{self, decimal};
+use crate::abi::catalogue::{self, param_type};
 use crate::abi::contract::*;
 use crate::abi::failure::{Failure, Outcome};
-use isophote::spec::{Param, ParamKind};
-use isophote::{Graph, NodeId, Value};
+use isophote::Value;
+use isophote::spec::Param;
 use std::ffi::c_char;
 use std::ptr::null;
 
@@ -14,8 +14,8 @@ fn set(
     graph: IsophoteGraph,
     index: u32,
     param: *const c_char,
-    fits: fn(&ParamKind) -> bool,
-    value: impl FnOnce(&Param, &Graph, NodeId) -> Outcome<Value>,
+    kinds: &[IsophoteParamKind],
+    value: impl FnOnce(&Param, &str) -> Outcome<Value>,
 ) -> IsophoteStatus {
     on_graph(graph, |graph| {
         let node = node(graph, index)?;
@@ -27,25 +27,16 @@ fn set(
             graph.value(node, id)?;
             return Err(Failure::new(ISOPHOTE_UNKNOWN, format!("there is no parameter '{id}'")));
         };
-        if !fits(&declared.kind) {
+        let own = param_type(declared.default);
+        if !kinds.contains(&own.kind) {
             return Err(Failure::new(
                 ISOPHOTE_WRONG_TYPE,
-                format!("parameter '{id}' of '{}' is {}", spec.id, type_name(&declared.kind)),
+                format!("parameter '{id}' of '{}' is {}", spec.id, own.name),
             ));
         }
-        let value = value(declared, graph, node)?;
+        let value = value(declared, spec.id)?;
         Ok(graph.set(node, id, value)?)
     })
-}
-
-fn type_name(kind: &ParamKind) -> &'static str {
-    match kind {
-        ParamKind::Float { .. } => "a number; set it with graph_set_float",
-        ParamKind::Int { .. } => "a whole number; set it with graph_set_int",
-        ParamKind::Bool { .. } => "a switch; set it with graph_set_bool",
-        ParamKind::Choice { .. } => "a choice; set it with graph_set_choice",
-        ParamKind::Color { .. } => "a colour; set it with graph_set_color",
-    }
 }
 
 pub(in crate::abi) unsafe extern "C" fn set_float(
@@ -54,13 +45,7 @@ pub(in crate::abi) unsafe extern "C" fn set_float(
     param: *const c_char,
     value: f64,
 ) -> IsophoteStatus {
-    set(
-        graph,
-        node,
-        param,
-        |kind| matches!(kind, ParamKind::Float { .. }),
-        |_, _, _| Ok(Value::Float(value as f32)),
-    )
+    set(graph, node, param, &[ISOPHOTE_PARAM_FLOAT], |_, _| Ok(Value::Float(value as f32)))
 }
 
 pub(in crate::abi) unsafe extern "C" fn set_int(
@@ -69,13 +54,8 @@ pub(in crate::abi) unsafe extern "C" fn set_int(
     param: *const c_char,
     value: i32,
 ) -> IsophoteStatus {
-    set(
-        graph,
-        node,
-        param,
-        |kind| matches!(kind, ParamKind::Int { .. } | ParamKind::Float { .. }),
-        |_, _, _| Ok(Value::Int(value)),
-    )
+    let kinds = [ISOPHOTE_PARAM_INT, ISOPHOTE_PARAM_FLOAT];
+    set(graph, node, param, &kinds, |_, _| Ok(Value::Int(value)))
 }
 
 pub(in crate::abi) unsafe extern "C" fn set_bool(
@@ -84,13 +64,7 @@ pub(in crate::abi) unsafe extern "C" fn set_bool(
     param: *const c_char,
     value: u32,
 ) -> IsophoteStatus {
-    set(
-        graph,
-        node,
-        param,
-        |kind| matches!(kind, ParamKind::Bool { .. }),
-        |_, _, _| Ok(Value::Bool(value != 0)),
-    )
+    set(graph, node, param, &[ISOPHOTE_PARAM_BOOL], |_, _| Ok(Value::Bool(value != 0)))
 }
 
 pub(in crate::abi) unsafe extern "C" fn set_choice(
@@ -99,23 +73,10 @@ pub(in crate::abi) unsafe extern "C" fn set_choice(
     param: *const c_char,
     option: *const c_char,
 ) -> IsophoteStatus {
-    set(
-        graph,
-        node,
-        param,
-        |kind| matches!(kind, ParamKind::Choice { .. }),
-        |declared, graph, node| {
-            // SAFETY: the host promised text with a closing zero.
-            let id = unsafe { args::text(option, "the option's id")? };
-            match declared.kind {
-                ParamKind::Choice { options, .. } => {
-                    let index = isophote::values::option(graph.spec(node)?, declared, options, id)?;
-                    Ok(Value::Choice(index))
-                }
-                _ => Err(Failure::new(ISOPHOTE_WRONG_TYPE, type_name(&declared.kind))),
-            }
-        },
-    )
+    set(graph, node, param, &[ISOPHOTE_PARAM_CHOICE], |declared, node| {
+        // SAFETY: the host promised text with a closing zero.
+        Ok(declared.parse(node, unsafe { args::text(option, "the option's id")? })?)
+    })
 }
 
 pub(in crate::abi) unsafe extern "C" fn set_color(
@@ -124,17 +85,11 @@ pub(in crate::abi) unsafe extern "C" fn set_color(
     param: *const c_char,
     rgba: *const f32,
 ) -> IsophoteStatus {
-    set(
-        graph,
-        node,
-        param,
-        |kind| matches!(kind, ParamKind::Color { .. }),
-        |_, _, _| {
-            // SAFETY: the host promised four numbers.
-            let rgba = unsafe { args::get(rgba.cast::<[f32; 4]>(), "the colour")? };
-            Ok(Value::Color(rgba))
-        },
-    )
+    set(graph, node, param, &[ISOPHOTE_PARAM_COLOR], |_, _| {
+        // SAFETY: the host promised four numbers.
+        let rgba = unsafe { args::get(rgba.cast::<[f32; 4]>(), "the colour")? };
+        Ok(Value::Color(rgba))
+    })
 }
 
 pub(in crate::abi) unsafe extern "C" fn set_text(
@@ -163,25 +118,15 @@ pub(in crate::abi) unsafe extern "C" fn get(
         let id = unsafe { args::text(param, "the parameter's id")? };
         let current = graph.value(node, id)?;
         let spec = graph.spec(node)?;
-        let (at, declared) = spec
-            .param(id)
-            .ok_or_else(|| Failure::new(ISOPHOTE_UNKNOWN, format!("there is no parameter '{id}'")))?;
         let mut out = IsophoteValue {
-            kind: catalogue::param_kind(&declared.kind),
+            kind: param_type(current).kind,
             choice_index: 0,
             choice: null(),
-            number: [0.0; 4],
+            number: current.decimals(),
         };
-        match current {
-            Value::Float(v) => out.number[0] = decimal(v),
-            Value::Int(v) => out.number[0] = f64::from(v),
-            Value::Bool(v) => out.number[0] = f64::from(u8::from(v)),
-            Value::Choice(v) => {
-                out.number[0] = v as f64;
-                out.choice_index = v as u32;
-                out.choice = catalogue::option_id(spec, at, v)?;
-            }
-            Value::Color(v) => out.number = v.map(decimal),
+        if let (Value::Choice(option), Some((at, _))) = (current, spec.param(id)) {
+            out.choice_index = option as u32;
+            out.choice = catalogue::option_id(spec, at, option)?;
         }
         // SAFETY: the host promised that the place may be written.
         unsafe { args::put(value, out, "the place for the value") }

@@ -1,0 +1,70 @@
+//! Choices: enums whose options are declared once, each with its id, its label and its document.
+
+use crate::value::Choice;
+
+/// An enum that a parameter offers as a choice.
+pub trait Selectable: Copy + 'static {
+    /// All options, in the order of panels.
+    const ALL: &'static [Self];
+    /// How people see them, in the same order.
+    const OPTIONS: &'static [Choice];
+}
+
+/// An option, usually a default, among the options of its enum.
+#[derive(Clone, Copy, Debug)]
+pub struct Selection {
+    /// Which of them.
+    pub index: usize,
+    /// All of them.
+    pub options: &'static [Choice],
+}
+
+/// Declares an enum that a parameter offers as a choice. An option is its document, its name and, in
+/// parentheses, its id and its label. The order is that of panels. An enum that shaders know by a number
+/// states the number of each option:
+///
+/// ```ignore
+/// choice! {
+///     /// Spatial weight of the neighbours.
+///     pub enum Window {
+///         /// 1 within the radius.
+///         Box = 0 ("box", "Box"),
+///         /// A Gaussian that is cut at the radius.
+///         Gaussian = 1 ("gaussian", "Gaussian"),
+///     }
+/// }
+/// ```
+macro_rules! choice {
+    (
+        $(#[$meta:meta])*
+        $vis:vis enum $name:ident {
+            $($(#[doc = $doc:literal])+ $option:ident $(= $number:literal)? ($id:literal, $label:literal),)+
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        $vis enum $name {
+            $($(#[doc = $doc])+ $option $(= $number)?,)+
+        }
+
+        impl $crate::choice::Selectable for $name {
+            const ALL: &'static [Self] = &[$(Self::$option,)+];
+            const OPTIONS: &'static [$crate::value::Choice] = &[$(
+                $crate::value::Choice { id: $id, label: $label, doc: concat!($($doc,)+).trim_ascii() },
+            )+];
+        }
+
+        impl $name {
+            /// This option among all.
+            $vis const fn selected(self) -> $crate::choice::Selection {
+                use $crate::choice::Selectable;
+                let mut index = 0;
+                while Self::ALL[index] as u32 != self as u32 {
+                    index += 1;
+                }
+                $crate::choice::Selection { index, options: Self::OPTIONS }
+            }
+        }
+    };
+}
+pub(crate) use choice;

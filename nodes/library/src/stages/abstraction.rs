@@ -1,0 +1,120 @@
+//! The bilateral filter of styles (§ 4.6): regions of like colour become flat, borders stay.
+
+use crate::choice::choice;
+use crate::kernels::smoothing::bilateral::Options;
+use crate::nodes::smoothing::bilateral::Kernel;
+use crate::nodes::smoothing::{bilateral, flow_bilateral, oriented_bilateral};
+use crate::spec::{Param, Scope};
+use crate::stages::{ADVANCED, LOOK};
+use isophote_engine::{ImageId, PlanBuilder};
+
+pub(crate) const DETAIL: Param = Param::float("detail", "Detail", 0.5, [0.0, 1.0]).group(LOOK).doc(
+    "How much survives the abstraction: scales `sigma_r` from 4 to 1/4 times and `sigma_d` from 2 to 1/2.",
+);
+pub(crate) const ABSTRACTION: Param =
+    Param::choice("abstraction", "Abstraction", Filter::Oriented.selected()).group(ADVANCED).doc(
+        "Bilateral filter: across and along the local orientation (3.4), or along stream lines (3.5), whose \
+         own scales then grow with `sigma_d` / 3 and `sigma_r` / 4.25; or without regard to it, by the full \
+         window (3.2) or along rows and then columns (3.3).",
+    );
+pub(crate) const SIGMA_D: Param = Param::float("sigma_d", "Sigma d", 3.0, [0.1, 20.0])
+    .slider(0.5, 10.0)
+    .pixels()
+    .group(ADVANCED)
+    .doc("Spatial standard deviation of the bilateral filter.");
+pub(crate) const SIGMA_R: Param = Param::float("sigma_r", "Sigma r", 4.25, [0.1, 200.0])
+    .slider(0.5, 30.0)
+    .group(ADVANCED)
+    .doc("Standard deviation of the bilateral filter in range, CIELAB units.");
+
+choice! {
+    /// The bilateral filter.
+    enum Filter {
+        /// Across and along the local orientation (3.4).
+        Oriented ("oriented", "Oriented bilateral"),
+        /// Along stream lines (3.5).
+        Flow ("flow", "Flow bilateral"),
+        /// By the full window (3.2).
+        Full ("full", "Full bilateral"),
+        /// Along rows and then columns (3.3).
+        Separable ("xy", "Separable bilateral"),
+    }
+}
+
+/// The bilateral filter of a style; lengths in pixels of the picture that is rendered.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Abstraction {
+    /// Along the local orientation (3.4).
+    Oriented(oriented_bilateral::Passes),
+    /// Along stream lines (3.5).
+    Flow(flow_bilateral::Passes),
+    /// Isotropic (3.2), or separable along x and y (3.3).
+    Isotropic(bilateral::Passes),
+}
+
+impl Abstraction {
+    /// The values of `advanced`, scaled by `detail`.
+    pub(crate) fn of(scope: &Scope<'_>) -> Self {
+        let [d, r] = detail_factors(scope.float("detail"));
+        let (sigma_d, sigma_r) = (scope.float("sigma_d") * d, scope.float("sigma_r") * r);
+        let isotropic = |kernel| {
+            let options = Options { sigma_d, sigma_r, cutoff: bilateral::CUTOFF.default_float() };
+            Self::Isotropic(bilateral::Passes { kernel, options })
+        };
+        match scope.option("abstraction") {
+            Filter::Full => isotropic(Kernel::Full),
+            Filter::Separable => isotropic(Kernel::Separable),
+            Filter::Flow => {
+                let mut passes = flow_bilateral::Passes::default();
+                let (d, r) = (sigma_d / SIGMA_D.default_float(), sigma_r / SIGMA_R.default_float());
+                passes.gradient.sigma_d *= d;
+                passes.gradient.sigma_r *= r;
+                passes.flow.sigma_d *= d;
+                passes.flow.sigma_r *= r;
+                Self::Flow(passes)
+            }
+            Filter::Oriented => {
+                let mut passes = oriented_bilateral::Passes::default();
+                for options in [&mut passes.gradient, &mut passes.tangent] {
+                    (options.sigma_d, options.sigma_r) = (sigma_d, sigma_r);
+                }
+                Self::Oriented(passes)
+            }
+        }
+    }
+
+    /// A Lab image after `iterations`.
+    pub(crate) fn apply(
+        &self,
+        plan: &mut PlanBuilder,
+        lab: ImageId,
+        tensor: ImageId,
+        iterations: i32,
+    ) -> ImageId {
+        (0..iterations).fold(lab, |lab, _| match self {
+            Self::Oriented(passes) => oriented_bilateral::iteration(plan, lab, tensor, passes),
+            Self::Flow(passes) => flow_bilateral::iteration(plan, lab, tensor, passes),
+            Self::Isotropic(passes) => bilateral::iteration(plan, lab, passes),
+        })
+    }
+}
+
+/// Factors on (`sigma_d`, `sigma_r`) for `detail` 0..=1, 1 at the default.
+pub(crate) fn detail_factors(detail: f32) -> [f32; 2] {
+    let exponent = 2.0 * (DETAIL.default_float() - detail);
+    [2f32.powf(exponent), 4f32.powf(exponent)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_detail_changes_nothing_and_more_smooths_less() {
+        assert_eq!(detail_factors(DETAIL.default_float()), [1.0, 1.0]);
+        for i in 0..100 {
+            let [a, b] = [i, i + 1].map(|i| detail_factors(i as f32 / 100.0));
+            assert!(a[0] > b[0] && a[1] > b[1]);
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! The lines of styles: the flow-based difference of Gaussians (§ 4.5) under the controls of artists.
+
+use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
+use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
+use crate::kernels::shared::stream::Integrator;
+use crate::nodes::lines::flow_dog::{FlowDog, Kernel};
+use crate::spec::{Param, Scope};
+use crate::stages::{ADVANCED, LOOK};
+
+pub(crate) const LINE_WIDTH: Param = Param::float("line_width", "Line width", 2.0, [0.2, 40.0])
+    .slider(0.8, 10.0)
+    .pixels()
+    .group(LOOK)
+    .doc("Width of lines: scales `sigma_e` by width / 2 and, above 2, `sigma_m` by its root, so that wide lines do not break.");
+pub(crate) const LINE_AMOUNT: Param = Param::float("line_amount", "Line amount", 0.5, [0.0, 1.0])
+    .group(LOOK)
+    .doc("How many lines: 0 draws none, 1 draws them at faint edges too; scales 1 - `tau`.");
+pub(crate) const SUPPRESS_SMALL: Param =
+    Param::float("suppress_small", "Suppress small", 0.0, [0.0, 1.0]).group(LOOK).doc(
+        "Drops short and weak lines: lengthens `sigma_m` up to three times and lowers `epsilon` by up to 0.75.",
+    );
+pub(crate) const N_E: Param = Param::int("n_e", "Iterations for lines", 1, [0, 16])
+    .slider(0.0, 8.0)
+    .structural()
+    .group(ADVANCED)
+    .doc("Bilateral iterations before lines are extracted (n_e), which keeps noise out of them.");
+pub(crate) const LINE_ITERATIONS: Param = Param::int("line_iterations", "Line iterations", 1, [1, 16])
+    .slider(1.0, 5.0)
+    .structural()
+    .group(ADVANCED)
+    .doc("Times the line filter runs, each on the lightness times the lines found so far.");
+pub(crate) const GUIDE_WEIGHT: Param = Param::float("guide_weight", "Guide weight", 1.0, [0.0, 16.0])
+    .slider(0.0, 2.0)
+    .structural()
+    .group(ADVANCED)
+    .doc("Strength of lines where normal, depth or object id break; 0 leaves the guides unread.");
+
+/// The technical parameters of lines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Lines {
+    sigma_e: f32,
+    sigma_m: f32,
+    tau: f32,
+    epsilon: f32,
+    phi: f32,
+}
+
+impl Lines {
+    /// The values after the controls of artists: `width` in pixels of the full picture, `amount` and
+    /// `suppress` in 0..=1.
+    fn with_look(self, width: f32, amount: f32, suppress: f32) -> Self {
+        let base = ((1.0 - self.tau) * base_factor(amount)).clamp(0.0, 1.0);
+        Self {
+            sigma_e: self.sigma_e * width_factor(width),
+            sigma_m: self.sigma_m * length_factor(width) * (1.0 + 2.0 * suppress),
+            tau: 1.0 - base,
+            epsilon: self.epsilon - 0.75 * suppress,
+            phi: self.phi,
+        }
+    }
+}
+
+/// The line filter of a style as its parameters say.
+pub(crate) fn flow_dog(scope: &Scope<'_>, guide_weight: f32) -> FlowDog {
+    let technical = Lines {
+        sigma_e: scope.float("sigma_e"),
+        sigma_m: scope.float("sigma_m"),
+        tau: scope.float("tau"),
+        epsilon: scope.float("epsilon"),
+        phi: scope.float("phi"),
+    };
+    let lines = technical.with_look(
+        // A ratio of two widths has no unit: the scale of the rendering is taken out again.
+        scope.float("line_width") / scope.scale(),
+        scope.float("line_amount"),
+        scope.float("suppress_small"),
+    );
+    FlowDog {
+        sigma_e: lines.sigma_e,
+        k: scope.float("k"),
+        sigma_m: lines.sigma_m,
+        xdog: Xdog::tau(lines.tau, lines.epsilon, lines.phi, Threshold::Tanh),
+        iterations: scope.int("line_iterations"),
+        stepping: Stepping::Along(Integrator::TwoStep),
+        kernel: Kernel::Separable,
+        guide_weight,
+    }
+}
+
+/// Factor on the scale of edges for lines `width` pixels of the full picture wide.
+pub(crate) fn width_factor(width: f32) -> f32 {
+    width / LINE_WIDTH.default_float()
+}
+
+/// Factor on the smoothing along lines `width` wide, 1 up to the default: wide ones fall into blots when
+/// what joins them stays short.
+pub(crate) fn length_factor(width: f32) -> f32 {
+    width_factor(width).max(1.0).sqrt()
+}
+
+/// Factor on 1 - tau: infinite at 0, where no line is left; 1 at the default, which is the middle; 1/4 at 1,
+/// since nothing at all would let the noise of flat parts through.
+fn base_factor(amount: f32) -> f32 {
+    const NEUTRAL: f32 = LINE_AMOUNT.default_float();
+    if amount <= 0.0 {
+        f32::INFINITY
+    } else if amount <= NEUTRAL {
+        (1.0 - amount) / amount
+    } else {
+        4f32.powf(2.0 * (NEUTRAL - amount))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::nodes::lines::{difference_of_gaussians as dog, flow_dog};
+
+    const WIDTH: f32 = LINE_WIDTH.default_float();
+    const AMOUNT: f32 = LINE_AMOUNT.default_float();
+    const SUPPRESS: f32 = SUPPRESS_SMALL.default_float();
+    const THESIS: Lines = Lines {
+        sigma_e: dog::SIGMA_E.default_float(),
+        sigma_m: flow_dog::SIGMA_M.default_float(),
+        tau: dog::TAU.default_float(),
+        epsilon: dog::EPSILON.default_float(),
+        phi: dog::PHI.default_float(),
+    };
+
+    #[test]
+    fn neutral_controls_change_nothing() {
+        assert_eq!(THESIS.with_look(WIDTH, AMOUNT, SUPPRESS), THESIS);
+    }
+
+    #[test]
+    fn mappings_are_monotone_and_stay_in_range() {
+        let all: Vec<f32> = (0..=100).map(|i| i as f32 / 100.0).collect();
+        for pair in all.windows(2) {
+            let at = |amount: f32| THESIS.with_look(WIDTH, amount, SUPPRESS);
+            let (a, b) = (at(pair[0]), at(pair[1]));
+            assert!(a.tau <= b.tau && (0.0..=1.0).contains(&a.tau), "{pair:?}: {} {}", a.tau, b.tau);
+            let at = |suppress: f32| THESIS.with_look(WIDTH, AMOUNT, suppress);
+            let (a, b) = (at(pair[0]), at(pair[1]));
+            assert!(a.sigma_m < b.sigma_m && a.epsilon > b.epsilon);
+            let at = |width: f32| THESIS.with_look(LINE_WIDTH.range[1] * width, AMOUNT, SUPPRESS);
+            let (a, b) = (at(pair[0]), at(pair[1]));
+            assert!(a.sigma_e < b.sigma_e && a.sigma_m <= b.sigma_m);
+        }
+        assert_eq!(THESIS.with_look(WIDTH, 0.0, SUPPRESS).tau, 0.0);
+        assert!(THESIS.with_look(WIDTH, 1.0, SUPPRESS).tau < 1.0);
+    }
+}

@@ -1,0 +1,53 @@
+//! The soft quantization of styles (§ 4.6) under the controls of artists.
+
+use crate::nodes::colour::quantize_luminance::BINS;
+use crate::spec::{Param, Scope};
+use crate::stages::LOOK;
+
+pub(crate) const POSTERIZE: Param = Param::int("posterize", "Posterize", BINS.default_int(), [0, 64])
+    .slider(0.0, 24.0)
+    .structural()
+    .group(LOOK)
+    .doc("Levels of lightness between black and white; 0 leaves tones continuous.");
+pub(crate) const POSTERIZE_SMOOTH: Param =
+    Param::float("posterize_smooth", "Posterize smooth", 0.25, [0.0, 1.0])
+        .group(LOOK)
+        .doc("Softness of the steps between levels, relative to their height: scales `phi_q` from 2 to 1/8.");
+
+/// Steepness of the steps between `levels` as the parameters of a style say.
+pub(crate) fn steepness(scope: &Scope<'_>, levels: i32) -> f32 {
+    softened(scope.float("phi_q"), levels, scope.float("posterize_smooth"))
+}
+
+/// Steepness of steps between `levels` for a technical value `phi_q` and a softness 0..=1; steps keep
+/// their shape relative to their height, which is that of the default levels by default.
+fn softened(phi_q: f32, levels: i32, softness: f32) -> f32 {
+    let height = levels as f32 / POSTERIZE.default_int() as f32;
+    phi_q * height * 16f32.powf(POSTERIZE_SMOOTH.default_float() - softness)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::nodes::colour::quantize_luminance::PHI_Q;
+
+    const THESIS: f32 = PHI_Q.default_float();
+    const LEVELS: i32 = POSTERIZE.default_int();
+
+    #[test]
+    fn neutral_controls_change_nothing_and_softness_softens() {
+        assert_eq!(softened(THESIS, LEVELS, POSTERIZE_SMOOTH.default_float()), THESIS);
+        for i in 0..100 {
+            let [a, b] = [i, i + 1].map(|i| softened(THESIS, LEVELS, i as f32 / 100.0));
+            assert!(a > b);
+        }
+    }
+
+    #[test]
+    fn steps_of_any_number_of_levels_end_where_their_bins_do() {
+        for levels in [2, 8, 64] {
+            let half_bin = 50.0 / levels as f32;
+            assert!((softened(THESIS, levels, 1.0) * half_bin).tanh() > 0.98);
+        }
+    }
+}
