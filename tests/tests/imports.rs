@@ -12,8 +12,6 @@ const KNOWN: &[&str] = &[
     "host-example/src/loader/catalogue.rs",
     "host-example/src/render/shadow.rs",
     "host-example/src/scene/camera.rs",
-    "nodes/library/src/graph.rs",
-    "nodes/library/src/spec.rs",
     "tests/src/ofx/effect.rs",
     "xtask/src/scene/textures/masonry.rs",
 ];
