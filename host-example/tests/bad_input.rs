@@ -204,7 +204,7 @@ fn places_to_write() {
 }
 
 #[test]
-fn scenes() {
+fn gltf_scenes() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
     let write = |name: &str, bytes: &[u8]| fs::write(at(name), bytes).expect("the folder is writable");
@@ -247,6 +247,14 @@ fn scenes() {
     header.extend(b"JSON{\"asset\":");
     write("truncated.glb", &header);
     render_fails(folder.path(), "truncated.glb", &[], &["truncated.glb"]);
+}
+
+#[test]
+fn obj_scenes() {
+    let folder = folder();
+    let write = |name: &str, bytes: &[u8]| {
+        fs::write(folder.path().join(name), bytes).expect("the folder is writable");
+    };
     write("face.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99\n");
     render_fails(folder.path(), "face.obj", &[], &["face.obj"]);
     write("vertex.obj", b"v 0 0\nv zero 0 0\nf 1 2 3\n");
@@ -255,7 +263,15 @@ fn scenes() {
     render_fails(folder.path(), "empty.obj", &[], &["empty.obj"]);
     write("good.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     render_fails(folder.path(), "good.obj", &["--texture", "nowhere.png"], &["nowhere.png"]);
-    let good = inside("cube.gltf", &json);
+}
+
+#[test]
+fn options_of_render() {
+    let folder = folder();
+    let inner = folder.path().join("inner");
+    fs::create_dir(&inner).expect("the folder is writable");
+    support::cube(&inner);
+    let good = "inner/cube.gltf";
     for (more, words) in [
         (&["--style", "cartoonish"][..], &["cartoonish", "isophote nodes"][..]),
         (&["--style", "structure_tensor"], &["yields a tensor"]),
@@ -272,7 +288,7 @@ fn scenes() {
         let more: Vec<&str> =
             if more[0] == "--size" { more.to_vec() } else { [more, &["--size", "16x16"]].concat() };
         let before = listing(folder.path());
-        fails(isophote().current_dir(folder.path()).args(["render", &good, "out.png"]).args(&more), 2, words);
+        fails(isophote().current_dir(folder.path()).args(["render", good, "out.png"]).args(&more), 2, words);
         assert_eq!(listing(folder.path()), before);
     }
 }

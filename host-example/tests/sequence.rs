@@ -32,8 +32,39 @@ fn apply(folder: &Path, more: &[&str]) -> Command {
     command
 }
 
+const INPUT: &str = "in.####.exr";
+const OUTPUT: &str = "out/o.####.exr";
+
 #[test]
-fn frames_are_found_chosen_and_skipped() {
+fn frames_are_found_and_chosen() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    frames(folder.path(), 1001..=1006, 32);
+    fs::create_dir(at("out")).expect("a folder");
+    let run = |more: &[&str]| succeeds(&mut apply(folder.path(), more));
+    let (text, _) = run(&["gaussian", INPUT, OUTPUT, "--dry-run", "--frames", "1001-1005x2"]);
+    assert!(
+        text.contains("in.1005.exr -> out/o.1005.exr") && text.contains("3 frames to be written"),
+        "{text}"
+    );
+    assert!(listing(&at("out")).is_empty());
+
+    let (text, _) = run(&["gaussian", INPUT, OUTPUT, "--frames", "1001-1005x2,1006"]);
+    assert!(text.contains("4 frames written"), "{text}");
+    assert_eq!(listing(&at("out")), ["o.1001.exr", "o.1003.exr", "o.1005.exr", "o.1006.exr"]);
+
+    // A frame by itself gives the same file.
+    run(&["gaussian", "in.1003.exr", "single.exr"]);
+    let bytes = |name: &str| fs::read(at(name)).expect("a result");
+    assert_eq!(bytes("single.exr"), bytes("out/o.1003.exr"));
+
+    // Little memory: one frame after the other, and the same files.
+    run(&["gaussian", INPUT, "one.####.exr", "--frames", "1001-1002", "--memory", "64MiB", "--threads", "1"]);
+    assert_eq!(bytes("one.1002.exr"), bytes("out/o.1002.exr"));
+}
+
+#[test]
+fn whole_frames_are_skipped() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
     frames(folder.path(), 1001..=1006, 32);
@@ -51,26 +82,10 @@ fn frames_are_found_chosen_and_skipped() {
             .map(|e| format!("{}:{}", e["frame"], e["status"].as_str().unwrap_or("")))
             .collect()
     };
-    let (input, output) = ("in.####.exr", "out/o.####.exr");
-
-    let (text, _) = run(&["gaussian", input, output, "--dry-run", "--frames", "1001-1005x2"]);
-    assert!(
-        text.contains("in.1005.exr -> out/o.1005.exr") && text.contains("3 frames to be written"),
-        "{text}"
-    );
-    assert!(listing(&at("out")).is_empty());
-
-    let (text, _) = run(&["gaussian", input, output, "--frames", "1001-1005x2,1006"]);
-    assert!(text.contains("4 frames written"), "{text}");
-    assert_eq!(listing(&at("out")), ["o.1001.exr", "o.1003.exr", "o.1005.exr", "o.1006.exr"]);
-
-    // A frame by itself gives the same file.
-    run(&["gaussian", "in.1003.exr", "single.exr"]);
-    let bytes = |name: &str| fs::read(at(name)).expect("a result");
-    assert_eq!(bytes("single.exr"), bytes("out/o.1003.exr"));
-
+    run(&["gaussian", INPUT, OUTPUT, "--frames", "1001-1005x2,1006"]);
     // What is whole stays; what is cut is written again. Other ways to write a pattern.
-    fs::write(at("out/o.1005.exr"), &bytes("out/o.1005.exr")[..900]).expect("the folder is writable");
+    let whole = fs::read(at("out/o.1005.exr")).expect("a result");
+    fs::write(at("out/o.1005.exr"), &whole[..900]).expect("the folder is writable");
     let events = events(&["gaussian", "in.%04d.exr", "out/o.@@@@.exr", "--skip-existing"]);
     let mut found = statuses(&events);
     found.sort();
@@ -80,33 +95,42 @@ fn frames_are_found_chosen_and_skipped() {
     );
     assert_eq!(events.last().map(|e| (&e["event"], &e["written"])), Some((&"end".into(), &3.into())));
     assert_eq!(listing(&at("out")).len(), 6);
+}
 
-    // Little memory: one frame after the other, and the same files.
-    run(&["gaussian", input, "one.####.exr", "--frames", "1001-1002", "--memory", "64MiB", "--threads", "1"]);
-    assert_eq!(bytes("one.1002.exr"), bytes("out/o.1002.exr"));
+#[test]
+fn missing_frames_are_named_before_any_work() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    frames(folder.path(), 1001..=1006, 32);
+    let run = |more: &[&str]| succeeds(&mut apply(folder.path(), more));
     let refused = |more: &[&str], words: &[&str]| fails(&mut apply(folder.path(), more), 2, words);
-    refused(&["gaussian", input, "no.####.exr", "--memory", "5k"], &["--memory", "a frame needs about"]);
+    refused(&["gaussian", INPUT, "no.####.exr", "--memory", "5k"], &["--memory", "a frame needs about"]);
 
-    // Missing frames are named before any work.
     refused(
-        &["gaussian", input, "no.####.exr", "--frames", "1005-1009,2000"],
+        &["gaussian", INPUT, "no.####.exr", "--frames", "1005-1009,2000"],
         &["frames 1007-1009,2000", "--on-missing"],
     );
     refused(&["gaussian", "in.####.exr", "no.exr"], &["no.exr", "frame number"]);
     refused(&["gaussian", "in.1001.exr", "no.exr", "--frames", "1-2"], &["in.1001.exr", "frame number"]);
     refused(&["gaussian", "nothing.####.exr", "no.####.exr"], &["matches no file"]);
-    refused(&["gaussian", input, "no.####.exr", "--frames", "5-"], &["'5-'", "1001-1100x2"]);
-    refused(&["gaussian", input, "missing/no.####.exr"], &["missing/no.1001.exr", "cannot be written"]);
+    refused(&["gaussian", INPUT, "no.####.exr", "--frames", "5-"], &["'5-'", "1001-1100x2"]);
+    refused(&["gaussian", INPUT, "missing/no.####.exr"], &["missing/no.1001.exr", "cannot be written"]);
     assert!(!listing(folder.path()).iter().any(|n| n.starts_with("no.") || n.starts_with('.')));
     fs::remove_file(at("in.1002.exr")).expect("a frame");
-    refused(&["gaussian", input, "no.####.exr"], &["frames 1002"]);
-    let (text, warnings) = run(&["gaussian", input, "some.####.exr", "--on-missing", "skip"]);
+    refused(&["gaussian", INPUT, "no.####.exr"], &["frames 1002"]);
+    let (text, warnings) = run(&["gaussian", INPUT, "some.####.exr", "--on-missing", "skip"]);
     assert!(text.contains("5 frames written") && text.contains("1 missing"), "{text}");
     assert!(warnings.contains("1002"), "{warnings}");
+}
 
-    // One damaged frame keeps the others from nothing, but is told of.
-    fs::write(at("in.1004.exr"), &bytes("in.1004.exr")[..700]).expect("the folder is writable");
-    let more = ["gaussian", input, "rest.####.exr", "--frames", "1003-1005"];
+#[test]
+fn damaged_frames_are_left_out_and_reported() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    frames(folder.path(), 1003..=1005, 32);
+    let damaged = fs::read(at("in.1004.exr")).expect("a frame");
+    fs::write(at("in.1004.exr"), &damaged[..700]).expect("the folder is writable");
+    let more = ["gaussian", INPUT, "rest.####.exr", "--frames", "1003-1005"];
     fails(&mut apply(folder.path(), &more), 2, &["warning: in.1004.exr: is damaged", "1 of 3 frames"]);
     assert!(at("rest.1003.exr").is_file() && at("rest.1005.exr").is_file() && !at("rest.1004.exr").exists());
 }

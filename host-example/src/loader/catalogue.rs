@@ -3,7 +3,9 @@
 use serde::Serialize;
 
 use super::contract::{self as c, IsophoteNode, IsophoteParam, IsophotePort};
-use super::{Answer, Library, check, status_name, text};
+use super::library::{Library, status_name};
+use super::refusal::{Answer, check};
+use super::text;
 
 /// All nodes of the library.
 #[derive(Clone, Debug, Serialize)]

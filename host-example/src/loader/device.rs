@@ -4,7 +4,9 @@ use std::cell::Cell;
 use std::marker::PhantomData;
 
 use super::contract::{IsophoteApi, IsophoteDevice, IsophoteStatus};
-use super::{Answer, Library, check, text};
+use super::library::Library;
+use super::refusal::{Answer, check};
+use super::text;
 
 /// A graphics device of the library's own. One thread at a time may use it.
 #[derive(Debug)]

@@ -5,7 +5,9 @@ use std::marker::PhantomData;
 
 use super::catalogue::{self, Kind, Node};
 use super::contract::{IsophoteApi, IsophoteGraph, IsophoteStatus, IsophoteText};
-use super::{Answer, Library, check, text};
+use super::library::Library;
+use super::refusal::{Answer, check};
+use super::text;
 
 /// A graph of nodes with their parameters.
 ///

@@ -4,7 +4,9 @@ use std::cell::Cell;
 use std::marker::PhantomData;
 
 use super::contract::{self as c, IsophoteApi, IsophotePass, IsophotePlan, IsophoteRequest, IsophoteTexture};
-use super::{Answer, Graph, Refusal, check, text};
+use super::graph::Graph;
+use super::refusal::{Answer, Refusal, check};
+use super::text;
 
 /// The passes that compute what a graph gives, for one request. One thread at a time may use it.
 #[derive(Debug)]

@@ -6,7 +6,10 @@ use super::contract::{
     self as c, IsophoteControl, IsophoteImage, IsophoteInput, IsophotePassTime, IsophoteReport,
     IsophoteRequest, IsophoteSample, IsophoteTarget,
 };
-use super::{Answer, Device, Graph, text};
+use super::device::Device;
+use super::graph::Graph;
+use super::refusal::Answer;
+use super::text;
 use crate::pixels::{Pixels, Precision};
 
 /// An image that enters a graph: the whole picture.

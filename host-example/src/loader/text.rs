@@ -5,7 +5,7 @@ use std::ffi::{CStr, CString, c_char};
 use super::contract::{
     ISOPHOTE_INVALID_ARGUMENT, ISOPHOTE_OK, ISOPHOTE_TRUNCATED, IsophoteStatus, IsophoteText,
 };
-use super::{Answer, Refusal};
+use super::refusal::{Answer, Refusal};
 
 /// Room for a message; longer ones are cut.
 const ROOM: usize = 2048;

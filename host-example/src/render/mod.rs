@@ -5,6 +5,7 @@
 //! geometry buffer with one sample per pixel, and the tone mapping. They are recorded into the caller's
 //! command encoder; nothing is allocated once every pipeline that the scene needs has been used.
 
+pub(crate) mod buffers;
 pub mod gpu;
 pub(crate) mod layouts;
 pub mod look;

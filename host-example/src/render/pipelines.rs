@@ -131,15 +131,8 @@ impl Pipelines {
         self.made.get(&variant)
     }
 
-    fn make(&self, device: &wgpu::Device, variant: Variant) -> wgpu::RenderPipeline {
-        let attributes = wgpu::vertex_attr_array![
-            0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x2, 4 => Float32x2, 5 => Float32x4
-        ];
-        let buffers = [Some(wgpu::VertexBufferLayout {
-            array_stride: size_of::<Vertex>() as u64,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &attributes,
-        })];
+    /// What a pass runs and writes.
+    fn stage(&self, variant: Variant) -> Stage<'_> {
         let target = |format, blend| {
             Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL })
         };
@@ -150,24 +143,36 @@ impl Pipelines {
             write_mask: wgpu::ColorWrites::empty(),
         });
         let blend = (variant.alpha == 2).then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
-        let alpha_mode = [("ALPHA_MODE", f64::from(variant.alpha))];
-        let cutout = [("CUTOUT", f64::from(variant.alpha))];
-        let (module, name, targets, constants): (_, _, Vec<_>, &[(&str, f64)]) = match variant.pass {
-            Pass::Shadow => (&self.shadow, "shadow", vec![], &[]),
-            Pass::Depth => (&self.surface, "depth", vec![untouched], &alpha_mode),
-            Pass::Surface => (&self.surface, "surface", vec![target(COLOR_FORMAT, blend)], &alpha_mode),
+        let alpha_mode = vec![("ALPHA_MODE", f64::from(variant.alpha))];
+        match variant.pass {
+            Pass::Shadow => (&self.shadow, "shadow", vec![], vec![]),
+            Pass::Depth => (&self.surface, "depth", vec![untouched], alpha_mode),
+            Pass::Surface => (&self.surface, "surface", vec![target(COLOR_FORMAT, blend)], alpha_mode),
             Pass::Geometry => {
                 let formats = [NORMAL_FORMAT, LINEAR_DEPTH_FORMAT, OBJECT_ID_FORMAT, MOTION_FORMAT];
-                (&self.geometry, "geometry", formats.map(|f| target(f, None)).to_vec(), &cutout)
+                let cutout = vec![("CUTOUT", f64::from(variant.alpha))];
+                (&self.geometry, "geometry", formats.map(|f| target(f, None)).to_vec(), cutout)
             }
-        };
+        }
+    }
+
+    fn make(&self, device: &wgpu::Device, variant: Variant) -> wgpu::RenderPipeline {
+        let attributes = wgpu::vertex_attr_array![
+            0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x2, 4 => Float32x2, 5 => Float32x4
+        ];
+        let buffers = [Some(wgpu::VertexBufferLayout {
+            array_stride: size_of::<Vertex>() as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &attributes,
+        })];
+        let (module, name, targets, constants) = self.stage(variant);
         let in_shadow = variant.pass == Pass::Shadow;
         let multisampled = matches!(variant.pass, Pass::Depth | Pass::Surface);
         let no_fragments = in_shadow && variant.alpha == 0;
         let entry = |stage| format!("{name}_{stage}");
         let (vertex_entry, fragment_entry) = (entry("vertex"), entry("fragment"));
         // Constants may only be given to stages whose module declares them, and the vertex stage shares it.
-        let options = wgpu::PipelineCompilationOptions { constants, ..Default::default() };
+        let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(name),
             layout: Some(if in_shadow { &self.shadow_layout } else { &self.layout }),
@@ -182,22 +187,7 @@ impl Pipelines {
                 cull_mode: (!variant.double_sided).then_some(wgpu::Face::Back),
                 ..Default::default()
             },
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH_FORMAT,
-                depth_write_enabled: Some(variant.pass != Pass::Surface || variant.alpha < 2),
-                depth_compare: Some(if in_shadow {
-                    wgpu::CompareFunction::Less
-                } else {
-                    // Depth is reversed, and may be there already.
-                    wgpu::CompareFunction::GreaterEqual
-                }),
-                stencil: Default::default(),
-                bias: if in_shadow {
-                    wgpu::DepthBiasState { constant: 1, slope_scale: 1.5, clamp: 0.0 }
-                } else {
-                    Default::default()
-                },
-            }),
+            depth_stencil: Some(depth_state(variant)),
             multisample: wgpu::MultisampleState {
                 count: if multisampled { SAMPLES } else { 1 },
                 alpha_to_coverage_enabled: variant.pass == Pass::Surface && variant.alpha == 1,
@@ -212,6 +202,31 @@ impl Pipelines {
             multiview_mask: None,
             cache: None,
         })
+    }
+}
+
+/// Module, name, targets and constants of a pass.
+type Stage<'a> =
+    (&'a wgpu::ShaderModule, &'static str, Vec<Option<wgpu::ColorTargetState>>, Vec<(&'static str, f64)>);
+
+/// Depth is reversed but in shadow maps.
+fn depth_state(variant: Variant) -> wgpu::DepthStencilState {
+    let in_shadow = variant.pass == Pass::Shadow;
+    wgpu::DepthStencilState {
+        format: DEPTH_FORMAT,
+        depth_write_enabled: Some(variant.pass != Pass::Surface || variant.alpha < 2),
+        depth_compare: Some(if in_shadow {
+            wgpu::CompareFunction::Less
+        } else {
+            // Depth is reversed, and may be there already.
+            wgpu::CompareFunction::GreaterEqual
+        }),
+        stencil: Default::default(),
+        bias: if in_shadow {
+            wgpu::DepthBiasState { constant: 1, slope_scale: 1.5, clamp: 0.0 }
+        } else {
+            Default::default()
+        },
     }
 }
 

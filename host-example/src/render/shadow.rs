@@ -4,12 +4,13 @@
 use glam::camera::rh::{proj::directx as clip, view as camera};
 use glam::{Mat4, Vec2, Vec3};
 
+use super::buffers;
 use super::layouts::{Layouts, bind_buffer, bind_sampler, bind_view};
 use super::look::Look;
 use super::targets::DEPTH_FORMAT;
-use super::upload;
 use crate::scene::Scene;
-use crate::scene::camera::{Projection, View};
+use crate::scene::camera::View;
+use crate::scene::model::Projection;
 
 /// Most maps.
 pub const CASCADES: usize = 3;
@@ -185,7 +186,7 @@ impl ShadowMaps {
             .map(|layer| {
                 let bytes = [layer, 0, 0, 0];
                 let usage = wgpu::BufferUsages::UNIFORM;
-                let uniform = upload::filled_buffer(device, "cascade", bytemuck::bytes_of(&bytes), usage);
+                let uniform = buffers::filled_buffer(device, "cascade", bytemuck::bytes_of(&bytes), usage);
                 device.create_bind_group(&wgpu::BindGroupDescriptor {
                     label: Some("cascade"),
                     layout: &layouts.cascade,

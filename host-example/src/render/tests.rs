@@ -9,7 +9,8 @@ use super::readback::Readback;
 use super::{Renderer, targets::Target};
 use crate::output::Picture;
 use crate::scene::animation::{Animation, Channel, Interpolation, Property};
-use crate::scene::camera::{Projection, View};
+use crate::scene::camera::View;
+use crate::scene::model::Projection;
 use crate::scene::pose::Pose;
 use crate::scene::{
     AlphaMode, Bounds, Influence, Material, Mesh, MorphDelta, Node, Primitive, Scene, Skin, Vertex,

@@ -160,6 +160,17 @@ impl Mipmaps {
             rows_per_image: Some(height),
         };
         queue.write_texture(texture.as_image_copy(), rgba, layout, size);
+        queue.submit([self.fill_levels(device, &texture, pipeline)]);
+        texture.create_view(&Default::default())
+    }
+
+    /// Draws each level of the texture from the one above.
+    fn fill_levels(
+        &self,
+        device: &wgpu::Device,
+        texture: &wgpu::Texture,
+        pipeline: &wgpu::RenderPipeline,
+    ) -> wgpu::CommandBuffer {
         let level_view = |level| {
             texture.create_view(&wgpu::TextureViewDescriptor {
                 base_mip_level: level,
@@ -168,7 +179,7 @@ impl Mipmaps {
             })
         };
         let mut encoder = device.create_command_encoder(&Default::default());
-        for level in 1..levels {
+        for level in 1..texture.mip_level_count() {
             let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("mipmap"),
                 layout: &self.layout,
@@ -187,7 +198,6 @@ impl Mipmaps {
             pass.set_bind_group(0, &bind_group, &[]);
             pass.draw(0..3, 0..1);
         }
-        queue.submit([encoder.finish()]);
-        texture.create_view(&Default::default())
+        encoder.finish()
     }
 }

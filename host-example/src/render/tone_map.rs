@@ -2,7 +2,7 @@
 
 use super::layouts::{self, bind_buffer, bind_view};
 use super::targets::{COLOR_FORMAT, Targets};
-use super::{pipelines, upload};
+use super::{buffers, pipelines};
 
 /// The pass with what it binds.
 pub struct ToneMap {
@@ -33,7 +33,7 @@ impl ToneMap {
         });
         let pipeline =
             pipelines::full_screen(device, &pipeline_layout, &module, "tone_map", COLOR_FORMAT, None, 1);
-        let settings = upload::filled_buffer(device, "tone map", &[0; 16], wgpu::BufferUsages::UNIFORM);
+        let settings = buffers::filled_buffer(device, "tone map", &[0; 16], wgpu::BufferUsages::UNIFORM);
         let bind_group = Self::group(device, &layout, &settings, targets);
         Self { layout, pipeline, settings, bind_group }
     }

@@ -5,7 +5,8 @@ use glam::{Mat4, Vec3, Vec4};
 
 use super::look::{Look, visible_lights};
 use super::shadow::{CASCADES, Cascades};
-use crate::scene::camera::{Projection, View};
+use crate::scene::camera::View;
+use crate::scene::model::Projection;
 use crate::scene::pose::Pose;
 use crate::scene::{Light, LightKind, Material, Scene};
 

@@ -65,7 +65,8 @@ fn side_planes(view_projection: Mat4) -> [Vec4; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::camera::{Projection, View};
+    use crate::scene::camera::View;
+    use crate::scene::model::Projection;
 
     #[test]
     fn planes_bound_the_picture() {

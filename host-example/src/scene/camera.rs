@@ -5,29 +5,8 @@ use std::f32::consts::TAU;
 use glam::camera::rh::{proj::directx as clip, view};
 use glam::{Mat4, Vec3};
 
-use super::Scene;
+use super::model::{Projection, Scene};
 use super::pose::Pose;
-
-/// How the view is projected.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Projection {
-    /// Pinhole camera without a far plane.
-    Perspective {
-        /// Vertical field of view in radians.
-        vertical_fov: f32,
-        /// Distance of the near plane, above 0.
-        near: f32,
-    },
-    /// Parallel projection.
-    Orthographic {
-        /// Half the height of the view in scene units.
-        half_height: f32,
-        /// Distance of the near plane.
-        near: f32,
-        /// Distance of the far plane.
-        far: f32,
-    },
-}
 
 /// A camera in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::{Vec2, Vec3};
 
-use super::Primitive;
+use super::model::Primitive;
 
 /// How the indices of a primitive form triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -203,7 +203,7 @@ fn duplicate(primitive: &mut Primitive, index: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Vertex;
+    use crate::scene::model::Vertex;
 
     /// A square in the plane z = 0 seen from +Z, with U to the right and V down, or U mirrored.
     fn square(mirrored: bool) -> Primitive {

@@ -18,8 +18,7 @@ use gltf::json::validation::{Error as Flaw, Validate};
 
 use self::accessors::Accessors;
 use super::animation::{Animation, Channel, Interpolation, Property};
-use super::camera::Projection;
-use super::{Bounds, Light, LightKind, Node, Scene, Skin, Transform};
+use super::model::{Bounds, Light, LightKind, Node, Projection, Scene, Skin, Transform};
 use crate::error::{Error, Result};
 pub use sources::resolve;
 

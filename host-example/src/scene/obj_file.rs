@@ -9,12 +9,10 @@ use std::path::{Path, PathBuf};
 
 use glam::{Vec3, Vec4};
 
+use super::geometry;
 use super::gltf_file::resolve;
-use super::material::DecodeProblem;
-use super::{
-    AlphaMode, Bounds, Image, Material, Mesh, Node, Primitive, Sampler, Scene, Texture, TextureUse, Vertex,
-    geometry,
-};
+use super::material::{AlphaMode, DecodeProblem, Image, Material, Sampler, Texture, TextureUse};
+use super::model::{Bounds, Mesh, Node, Primitive, Scene, Vertex};
 use crate::error::{Error, Result};
 
 /// Faces that meet at more than this keep a sharp edge between them when normals are averaged.

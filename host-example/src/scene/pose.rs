@@ -3,7 +3,7 @@
 use glam::{Mat4, Vec3};
 
 use super::animation::{self, Property};
-use super::{Bounds, Draw, Node, Scene, Transform};
+use super::model::{Bounds, Draw, Node, Scene, Transform};
 
 /// World transforms and morph weights of all nodes at one moment.
 #[derive(Clone, Debug, Default)]

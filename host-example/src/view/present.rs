@@ -2,7 +2,7 @@
 
 use crate::loader::catalogue::Kind;
 use crate::render::layouts::{self, bind_buffer, bind_view};
-use crate::render::{pipelines, upload};
+use crate::render::{buffers, pipelines};
 
 const GREY: u32 = 1;
 const ENCODE: u32 = 2;
@@ -36,7 +36,7 @@ impl Present {
             immediate_size: 0,
         });
         let pipeline = pipelines::full_screen(device, &pipeline_layout, &module, "present", format, None, 1);
-        let settings = upload::filled_buffer(device, "present", &[0; 16], wgpu::BufferUsages::UNIFORM);
+        let settings = buffers::filled_buffer(device, "present", &[0; 16], wgpu::BufferUsages::UNIFORM);
         let encode = if format.is_srgb() { 0 } else { ENCODE };
         Self { layout, pipeline, settings, bind_group: None, encode }
     }

@@ -11,8 +11,8 @@ use gltf::texture::{MagFilter, MinFilter, WrappingMode};
 use super::accessors::Accessors;
 use super::sources;
 use crate::error::{Error, Result};
-use crate::scene::material::{DecodeProblem, Wrap};
-use crate::scene::{AlphaMode, Image, Material, Sampler, Scene, Texture, TextureUse};
+use crate::scene::material::{AlphaMode, DecodeProblem, Image, Material, Sampler, Texture, TextureUse, Wrap};
+use crate::scene::model::Scene;
 
 /// Reads images, textures and materials into the scene. The last material is the default one.
 pub fn read(path: &Path, document: &gltf::Document, accessors: &Accessors, scene: &mut Scene) -> Result<()> {
@@ -117,15 +117,8 @@ fn read_images(
 fn read_material(material: &gltf::Material, scene: &mut Scene) -> Material {
     let name = label(material.name(), material.index().unwrap_or_default());
     let surface = material.pbr_metallic_roughness();
-    let mut take = |texture: usize, set: u32, extensions: Option<&Value>| -> Option<TextureUse> {
-        let (transform, set) = texture_transform(extensions, set);
-        let use_ = TextureUse { texture, uv_set: set.min(1), transform };
-        if set > 1 {
-            scene
-                .warnings
-                .push(format!("material {name} uses texture coordinates {set}; the second set is used"));
-        }
-        scene.textures.get(texture).and_then(|t| t.image).map(|_| use_)
+    let mut take = |texture: usize, set: u32, extensions: Option<&Value>| {
+        texture_use(&name, texture, set, extensions, scene)
     };
     // Info of the gltf crate decodes the transform itself; the two special kinds of texture do not.
     let mut info = |info: Option<gltf::texture::Info>| {
@@ -175,6 +168,24 @@ fn read_material(material: &gltf::Material, scene: &mut Scene) -> Material {
         double_sided: material.double_sided(),
         unlit: material.unlit(),
     }
+}
+
+/// How a material uses a texture; `None` where the texture has no image.
+fn texture_use(
+    material: &str,
+    texture: usize,
+    set: u32,
+    extensions: Option<&Value>,
+    scene: &mut Scene,
+) -> Option<TextureUse> {
+    let (transform, set) = texture_transform(extensions, set);
+    if set > 1 {
+        scene
+            .warnings
+            .push(format!("material {material} uses texture coordinates {set}; the second set is used"));
+    }
+    let use_ = TextureUse { texture, uv_set: set.min(1), transform };
+    scene.textures.get(texture).and_then(|t| t.image).map(|_| use_)
 }
 
 /// Matrix and set of texture coordinates of KHR_texture_transform as plain JSON.

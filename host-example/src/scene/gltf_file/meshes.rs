@@ -6,7 +6,7 @@ use gltf::mesh::Mode;
 use super::accessors::Accessors;
 use super::materials::label;
 use crate::scene::geometry::{self, Topology};
-use crate::scene::{Influence, Mesh, MorphDelta, Primitive, Scene, Vertex};
+use crate::scene::model::{Influence, Mesh, MorphDelta, Primitive, Scene, Vertex};
 
 /// Reads all meshes into the scene, whose materials must be there already.
 ///

@@ -36,73 +36,81 @@ fn lying_headers_are_errors() {
     }
 }
 
+/// One thing that is changed in a good file: what it is, a word of the message, the change.
+type Change = (&'static str, &'static str, fn(&mut Builder));
+
+/// Changes of buffers, views, accessors and primitives.
+const DATA: [Change; 16] = [
+    ("count beyond the buffer", "beyond", |b| b.json["accessors"][0]["count"] = json!(4)),
+    ("huge count", "beyond", |b| b.json["accessors"][0]["count"] = json!(u64::MAX)),
+    ("offset beyond the view", "beyond", |b| b.json["accessors"][0]["byteOffset"] = json!(u32::MAX)),
+    ("view beyond the buffer", "beyond", |b| b.json["bufferViews"][0]["byteLength"] = json!(1 << 20)),
+    ("huge view", "beyond", |b| {
+        b.json["bufferViews"][0]["byteOffset"] = json!(u64::MAX);
+        b.json["bufferViews"][0]["byteLength"] = json!(u64::MAX);
+    }),
+    ("stride below the element", "", |b| b.json["bufferViews"][0]["byteStride"] = json!(4)),
+    ("no data but a huge count", "names no data", |b| {
+        let values = b.view(&[0; 12]);
+        b.json["accessors"][0] = json!({
+            "componentType": F32, "type": "VEC3", "count": 1u64 << 40, "sparse": {
+                "count": 1, "indices": {"bufferView": values, "componentType": U8}, "values": {"bufferView": values}
+            }
+        });
+    }),
+    ("unknown view", "", |b| b.json["accessors"][0]["bufferView"] = json!(99)),
+    ("unknown position accessor", "accessor", |b| b.primitive()["attributes"]["POSITION"] = json!(99)),
+    ("unknown index accessor", "", |b| b.primitive()["indices"] = json!(99)),
+    ("unknown material", "", |b| b.primitive()["material"] = json!(99)),
+    ("no positions", "", |b| b.primitive()["attributes"] = json!({})),
+    ("flat positions", "numbers per element", |b| b.json["accessors"][0]["type"] = json!("VEC2")),
+    ("indices of floats", "component type", |b| {
+        b.json["accessors"][1]["componentType"] = json!(F32);
+        b.json["accessors"][1]["count"] = json!(1);
+    }),
+    ("index beyond the vertices", "only 3 vertices", |b| b.bytes[36] = 9),
+    ("positions that are not numbers", "not finite", |b| {
+        b.bytes[..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    }),
+];
+
+/// Changes of what refers to data.
+const STRUCTURE: [Change; 10] = [
+    ("attribute of another length", "as many", |b| {
+        let short = b.floats("VEC3", &[0.0, 0.0, 1.0]);
+        b.primitive()["attributes"]["NORMAL"] = json!(short);
+    }),
+    ("morph target of another length", "morph target", |b| {
+        let short = b.floats("VEC3", &[0.0, 0.0, 1.0]);
+        b.primitive()["targets"] = json!([{"POSITION": short}]);
+    }),
+    ("node in a cycle", "ancestor", |b| {
+        b.json["nodes"] = json!([{"mesh": 0}, {"children": [2]}, {"children": [1]}]);
+    }),
+    ("node with two parents", "two parents", |b| {
+        b.json["nodes"] = json!([{"mesh": 0}, {"children": [0]}, {"children": [0]}]);
+    }),
+    ("unknown child", "", |b| b.json["nodes"][0]["children"] = json!([7])),
+    ("unknown mesh", "", |b| b.json["nodes"][0]["mesh"] = json!(7)),
+    ("sparse index beyond the accessor", "element 200 of 3", |b| {
+        let indices = b.view(&[200]);
+        let values = b.view(&[0; 12]);
+        b.json["accessors"][0]["sparse"] = json!({
+            "count": 1, "indices": {"bufferView": indices, "componentType": U8}, "values": {"bufferView": values}
+        });
+    }),
+    ("geometry in an unknown extension", "KHR_draco_mesh_compression", |b| {
+        b.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+    }),
+    ("version 1", "version 1", |b| b.json["asset"]["version"] = json!("1.0")),
+    ("nothing to draw", "no triangles", |b| b.json["nodes"] = json!([{}])),
+];
+
 /// Changes one thing in a good file with every feature, and expects an error that holds a word.
 #[test]
 fn lying_documents_are_errors() {
-    type Change = fn(&mut Builder);
-    let changes: [(&str, &str, Change); 26] = [
-        ("count beyond the buffer", "beyond", |b| b.json["accessors"][0]["count"] = json!(4)),
-        ("huge count", "beyond", |b| b.json["accessors"][0]["count"] = json!(u64::MAX)),
-        ("offset beyond the view", "beyond", |b| b.json["accessors"][0]["byteOffset"] = json!(u32::MAX)),
-        ("view beyond the buffer", "beyond", |b| b.json["bufferViews"][0]["byteLength"] = json!(1 << 20)),
-        ("huge view", "beyond", |b| {
-            b.json["bufferViews"][0]["byteOffset"] = json!(u64::MAX);
-            b.json["bufferViews"][0]["byteLength"] = json!(u64::MAX);
-        }),
-        ("stride below the element", "", |b| b.json["bufferViews"][0]["byteStride"] = json!(4)),
-        ("no data but a huge count", "names no data", |b| {
-            let values = b.view(&[0; 12]);
-            b.json["accessors"][0] = json!({
-                "componentType": F32, "type": "VEC3", "count": 1u64 << 40, "sparse": {
-                    "count": 1, "indices": {"bufferView": values, "componentType": U8}, "values": {"bufferView": values}
-                }
-            });
-        }),
-        ("unknown view", "", |b| b.json["accessors"][0]["bufferView"] = json!(99)),
-        ("unknown position accessor", "accessor", |b| b.primitive()["attributes"]["POSITION"] = json!(99)),
-        ("unknown index accessor", "", |b| b.primitive()["indices"] = json!(99)),
-        ("unknown material", "", |b| b.primitive()["material"] = json!(99)),
-        ("no positions", "", |b| b.primitive()["attributes"] = json!({})),
-        ("flat positions", "numbers per element", |b| b.json["accessors"][0]["type"] = json!("VEC2")),
-        ("indices of floats", "component type", |b| {
-            b.json["accessors"][1]["componentType"] = json!(F32);
-            b.json["accessors"][1]["count"] = json!(1);
-        }),
-        ("index beyond the vertices", "only 3 vertices", |b| b.bytes[36] = 9),
-        ("positions that are not numbers", "not finite", |b| {
-            b.bytes[..4].copy_from_slice(&f32::NAN.to_le_bytes());
-        }),
-        ("attribute of another length", "as many", |b| {
-            let short = b.floats("VEC3", &[0.0, 0.0, 1.0]);
-            b.primitive()["attributes"]["NORMAL"] = json!(short);
-        }),
-        ("morph target of another length", "morph target", |b| {
-            let short = b.floats("VEC3", &[0.0, 0.0, 1.0]);
-            b.primitive()["targets"] = json!([{"POSITION": short}]);
-        }),
-        ("node in a cycle", "ancestor", |b| {
-            b.json["nodes"] = json!([{"mesh": 0}, {"children": [2]}, {"children": [1]}]);
-        }),
-        ("node with two parents", "two parents", |b| {
-            b.json["nodes"] = json!([{"mesh": 0}, {"children": [0]}, {"children": [0]}]);
-        }),
-        ("unknown child", "", |b| b.json["nodes"][0]["children"] = json!([7])),
-        ("unknown mesh", "", |b| b.json["nodes"][0]["mesh"] = json!(7)),
-        ("sparse index beyond the accessor", "element 200 of 3", |b| {
-            let indices = b.view(&[200]);
-            let values = b.view(&[0; 12]);
-            b.json["accessors"][0]["sparse"] = json!({
-                "count": 1, "indices": {"bufferView": indices, "componentType": U8}, "values": {"bufferView": values}
-            });
-        }),
-        ("geometry in an unknown extension", "KHR_draco_mesh_compression", |b| {
-            b.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
-        }),
-        ("version 1", "version 1", |b| b.json["asset"]["version"] = json!("1.0")),
-        ("nothing to draw", "no triangles", |b| b.json["nodes"] = json!([{}])),
-    ];
     Builder::triangle().load().expect("the file is good before it is changed");
-    for (what, word, change) in changes {
+    for (what, word, change) in DATA.into_iter().chain(STRUCTURE) {
         let mut b = Builder::triangle();
         change(&mut b);
         let error = b.load().map(|_| ()).expect_err(what);

@@ -1,0 +1,56 @@
+//! Loading of scenes, and what is derived from what the files hold.
+
+use std::path::Path;
+
+use super::model::{Draw, Scene};
+use super::{gltf_file, obj_file, pose};
+use crate::error::{Error, Result};
+
+impl Scene {
+    /// Loads a glTF (`.gltf`, `.glb`) or OBJ (`.obj`) file. `texture` names an image that colours an OBJ whose
+    /// materials have none.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the file when it is missing, malformed, of another kind, or holds nothing
+    /// to draw; what can be drawn in spite of a flaw ends in [`Scene::warnings`].
+    pub fn load(path: &Path, texture: Option<&Path>) -> Result<Self> {
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+        let mut scene = match extension.as_str() {
+            "gltf" | "glb" => gltf_file::load(path)?,
+            "obj" => obj_file::load(path, texture)?,
+            _ => {
+                return Err(Error::file(
+                    path,
+                    "is not a kind of scene known here",
+                    "give a .gltf, .glb or .obj file",
+                ));
+            }
+        };
+        if texture.is_some() && extension != "obj" {
+            scene.warnings.push("the texture named by the caller is used for OBJ files only".into());
+        }
+        scene.finish(path)?;
+        Ok(scene)
+    }
+
+    /// Derives what both loaders leave open: the order of nodes, the list of draws and the bounds.
+    fn finish(&mut self, path: &Path) -> Result<()> {
+        self.name = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+        self.order = pose::parents_first(&self.nodes)
+            .map_err(|problem| Error::file(path, problem, "repair the node hierarchy"))?;
+        self.draws = Vec::new();
+        for (node, entry) in self.nodes.iter().enumerate() {
+            let Some(mesh) = entry.mesh.filter(|_| entry.visible) else { continue };
+            for primitive in 0..self.meshes[mesh].primitives.len() {
+                self.draws.push(Draw { node, mesh, primitive });
+            }
+        }
+        if self.draws.is_empty() {
+            return Err(Error::file(path, "holds no triangles to draw", "give a scene with visible meshes"));
+        }
+        self.bounds = pose::bounds(self).ok_or_else(|| {
+            Error::file(path, "has positions that are not finite", "export the scene again")
+        })?;
+        Ok(())
+    }
+}
