@@ -1,42 +1,30 @@
-//! Every node of the registry, planned in many ways and run on the CPU pass by pass, so that each
-//! pass can be repeated elsewhere on equal input.
+//! The passes of every node's plans, run on the CPU, so that each can be repeated elsewhere on equal
+//! input. Only what leads to the kernel in question is computed, and nothing twice.
 
-use crate::cases::{self, Setting};
 use crate::pictures::{self, Kind};
+use crate::plans::{self, Case};
 use crate::run;
-use isophote::Request;
 use isophote::graph::GraphInput;
-use isophote::spec::{ImageKind, NodeSpec};
 use isophote_engine::cpu::{Control, CpuExecutor};
+use isophote_engine::fearless_simd::Level;
 use isophote_engine::{Image, Kernel, Plan, Rect};
 use std::collections::{BTreeSet, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::rc::Rc;
-
-/// Sizes of the pictures: one pixel, less than a vector and a workgroup, and odd ends of both.
-pub const SIZES: [[u32; 2]; 3] = [[1, 1], [7, 5], [67, 43]];
-
-/// Random parameter sets per node and size.
-const RANDOM_SETS: usize = 6;
-
-/// Multiply-adds that one plan may take at one size; costlier parameter sets appear on the smaller
-/// sizes only.
-const COST_LIMIT: f64 = 3e8;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// One pass with its inputs and what the CPU made of them.
 #[derive(Clone, Debug)]
 pub struct Step {
-    /// Node, parameter set, picture and size, for messages.
+    /// Node, parameter set, picture, size and pass, for messages.
     pub label: String,
     /// The pass's kernel.
     pub kernel: &'static Kernel,
-    /// The plan that the pass is of, and its place there.
-    plan: Rc<Plan>,
+    case: &'static Case,
     index: usize,
     /// The images read.
-    pub inputs: Vec<Rc<Image>>,
+    pub inputs: Vec<Arc<Image>>,
     /// What the CPU twin gave.
-    pub outputs: Vec<Rc<Image>>,
+    pub outputs: Vec<Arc<Image>>,
 }
 
 impl Step {
@@ -45,148 +33,166 @@ impl Step {
     /// # Panics
     /// When `kernel` has other bindings than the pass's own.
     pub fn plan_with(&self, kernel: &'static Kernel) -> Plan {
-        match self.plan.single_pass(self.index, kernel) {
+        match self.case.plan.single_pass(self.index, kernel) {
             Ok(plan) => plan,
-            Err(e) => panic!("{e}"),
+            Err(e) => panic!("{}: {e}", self.label),
         }
     }
 
     /// The inputs by the names that a plan of one pass gives them.
     pub fn named_inputs(&self) -> Vec<(&'static str, &Image)> {
         const NAMES: [&str; 6] = ["0", "1", "2", "3", "4", "5"];
-        NAMES.into_iter().zip(self.inputs.iter().map(Rc::as_ref)).collect()
+        NAMES.into_iter().zip(self.inputs.iter().map(Arc::as_ref)).collect()
     }
 
     /// The region that a plan of one pass is run for.
     pub fn region(&self) -> Rect {
-        let [width, height] = self.plan.size();
+        let [width, height] = self.case.plan.size();
         Rect::of_size(width, height)
     }
-}
 
-/// Plans every node with every parameter set and calls `visit` once for each distinct pass.
-pub fn sweep(mut visit: impl FnMut(&Step)) {
-    for size in SIZES {
-        // Equal passes of different nodes and sets are computed once.
-        let mut known = HashMap::new();
-        for spec in cases::nodes() {
-            for (case, wired, kind, guides) in combinations(spec) {
-                one(spec, &case, wired, kind, guides, size, 1.0, &mut known, &mut visit);
-            }
-            // Some passes are those of proxies alone.
-            let [case, ..] = &cases::settings(spec, 0)[..] else { continue };
-            for kind in Kind::ALL {
-                one(spec, case, false, kind, false, size, 0.5, &mut known, &mut visit);
-            }
+    /// What the CPU twin gives with the instructions of `level`.
+    ///
+    /// # Panics
+    /// When the executor refuses.
+    pub fn on_cpu(&self, level: Level) -> Vec<Image> {
+        let plan = self.plan_with(self.kernel);
+        let mut executor = CpuExecutor::with_level(level);
+        match executor.run(&plan, &self.named_inputs(), self.region(), &run::CALLING, Control::default()) {
+            Ok(images) => images,
+            Err(e) => panic!("{}: {e}", self.label),
         }
     }
 }
 
-/// Defaults on every kind of picture, with and without guides and connected fields; the other sets
-/// take turns.
-fn combinations(spec: &'static NodeSpec) -> Vec<(Setting, bool, Kind, bool)> {
-    let (fields, guides) = (cases::has_optional_field(spec), cases::has_guides(spec));
-    let mut all = Vec::new();
-    for (index, case) in cases::settings(spec, RANDOM_SETS).into_iter().enumerate() {
-        if index == 0 {
-            for kind in Kind::ALL {
-                all.push((case.clone(), false, kind, false));
-                if fields || guides {
-                    all.push((case.clone(), fields, kind, guides));
-                }
-            }
-            continue;
-        }
-        let turn = |n: usize| (index / n) % 2 == 1;
-        all.push((case, fields && turn(2), Kind::ALL[index % Kind::ALL.len()], guides && turn(1)));
-    }
-    all
+/// What one pass gave.
+#[derive(Debug)]
+struct Made {
+    /// Kernel, parameters and the inputs' values: equal for passes that must give the same.
+    content: u64,
+    inputs: Vec<Arc<Image>>,
+    outputs: Vec<Arc<Image>>,
 }
 
-fn one(
-    spec: &'static NodeSpec,
-    setting: &Setting,
-    wired: bool,
-    kind: Kind,
-    guides: bool,
-    size: [u32; 2],
-    scale: f32,
-    known: &mut HashMap<u64, Vec<Rc<Image>>>,
-    visit: &mut impl FnMut(&Step),
-) {
-    let [width, height] = size;
-    let mut setup = cases::setup(spec, wired);
-    setting.apply(&mut setup.graph, setup.node);
-    let full = cases::request(kind, width, height, guides);
-    let request = Request { scale, ..full };
-    let plan = Rc::new(run::planned(&setup.graph, request).plan().clone());
-    let kernels = |plan: &Plan| plan.passes().iter().map(|p| p.kernel.name).collect::<BTreeSet<_>>();
-    if scale < 1.0 && kernels(run::planned(&setup.graph, full).plan()).is_superset(&kernels(&plan)) {
-        return;
-    }
-    let pixels = |plan: &Plan, pass: &isophote_engine::plan::Pass| {
-        let [w, h] = plan.level_size(plan.desc(pass.outputs[0]).level);
-        f64::from(w) * f64::from(h)
-    };
-    let cost: f64 = plan.passes().iter().map(|p| (p.kernel.cost)(&p.params) * pixels(&plan, p)).sum();
-    if cost > COST_LIMIT {
-        return;
-    }
-    let label = format!(
-        "{} ({}) {kind:?} {width}x{height} wired={wired} guides={guides} at {scale}",
-        spec.id, setting.label
-    );
-    let mut slots: Vec<Option<Rc<Image>>> = vec![None; plan.images().len()];
-    for port in plan.inputs() {
-        slots[port.image.index()] = Some(Rc::new(input(&port.name, kind, size)));
-    }
-    // Fields that feed the node are generated, which is harsher than what its producers would make.
-    let mut given = vec![None; plan.images().len()];
-    for producer in &setup.producers {
-        let mut graph = setup.graph.clone();
-        if graph.set_output(*producer).is_err() {
-            continue;
-        }
-        let made = run::planned(&graph, request);
-        let image = made.plan().outputs()[0].image;
-        let kind = graph.spec(*producer).map_or(ImageKind::Scalar, |s| s.output.kind);
-        given[image.index()] = Some(Rc::new(pictures::field(kind, width, height)));
-    }
-    for (index, pass) in plan.passes().iter().enumerate() {
-        let inputs: Vec<Rc<Image>> = pass.inputs.iter().filter_map(|i| slots[i.index()].clone()).collect();
-        assert_eq!(inputs.len(), pass.inputs.len(), "{label}: pass {index} reads what nobody wrote");
-        let key = key(&plan, index, &inputs);
-        let outputs = match known.get(&key) {
-            Some(outputs) => outputs.clone(),
-            None => {
-                let step = Step {
-                    label: format!("{label} pass {index}"),
-                    kernel: pass.kernel,
-                    plan: Rc::clone(&plan),
-                    index,
-                    inputs,
-                    outputs: Vec::new(),
-                };
-                let step = Step { outputs: on_cpu(&step), ..step };
-                visit(&step);
-                known.insert(key, step.outputs.clone());
-                step.outputs
+type Shared<T> = Mutex<HashMap<u64, Arc<OnceLock<T>>>>;
+
+/// The cell of `key`, to be filled by whoever comes first.
+fn cell<T>(cells: &Shared<T>, key: u64) -> Arc<OnceLock<T>> {
+    Arc::clone(cells.lock().unwrap_or_else(PoisonError::into_inner).entry(key).or_default())
+}
+
+/// The results of this process.
+#[derive(Default)]
+struct Results {
+    /// By what leads to a pass: its kernel and parameters, those of the passes before it, and what enters.
+    passes: Shared<Made>,
+    /// By the content of a pass, since passes of other origin often read the same.
+    outputs: Shared<Vec<Arc<Image>>>,
+    /// Pictures and fields that enter.
+    inputs: Shared<Arc<Image>>,
+}
+
+/// All cases, planned once in a process.
+pub fn cases() -> &'static [Case] {
+    static CASES: OnceLock<Vec<Case>> = OnceLock::new();
+    CASES.get_or_init(plans::all)
+}
+
+/// Every distinct pass of `kernel` in all cases, those of the smallest pictures first.
+pub fn steps(kernel: &'static Kernel) -> Vec<Step> {
+    static RESULTS: OnceLock<Results> = OnceLock::new();
+    let results = RESULTS.get_or_init(Results::default);
+    let mut known = BTreeSet::new();
+    let mut steps = Vec::new();
+    for case in cases().iter().filter(|case| case.plan.passes().iter().any(|p| p.kernel == kernel)) {
+        for (index, made) in results.of(case, kernel) {
+            if let Some(made) = made.get()
+                && known.insert(made.content)
+            {
+                let (label, inputs) = (format!("{} pass {index}", case.label), made.inputs.clone());
+                steps.push(Step { label, kernel, case, index, inputs, outputs: made.outputs.clone() });
             }
+        }
+    }
+    steps
+}
+
+/// An image of a case, and the hash of what leads to it.
+#[derive(Clone)]
+struct Slot {
+    key: u64,
+    image: Arc<Image>,
+}
+
+impl Results {
+    /// The passes of `kernel` in a case, by their places, with all that leads to them.
+    fn of(&self, case: &'static Case, kernel: &'static Kernel) -> Vec<(usize, Arc<OnceLock<Made>>)> {
+        let needed = needed(&case.plan, kernel);
+        let mut slots: Vec<Option<Slot>> = vec![None; case.plan.images().len()];
+        for port in case.plan.inputs() {
+            slots[port.image.index()] =
+                Some(self.entering((&port.name, case.kind, case.size), || input(&port.name, case.kind, case.size)));
+        }
+        let mut found = Vec::new();
+        for (index, pass) in case.plan.passes().iter().enumerate().filter(|(index, _)| needed[*index]) {
+            let inputs: Vec<Slot> = pass.inputs.iter().filter_map(|i| slots[i.index()].clone()).collect();
+            assert_eq!(inputs.len(), pass.inputs.len(), "{}: pass {index} reads what nobody wrote", case.label);
+            let key = hash((description(&case.plan, index), inputs.iter().map(|i| i.key).collect::<Vec<_>>()));
+            let made = cell(&self.passes, key);
+            let outputs = &made.get_or_init(|| self.make(case, index, &inputs)).outputs;
+            for (place, (id, image)) in pass.outputs.iter().zip(outputs).enumerate() {
+                slots[id.index()] = Some(match case.fields[id.index()] {
+                    Some(kind) => {
+                        let [width, height] = case.size;
+                        self.entering((kind as u8, case.size), || pictures::field(kind, width, height))
+                    }
+                    None => Slot { key: hash((key, place)), image: Arc::clone(image) },
+                });
+            }
+            if pass.kernel == kernel {
+                found.push((index, made));
+            }
+        }
+        found
+    }
+
+    /// Something that enters, made once for equal `what`.
+    fn entering(&self, what: impl Hash, make: impl FnOnce() -> Image) -> Slot {
+        let key = hash(what);
+        let image = cell(&self.inputs, key).get_or_init(|| Arc::new(make())).clone();
+        Slot { key, image }
+    }
+
+    fn make(&self, case: &'static Case, index: usize, inputs: &[Slot]) -> Made {
+        let inputs: Vec<Arc<Image>> = inputs.iter().map(|i| Arc::clone(&i.image)).collect();
+        let values: Vec<&[u8]> = inputs.iter().map(|i| bytemuck::cast_slice(i.data())).collect();
+        let content = hash((description(&case.plan, index), values));
+        let step = Step {
+            label: format!("{} pass {index}", case.label),
+            kernel: case.plan.passes()[index].kernel,
+            case,
+            index,
+            inputs: inputs.clone(),
+            outputs: Vec::new(),
         };
-        for (id, image) in pass.outputs.iter().zip(outputs) {
-            slots[id.index()] = Some(given[id.index()].take().unwrap_or(image));
-        }
+        let outputs = cell(&self.outputs, content);
+        let run = || step.on_cpu(Level::new()).into_iter().map(Arc::new).collect();
+        let outputs = outputs.get_or_init(run).clone();
+        Made { content, inputs, outputs }
     }
 }
 
-fn on_cpu(step: &Step) -> Vec<Rc<Image>> {
-    let plan = step.plan_with(step.kernel);
-    let run =
-        CpuExecutor::new().run(&plan, &step.named_inputs(), step.region(), &run::CALLING, Control::default());
-    match run {
-        Ok(images) => images.into_iter().map(Rc::new).collect(),
-        Err(e) => panic!("{}: {e}", step.label),
+/// Which passes lead to those of `kernel`, and these themselves.
+fn needed(plan: &Plan, kernel: &'static Kernel) -> Vec<bool> {
+    let mut read = vec![false; plan.images().len()];
+    let mut needed = vec![false; plan.passes().len()];
+    for (index, pass) in plan.passes().iter().enumerate().rev() {
+        if pass.kernel == kernel || pass.outputs.iter().any(|id| read[id.index()]) {
+            needed[index] = true;
+            pass.inputs.iter().for_each(|id| read[id.index()] = true);
+        }
     }
+    needed
 }
 
 /// The picture or guide that enters a plan under `name`.
@@ -202,17 +208,16 @@ pub fn input(name: &str, kind: Kind, [width, height]: [u32; 2]) -> Image {
     }
 }
 
-fn key(plan: &Plan, index: usize, inputs: &[Rc<Image>]) -> u64 {
+/// What a pass does, apart from the values that it reads.
+fn description(plan: &Plan, index: usize) -> u64 {
     let pass = &plan.passes()[index];
+    let images = pass.inputs.iter().chain(&pass.outputs).map(|id| plan.desc(*id));
+    // Passes that read nothing, those that make noise, know the picture by its size alone.
+    hash((pass.kernel.name, &pass.params, pass.support, plan.size(), images.collect::<Vec<_>>()))
+}
+
+fn hash(what: impl Hash) -> u64 {
     let mut hasher = DefaultHasher::new();
-    pass.kernel.name.hash(&mut hasher);
-    pass.params.hash(&mut hasher);
-    pass.support.hash(&mut hasher);
-    for id in pass.inputs.iter().chain(&pass.outputs) {
-        plan.desc(*id).hash(&mut hasher);
-    }
-    for image in inputs {
-        bytemuck::cast_slice::<f32, u8>(image.data()).hash(&mut hasher);
-    }
+    what.hash(&mut hasher);
     hasher.finish()
 }

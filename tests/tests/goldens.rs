@@ -1,8 +1,7 @@
 //! Golden images: each node on a generated test card, and the two styles on a frame of the demo
 //! scene, as they were last looked at and found right.
 //!
-//! `ISOPHOTE_BLESS=1 cargo test -p isophote-tests --test goldens` makes them anew. Nothing else does:
-//! a missing one is a failure. What differs is written to `target/isophote-tests`.
+//! `cargo xtask bless` makes them anew. Nothing else does: a missing one is a failure. What differs is written to `target/isophote-tests`.
 
 use isophote::registry;
 use isophote::spec::{ImageKind, NodeSpec};
@@ -10,8 +9,10 @@ use isophote::{Planned, Request};
 use isophote_engine::cpu::Control;
 use isophote_engine::{Image, Rect};
 use isophote_tests::pictures::{self, from_fn};
+use isophote_tests::trials::Trials;
 use isophote_tests::{cases, device, png, run};
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 /// Steps of 8 bits that a value may be off before it counts.
 const STEP_LIMIT: f32 = 3.5 / 255.0;
@@ -105,50 +106,61 @@ fn check(name: &str, executor: &str, picture: &Image) -> Option<String> {
     ))
 }
 
-/// Every golden image: its name, the node and the input.
-fn all() -> Vec<(String, &'static NodeSpec, Image)> {
-    let mut all: Vec<_> = cases::nodes().into_iter().map(|spec| (spec.id.to_owned(), spec, card())).collect();
+/// One golden image: its name, the node and the input.
+#[derive(Clone)]
+struct Golden {
+    name: String,
+    spec: &'static NodeSpec,
+    input: fn() -> Image,
+}
+
+/// Every golden image.
+fn all() -> Vec<Golden> {
+    let of_node = |spec: &&'static NodeSpec| Golden { name: spec.id.to_owned(), spec, input: card };
+    let mut all: Vec<Golden> = registry::nodes().iter().map(of_node).collect();
     for style in ["cartoon", "blueprint"] {
-        all.push((format!("{style}-on-scene"), registry::find(style).unwrap(), scene()));
+        let spec = registry::find(style).unwrap();
+        all.push(Golden { name: format!("{style}-on-scene"), spec, input: scene });
     }
     all
 }
 
-#[test]
-fn the_cpu_gives_the_golden_images() {
-    let wrong: Vec<String> = all()
-        .into_iter()
-        .filter_map(|(name, spec, input)| {
-            let result = run::whole(plan(spec, &input).plan(), &[("color", input)]);
-            check(&name, "cpu", &shown(spec, &result))
-        })
-        .collect();
-    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+fn main() -> ExitCode {
+    let mut trials = Trials::new();
+    for golden in all() {
+        let again = golden.clone();
+        trials.add("goldens::cpu", &golden.name, move || the_cpu_gives_the_golden_image(&again));
+        trials.add("goldens::gpu", &golden.name.clone(), move || the_gpu_gives_the_golden_image(&golden));
+    }
+    trials.add_plain("goldens::every_one_belongs_to_a_node_and_all_are_small", || {
+        every_golden_image_belongs_to_a_node_and_all_are_small();
+    });
+    trials.run()
 }
 
-#[test]
-fn the_gpu_gives_the_golden_images() {
+fn the_cpu_gives_the_golden_image(golden: &Golden) -> Vec<String> {
+    let input = (golden.input)();
+    let result = run::whole(plan(golden.spec, &input).plan(), &[("color", input)]);
+    check(&golden.name, "cpu", &shown(golden.spec, &result)).into_iter().collect()
+}
+
+fn the_gpu_gives_the_golden_image(golden: &Golden) -> Option<Vec<String>> {
+    if is_blessing() {
+        return Some(Vec::new());
+    }
+    let mut gpu = device::executor(&golden.name)?;
+    let input = (golden.input)();
+    let planned = plan(golden.spec, &input);
+    let region = Rect::of_size(input.width(), input.height());
+    let images = gpu.run_images(planned.plan(), &[("color", &input)], region, Control::default()).unwrap();
+    Some(check(&golden.name, "gpu", &shown(golden.spec, &images[0])).into_iter().collect())
+}
+
+fn every_golden_image_belongs_to_a_node_and_all_are_small() {
     if is_blessing() {
         return;
     }
-    let Some(mut gpu) = device::executor("the_gpu_gives_the_golden_images") else { return };
-    let mut wrong = Vec::new();
-    for (name, spec, input) in all() {
-        let planned = plan(spec, &input);
-        let region = Rect::of_size(input.width(), input.height());
-        let images =
-            gpu.run_images(planned.plan(), &[("color", &input)], region, Control::default()).unwrap();
-        wrong.extend(check(&name, "gpu", &shown(spec, &images[0])));
-    }
-    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
-}
-
-#[test]
-fn every_golden_image_belongs_to_a_node_and_all_are_small() {
-    if is_blessing() || cases::only_some() {
-        return;
-    }
-    let names: Vec<String> = all().into_iter().map(|(name, ..)| format!("{name}.png")).collect();
+    let names: Vec<String> = all().into_iter().map(|golden| format!("{}.png", golden.name)).collect();
     let mut bytes = 0;
     for file in std::fs::read_dir(folder()).unwrap().flatten() {
         let name = file.file_name().into_string().unwrap();

@@ -3,14 +3,17 @@
 
 use isophote::request::Planned;
 use isophote::spec::{ImageKind, NodeSpec};
-use isophote::{Request, Value};
+use isophote::Request;
 use isophote_engine::cpu::{CallingThread, CpuExecutor, Pool, Threads};
 use isophote_engine::fearless_simd::Level;
 use isophote_engine::{Image, Plan, Rect, Support};
 use isophote_tests::cases::{self, Setting};
 use isophote_tests::compare::{distance, psnr};
 use isophote_tests::pictures::{self, Kind};
+use isophote_tests::trials::Trials;
 use isophote_tests::{run, sweep};
+use std::process::ExitCode;
+use std::sync::OnceLock;
 
 const SIZE: [u32; 2] = [61, 37];
 
@@ -33,23 +36,44 @@ const TILES: [[i32; 4]; 12] = [
 /// Multiply-adds of one plan that this test spends at most.
 const COST_LIMIT: f64 = 4e8;
 
+fn main() -> ExitCode {
+    let mut trials = Trials::new();
+    for spec in isophote::registry::nodes() {
+        trials.add("tiles", spec.id, || a_tile_is_the_same_part_of_the_full_frame(spec));
+        trials.add("threads", spec.id, || the_number_of_threads_changes_nothing(spec));
+        trials.add("instruction_sets", spec.id, || instruction_sets_differ_by_rounding_only(spec));
+        trials.add("proxies", spec.id, || a_proxy_looks_like_the_full_frame(spec));
+    }
+    trials.add_plain("tiles::most_nodes_are_local", most_nodes_are_local);
+    trials.run()
+}
+
+/// Or nothing would have been compared above.
+fn most_nodes_are_local() {
+    let nodes = isophote::registry::nodes();
+    let is_local = |spec: &&&'static NodeSpec| {
+        let setup = cases::setup(spec, false);
+        run::planned(&setup.graph, Request::new(SIZE[0], SIZE[1])).plan().support() != Support::Global
+    };
+    let local = nodes.iter().filter(is_local).count();
+    assert!(2 * local > nodes.len(), "only {local} of {} nodes", nodes.len());
+}
+
 struct Run {
     label: String,
     planned: Planned,
     inputs: Vec<(&'static str, Image)>,
 }
 
-/// Every node with several parameter sets, pictures and guides.
-fn runs(size: [u32; 2]) -> Vec<Run> {
+/// The node with several parameter sets, pictures and guides.
+fn runs(spec: &'static NodeSpec, size: [u32; 2]) -> Vec<Run> {
     let mut all = Vec::new();
-    for spec in cases::nodes() {
-        for (index, setting) in cases::settings(spec, 3).into_iter().enumerate() {
-            let kind = Kind::ALL[(index + 2) % Kind::ALL.len()];
-            let wired = cases::has_optional_field(spec) && index % 2 == 1;
-            let run = one(spec, &setting, kind, wired, cases::has_guides(spec) && index % 3 == 1, size);
-            if cost(run.planned.plan()) < COST_LIMIT {
-                all.push(run);
-            }
+    for (index, setting) in cases::settings(spec, 3).into_iter().enumerate() {
+        let kind = Kind::ALL[(index + 2) % Kind::ALL.len()];
+        let wired = cases::has_optional_field(spec) && index % 2 == 1;
+        let run = one(spec, &setting, kind, wired, cases::has_guides(spec) && index % 3 == 1, size);
+        if cost(run.planned.plan()) < COST_LIMIT {
+            all.push(run);
         }
     }
     all
@@ -80,15 +104,15 @@ fn equal(a: &Image, b: &Image) -> bool {
     a.window() == b.window() && a.data().iter().zip(b.data()).all(|(a, b)| a.to_bits() == b.to_bits())
 }
 
-#[test]
-fn a_tile_is_the_same_part_of_the_full_frame_bit_for_bit() {
+fn a_tile_is_the_same_part_of_the_full_frame(spec: &'static NodeSpec) -> Vec<String> {
     let mut wrong = Vec::new();
-    let mut compared = 0;
-    for run in runs(SIZE) {
+    let (mut compared, mut local) = (0, 0);
+    for run in runs(spec, SIZE) {
         let plan = run.planned.plan();
         if plan.support() == Support::Global {
             continue;
         }
+        local += 1;
         let full = run::whole(plan, &run.inputs);
         let mut executor = CpuExecutor::new();
         for [x0, y0, x1, y1] in TILES {
@@ -102,27 +126,27 @@ fn a_tile_is_the_same_part_of_the_full_frame_bit_for_bit() {
             }
         }
     }
-    println!("{compared} tiles compared");
-    assert!(compared > TILES.len() && wrong.is_empty(), "\n{}", wrong.join("\n"));
+    println!("tiles::{}: {compared} tiles of {local} plans compared", spec.id);
+    wrong
 }
 
-#[test]
-fn the_number_of_threads_changes_nothing() {
-    let pools: Vec<Pool> = [1, 2, 3, 7].into_iter().map(|n| Pool::new(n).unwrap()).collect();
+fn the_number_of_threads_changes_nothing(spec: &'static NodeSpec) -> Vec<String> {
+    static POOLS: OnceLock<Vec<Pool>> = OnceLock::new();
+    let pools = POOLS.get_or_init(|| [1, 2, 3, 7].map(|n| Pool::new(n).unwrap()).into());
     let mut wrong = Vec::new();
-    for run in runs(SIZE).into_iter().step_by(2) {
+    for run in runs(spec, SIZE).into_iter().step_by(2) {
         let plan = run.planned.plan();
         let all = Rect::of_size(SIZE[0], SIZE[1]);
         let mut executor = CpuExecutor::new();
         let reference = run::region(&mut executor, plan, &run.inputs, all, &CallingThread);
-        for pool in &pools {
+        for pool in pools {
             let other = run::region(&mut executor, plan, &run.inputs, all, pool);
             if !equal(&reference, &other) {
                 wrong.push(format!("{} differs with {} threads", run.label, pool.count()));
             }
         }
     }
-    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+    wrong
 }
 
 /// Every instruction set that this machine can run.
@@ -139,35 +163,28 @@ fn levels() -> Vec<(&'static str, Level)> {
     levels
 }
 
-#[test]
-fn instruction_sets_differ_by_rounding_only() {
-    let best = Level::new();
+fn instruction_sets_differ_by_rounding_only(spec: &'static NodeSpec) -> Vec<String> {
     let mut wrong = Vec::new();
+    let default = &cases::settings(spec, 0)[0];
+    let run = one(spec, default, Kind::Steps, false, cases::has_guides(spec), SIZE);
+    let all = Rect::of_size(SIZE[0], SIZE[1]);
+    let by = |level| {
+        let mut executor = CpuExecutor::with_level(level);
+        run::region(&mut executor, run.planned.plan(), &run.inputs, all, run::pool())
+    };
+    let here = by(Level::new());
+    // A stream line or a threshold may turn on the last bit; few pixels may.
+    let scale = here.data().iter().fold(1e-3f32, |m, v| m.max(v.abs()));
     for (name, level) in levels() {
-        let mut worst = (0.0, String::new());
-        for spec in cases::nodes() {
-            let default = &cases::settings(spec, 0)[0];
-            let run = one(spec, default, Kind::Steps, false, cases::has_guides(spec), SIZE);
-            let all = Rect::of_size(SIZE[0], SIZE[1]);
-            let by = |level| {
-                let mut executor = CpuExecutor::with_level(level);
-                run::region(&mut executor, run.planned.plan(), &run.inputs, all, run::pool())
-            };
-            let (here, there) = (by(best), by(level));
-            // A stream line or a threshold may turn on the last bit; few pixels may.
-            let scale = here.data().iter().fold(1e-3f32, |m, v| m.max(v.abs()));
-            let far = here.data().iter().zip(there.data()).filter(|(a, b)| (*a - *b).abs() > 2e-3 * scale);
-            let share = far.count() as f64 / here.data().len() as f64;
-            if share > worst.0 {
-                worst = (share, spec.id.to_owned());
-            }
-            if share > 0.01 || there.data().iter().any(|v| !v.is_finite()) {
-                wrong.push(format!("{}: {share:.4} of the values differ on {name}", spec.id));
-            }
+        let there = by(level);
+        let far = here.data().iter().zip(there.data()).filter(|(a, b)| (*a - *b).abs() > 2e-3 * scale);
+        let share = far.count() as f64 / here.data().len() as f64;
+        println!("instruction_sets::{}: {share:.5} of the values differ on {name}", spec.id);
+        if share > 0.01 || there.data().iter().any(|v| !v.is_finite()) {
+            wrong.push(format!("{share:.4} of the values differ on {name}"));
         }
-        println!("{name}: worst share of differing values {:.5} {}", worst.0, worst.1);
     }
-    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+    wrong
 }
 
 /// Means of 2 x 2 pixels.
@@ -186,38 +203,33 @@ fn halved(image: &Image) -> Image {
     Image::from_vec(w, h, image.channels(), data).unwrap()
 }
 
-#[test]
-fn a_proxy_looks_like_the_full_frame() {
+/// The node's result with its defaults, its lengths scaled.
+fn result(spec: &'static NodeSpec, image: &Image, scale: f32) -> Image {
+    let setup = cases::setup(spec, false);
+    let request = Request { scale, ..Request::new(image.width(), image.height()) };
+    run::whole(run::planned(&setup.graph, request).plan(), &[("color", image.clone())])
+}
+
+fn a_proxy_looks_like_the_full_frame(spec: &'static NodeSpec) -> Vec<String> {
+    // Tensors change with the gradient's scale, and views of them show noise that is not scaled.
+    let takes_color = spec.inputs.iter().any(|p| p.kind == ImageKind::Color && !p.optional);
+    if spec.output.kind == ImageKind::Tensor || !takes_color {
+        return Vec::new();
+    }
     let picture = pictures::scenery(256, 192);
     let small = halved(&picture);
+    let full = halved(&result(spec, &picture, 1.0));
+    let proxy = result(spec, &small, 0.5);
+    let unscaled = result(spec, &small, 1.0);
+    let (close, far) = (psnr(&full, &proxy), psnr(&full, &unscaled));
+    println!("proxies::{:28} proxy {close:5.1} dB, without scaling {far:5.1} dB", spec.id);
     let mut wrong = Vec::new();
-    for spec in cases::nodes() {
-        // Tensors change with the gradient's scale, and views of them show noise that is not scaled.
-        let takes_color = spec.inputs.iter().any(|p| p.kind == ImageKind::Color && !p.optional);
-        if spec.output.kind == ImageKind::Tensor || !takes_color {
-            continue;
-        }
-        let at = |image: &Image, scale: f32, values: &[(&str, Value)]| {
-            let mut setup = cases::setup(spec, false);
-            for (id, value) in values {
-                setup.graph.set(setup.node, id, *value).unwrap();
-            }
-            let request = Request { scale, ..Request::new(image.width(), image.height()) };
-            let planned = run::planned(&setup.graph, request);
-            run::whole(planned.plan(), &[("color", image.clone())])
-        };
-        let full = halved(&at(&picture, 1.0, &[]));
-        let proxy = at(&small, 0.5, &[]);
-        let unscaled = at(&small, 1.0, &[]);
-        let (close, far) = (psnr(&full, &proxy), psnr(&full, &unscaled));
-        println!("{:28} proxy {close:5.1} dB, without scaling {far:5.1} dB", spec.id);
-        if close < 20.0 {
-            wrong.push(format!("{}: a proxy is only {close:.1} dB like the full frame", spec.id));
-        }
-        let has_lengths = spec.params().any(|p| p.unit == isophote::spec::Unit::Pixels);
-        if has_lengths && close < far {
-            wrong.push(format!("{}: a proxy is better without scaling its lengths ({far:.1} dB)", spec.id));
-        }
+    if close < 20.0 {
+        wrong.push(format!("a proxy is only {close:.1} dB like the full frame"));
     }
-    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+    let has_lengths = spec.params().any(|p| p.unit == isophote::spec::Unit::Pixels);
+    if has_lengths && close < far {
+        wrong.push(format!("a proxy is better without scaling its lengths ({far:.1} dB)"));
+    }
+    wrong
 }

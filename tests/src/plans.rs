@@ -1,0 +1,118 @@
+//! Every node of the registry, planned in many ways: sizes, pictures, parameter sets, guides, proxies.
+
+use crate::cases::{self, Setting};
+use crate::pictures::Kind;
+use crate::run;
+use isophote::Request;
+use isophote::spec::{ImageKind, NodeSpec};
+use isophote_engine::Plan;
+use isophote_engine::plan::Pass;
+use std::collections::BTreeSet;
+
+/// Sizes of the pictures: one pixel, less than a vector and a workgroup, and odd ends of both.
+pub const SIZES: [[u32; 2]; 3] = [[1, 1], [7, 5], [67, 43]];
+
+/// Random parameter sets per node and size.
+const RANDOM_SETS: usize = 6;
+
+/// Multiply-adds that one plan may take at one size; costlier parameter sets appear on the smaller
+/// sizes only.
+const COST_LIMIT: f64 = 3e8;
+
+/// A node's plan and what enters it.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Node, parameter set, picture and size, for messages.
+    pub label: String,
+    /// The plan.
+    pub plan: Plan,
+    /// Picture that enters.
+    pub kind: Kind,
+    /// Its size.
+    pub size: [u32; 2],
+    /// For each image of the plan: the generated field that later passes read instead of what its
+    /// producer makes, which is tamer.
+    pub fields: Vec<Option<ImageKind>>,
+}
+
+/// How a node is planned.
+struct Variant {
+    setting: Setting,
+    wired: bool,
+    kind: Kind,
+    guides: bool,
+    scale: f32,
+}
+
+/// All cases, the smallest pictures first.
+pub fn all() -> Vec<Case> {
+    let mut all = Vec::new();
+    for size in SIZES {
+        for spec in isophote::registry::nodes() {
+            all.extend(variants(spec).iter().filter_map(|variant| planned(spec, variant, size)));
+        }
+    }
+    all
+}
+
+/// Defaults on every kind of picture, with and without guides and connected fields, and as proxies; the
+/// other parameter sets take turns.
+fn variants(spec: &'static NodeSpec) -> Vec<Variant> {
+    let (fields, guides) = (cases::has_optional_field(spec), cases::has_guides(spec));
+    let mut all = Vec::new();
+    let mut add = |setting: &Setting, wired, kind, guides, scale| {
+        all.push(Variant { setting: setting.clone(), wired, kind, guides, scale });
+    };
+    let settings = cases::settings(spec, RANDOM_SETS);
+    let Some((default, others)) = settings.split_first() else { return all };
+    for kind in Kind::ALL {
+        add(default, false, kind, false, 1.0);
+        if fields || guides {
+            add(default, fields, kind, guides, 1.0);
+        }
+    }
+    for (index, setting) in (1..).zip(others) {
+        let turn = |n: usize| (index / n) % 2 == 1;
+        add(setting, fields && turn(2), Kind::ALL[index % Kind::ALL.len()], guides && turn(1), 1.0);
+    }
+    for kind in Kind::ALL {
+        add(default, false, kind, false, 0.5);
+    }
+    all
+}
+
+/// The case of a variant, unless it takes too long, or is a proxy whose kernels the full picture has.
+fn planned(spec: &'static NodeSpec, variant: &Variant, size: [u32; 2]) -> Option<Case> {
+    let ([width, height], &Variant { wired, kind, guides, scale, .. }) = (size, variant);
+    let mut setup = cases::setup(spec, wired);
+    variant.setting.apply(&mut setup.graph, setup.node);
+    let full = cases::request(kind, width, height, guides);
+    let request = Request { scale, ..full };
+    let plan = run::planned(&setup.graph, request).plan().clone();
+    let kernels = |plan: &Plan| plan.passes().iter().map(|p| p.kernel.name).collect::<BTreeSet<_>>();
+    if scale < 1.0 && kernels(run::planned(&setup.graph, full).plan()).is_superset(&kernels(&plan)) {
+        return None;
+    }
+    if plan.passes().iter().map(|p| cost(&plan, p)).sum::<f64>() > COST_LIMIT {
+        return None;
+    }
+    let mut fields = vec![None; plan.images().len()];
+    for producer in &setup.producers {
+        let mut graph = setup.graph.clone();
+        if graph.set_output(*producer).is_err() {
+            continue;
+        }
+        let image = run::planned(&graph, request).plan().outputs()[0].image;
+        fields[image.index()] = Some(graph.spec(*producer).map_or(ImageKind::Scalar, |s| s.output.kind));
+    }
+    let label = format!(
+        "{} ({}) {kind:?} {width}x{height} wired={wired} guides={guides} at {scale}",
+        spec.id, variant.setting.label
+    );
+    Some(Case { label, plan, kind, size, fields })
+}
+
+fn cost(plan: &Plan, pass: &Pass) -> f64 {
+    let [w, h] = plan.level_size(plan.desc(pass.outputs[0]).level);
+    (pass.kernel.cost)(&pass.params) * f64::from(w) * f64::from(h)
+}

@@ -1,0 +1,109 @@
+//! Generated cases as trials of their own: each has a name that can be asked for, and one that fails
+//! hides no other.
+//!
+//! A test file with `harness = false` collects them in its `main`. The name of a trial is the test, two
+//! colons and the kernel or node that it concerns: `twins::gaussian_blur`.
+
+use libtest_mimic::{Arguments, Completion, Failed, Trial};
+use std::fmt::Display;
+use std::process::ExitCode;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// How many of the slowest trials are named at the end.
+const SLOWEST: usize = 5;
+
+/// What came out of a trial that did not panic.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Report {
+    /// Everything holds.
+    Passed,
+    /// Nothing was tried, and why.
+    Skipped(String),
+    /// What does not hold.
+    Failed(String),
+}
+
+impl From<()> for Report {
+    fn from((): ()) -> Self {
+        Self::Passed
+    }
+}
+
+/// Everything that is wrong, line by line.
+impl From<Vec<String>> for Report {
+    fn from(wrong: Vec<String>) -> Self {
+        if wrong.is_empty() { Self::Passed } else { Self::Failed(format!("\n{}", wrong.join("\n"))) }
+    }
+}
+
+/// Nothing where a graphics device is missing and may be.
+impl<R: Into<Self>> From<Option<R>> for Report {
+    fn from(report: Option<R>) -> Self {
+        report.map_or_else(|| Self::Skipped("no graphics device".into()), Into::into)
+    }
+}
+
+type Times = Arc<Mutex<Vec<(Duration, String)>>>;
+
+/// The trials of a test file.
+#[derive(Debug, Default)]
+pub struct Trials {
+    trials: Vec<Trial>,
+    times: Times,
+}
+
+impl Trials {
+    /// None yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds the trial `test::subject`. It fails by a panic or by its report.
+    pub fn add<R: Into<Report>>(
+        &mut self,
+        test: &str,
+        subject: impl Display,
+        body: impl FnOnce() -> R + Send + 'static,
+    ) {
+        self.add_plain(&format!("{test}::{subject}"), body);
+    }
+
+    /// Adds a trial that concerns no kernel or node in particular.
+    pub fn add_plain<R: Into<Report>>(&mut self, name: &str, body: impl FnOnce() -> R + Send + 'static) {
+        let (times, known_as) = (Arc::clone(&self.times), name.to_owned());
+        self.trials.push(Trial::ignorable_test(name, move || {
+            let started = Instant::now();
+            let report = body().into();
+            times.lock().unwrap_or_else(PoisonError::into_inner).push((started.elapsed(), known_as));
+            match report {
+                Report::Passed => Ok(Completion::Completed),
+                Report::Skipped(reason) => Ok(Completion::ignored_with(reason)),
+                Report::Failed(what) => Err(Failed::from(what)),
+            }
+        }));
+    }
+
+    /// The last trial added runs only when asked for by `--ignored`.
+    pub fn ignore_last(&mut self) {
+        if let Some(last) = self.trials.pop() {
+            self.trials.push(last.with_ignored_flag(true));
+        }
+    }
+
+    /// Runs those that the command line asks for, as the built-in harness would.
+    pub fn run(self) -> ExitCode {
+        let conclusion = libtest_mimic::run(&Arguments::from_args(), self.trials);
+        let mut times = self.times.lock().unwrap_or_else(PoisonError::into_inner);
+        times.sort_by_key(|(time, _)| std::cmp::Reverse(*time));
+        if times.len() > 1 {
+            let slowest: Vec<String> = times
+                .iter()
+                .take(SLOWEST)
+                .map(|(time, name)| format!("{name} {:.1} s", time.as_secs_f64()))
+                .collect();
+            println!("slowest: {}", slowest.join(", "));
+        }
+        conclusion.exit_code()
+    }
+}

@@ -1,0 +1,86 @@
+//! What nodes and kernels declare: complete, in range, and good for every graph file.
+
+use isophote::kernels::KERNELS;
+use isophote::spec::NodeSpec;
+use isophote::{Graph, Planned, Request, Value};
+use isophote_engine::Kernel;
+use isophote_tests::cases;
+use isophote_tests::trials::Trials;
+use std::collections::BTreeSet;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let mut trials = Trials::new();
+    for spec in isophote::registry::nodes() {
+        trials.add("declarations", spec.id, || faults_of(spec));
+        trials.add("graph_files", spec.id, || every_parameter_set_plans_and_goes_through_json(spec));
+    }
+    for kernel in KERNELS {
+        trials.add("tolerances", kernel.name, || the_tolerance_has_a_reason_and_is_small(kernel));
+    }
+    trials.run()
+}
+
+fn is_identifier(id: &str) -> bool {
+    id.starts_with(|c: char| c.is_ascii_lowercase())
+        && id.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+}
+
+fn is_sentence(text: &str) -> bool {
+    text.len() > 3 && text.trim() == text && text.ends_with('.')
+}
+
+fn faults_of(spec: &NodeSpec) -> Vec<String> {
+    let mut faults = Vec::new();
+    let mut check = |good: bool, what: String| {
+        if !good {
+            faults.push(format!("{}: {what}", spec.id));
+        }
+    };
+    check(is_identifier(spec.id), "its id is not in lower case with underscores".into());
+    check(!spec.label.is_empty() && is_sentence(spec.doc), "label or document are missing".into());
+    check(!spec.section.is_empty(), "no section of the thesis".into());
+    for port in spec.inputs.iter().chain([&spec.output]) {
+        check(is_identifier(port.id) && is_sentence(port.doc), format!("port {} lacks a document", port.id));
+    }
+    let mut ids = BTreeSet::new();
+    for param in spec.params() {
+        let id = param.id;
+        check(is_identifier(id) && ids.insert(id), format!("{id} is no good id, or twice"));
+        check(!param.label.is_empty() && is_sentence(param.doc), format!("{id} lacks a document"));
+        let ([low, high], [from, to], form) = (param.range, param.slider, param.default.form());
+        let ordered = low <= from && from < to && to <= high;
+        check(ordered, format!("{id}: slider {from}..{to} is not inside {low}..{high}"));
+        let shown = form.numbers[..form.count].iter().all(|n| (from..=to).contains(&(*n as f32)));
+        check(shown, format!("{id}: default {:?} is off its slider", param.default));
+        let ids: BTreeSet<&str> = param.options.iter().map(|o| o.id).collect();
+        check(ids.len() == param.options.len(), format!("{id}: two options of one id"));
+        let is_choice = matches!(param.default, Value::Choice(_));
+        check(is_choice != param.options.is_empty(), format!("{id}: options and type do not fit"));
+        check(
+            param.options.iter().all(|o| is_identifier(o.id) && !o.label.is_empty() && is_sentence(o.doc)),
+            format!("{id}: an option's id, label or document"),
+        );
+    }
+    faults
+}
+
+fn the_tolerance_has_a_reason_and_is_small(kernel: &Kernel) {
+    let t = kernel.tolerance;
+    assert!(t.reason.len() > 10, "why this tolerance?");
+    assert!((0.0..=0.1).contains(&t.absolute), "absolute {}", t.absolute);
+    assert!((0.0..=0.01).contains(&t.relative), "relative {}", t.relative);
+    assert!((0.0..=0.03).contains(&t.outliers), "outliers {}", t.outliers);
+}
+
+fn every_parameter_set_plans_and_goes_through_json(spec: &'static NodeSpec) {
+    for setting in cases::settings(spec, 4) {
+        let mut setup = cases::setup(spec, true);
+        setting.apply(&mut setup.graph, setup.node);
+        let text = setup.graph.to_json().unwrap();
+        let read = Graph::from_json(&text).unwrap();
+        assert_eq!(read.to_json().unwrap(), text, "{}", setting.label);
+        let request = Request { scale: 0.37, ..Request::new(19, 23) };
+        Planned::new(&read, request).unwrap();
+    }
+}

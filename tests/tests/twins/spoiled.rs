@@ -1,0 +1,77 @@
+//! A shader with one number changed is noticed by the comparison of twins.
+
+use isophote_engine::Kernel;
+use isophote_engine::cpu::Control;
+use isophote_engine::gpu::Executor;
+use isophote_tests::compare::Difference;
+use isophote_tests::device;
+use isophote_tests::shaders::{Spoiled, spoil};
+use isophote_tests::sweep::Step;
+
+/// Comparisons kept per kernel; more only cost time.
+const STEPS: usize = 48;
+
+/// Changes tried per kernel.
+const CHANGES: usize = 6;
+
+/// Changes numbers of the shader, one at a time. Returns what is wrong.
+pub fn notice(kernel: &'static Kernel, steps: &[Step]) -> Option<Vec<String>> {
+    // Shaders do more where windows are in workgroup memory.
+    let mut gpu = device::executor_with_windows(kernel.name, true)?;
+    let steps = sample(steps);
+    let changes = spoil(kernel);
+    let (mut tried, mut noticed) = (0, 0);
+    for change in changes.iter().take(CHANGES) {
+        let outcome = difference(&mut gpu, kernel, change, &steps);
+        tried += 1;
+        noticed += usize::from(outcome.is_some());
+        let outcome = outcome.as_deref().unwrap_or("NOT NOTICED");
+        println!("spoiled::{:28} {}: {outcome}", kernel.name, change.change);
+    }
+    // Some numbers only guard what rarely happens; most must matter.
+    let enough = noticed > 0 && 3 * noticed >= tried;
+    Some(if enough { Vec::new() } else { vec![format!("only {noticed} of {tried} changes were noticed")] })
+}
+
+/// Some of the steps: the first ones, which are of the smallest pictures, give place to later ones in turn.
+fn sample(steps: &[Step]) -> Vec<&Step> {
+    let mut kept: Vec<&Step> = Vec::new();
+    for step in steps {
+        let place = (step.label.len() + kept.len() * 7) % STEPS;
+        if kept.len() < STEPS {
+            kept.push(step);
+        } else {
+            kept[place] = step;
+        }
+    }
+    kept
+}
+
+/// Where the changed shader breaks the tolerance, if anywhere. A shader that no longer compiles counts
+/// for nothing: it must run and differ.
+fn difference(
+    gpu: &mut Executor,
+    kernel: &'static Kernel,
+    change: &Spoiled,
+    steps: &[&Step],
+) -> Option<String> {
+    let spoiled: &'static Kernel =
+        Box::leak(Box::new(Kernel { shader: change.source.clone().leak(), ..copy(kernel) }));
+    // Large pictures first: they show more.
+    for step in steps.iter().rev() {
+        let plan = step.plan_with(spoiled);
+        let results = gpu.run_images(&plan, &step.named_inputs(), step.region(), Control::default()).ok()?;
+        for (ours, theirs) in step.outputs.iter().zip(&results) {
+            let difference = Difference::between(ours, theirs, &kernel.tolerance);
+            if !difference.is_within(&kernel.tolerance) {
+                return Some(format!("differs by {:.2e} at {}", difference.worst, difference.place));
+            }
+        }
+    }
+    None
+}
+
+fn copy(kernel: &Kernel) -> Kernel {
+    let Kernel { name, shader, inputs, outputs, params_size, cpu, cost, tolerance } = *kernel;
+    Kernel { name, shader, inputs, outputs, params_size, cpu, cost, tolerance }
+}
