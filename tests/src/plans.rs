@@ -93,7 +93,7 @@ fn planned(spec: &'static NodeSpec, variant: &Variant, size: [u32; 2]) -> Option
     if scale < 1.0 && kernels(run::planned(&setup.graph, full).plan()).is_superset(&kernels(&plan)) {
         return None;
     }
-    if plan.passes().iter().map(|p| cost(&plan, p)).sum::<f64>() > COST_LIMIT {
+    if cost(&plan) > COST_LIMIT {
         return None;
     }
     let mut fields = vec![None; plan.images().len()];
@@ -112,7 +112,11 @@ fn planned(spec: &'static NodeSpec, variant: &Variant, size: [u32; 2]) -> Option
     Some(Case { label, plan, kind, size, fields })
 }
 
-fn cost(plan: &Plan, pass: &Pass) -> f64 {
-    let [w, h] = plan.level_size(plan.desc(pass.outputs[0]).level);
-    (pass.kernel.cost)(&pass.params) * f64::from(w) * f64::from(h)
+/// Multiply-adds of a whole plan.
+pub fn cost(plan: &Plan) -> f64 {
+    let pixels = |pass: &Pass| {
+        let [w, h] = plan.level_size(plan.desc(pass.outputs[0]).level);
+        f64::from(w) * f64::from(h)
+    };
+    plan.passes().iter().map(|p| (p.kernel.cost)(&p.params) * pixels(p)).sum()
 }

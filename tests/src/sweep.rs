@@ -131,13 +131,21 @@ impl Results {
         let mut slots: Vec<Option<Slot>> = vec![None; case.plan.images().len()];
         for port in case.plan.inputs() {
             slots[port.image.index()] =
-                Some(self.entering((&port.name, case.kind, case.size), || input(&port.name, case.kind, case.size)));
+                Some(self.entering((&port.name, case.kind, case.size), || {
+                    input(&port.name, case.kind, case.size)
+                }));
         }
         let mut found = Vec::new();
         for (index, pass) in case.plan.passes().iter().enumerate().filter(|(index, _)| needed[*index]) {
             let inputs: Vec<Slot> = pass.inputs.iter().filter_map(|i| slots[i.index()].clone()).collect();
-            assert_eq!(inputs.len(), pass.inputs.len(), "{}: pass {index} reads what nobody wrote", case.label);
-            let key = hash((description(&case.plan, index), inputs.iter().map(|i| i.key).collect::<Vec<_>>()));
+            assert_eq!(
+                inputs.len(),
+                pass.inputs.len(),
+                "{}: pass {index} reads what nobody wrote",
+                case.label
+            );
+            let key =
+                hash((description(&case.plan, index), inputs.iter().map(|i| i.key).collect::<Vec<_>>()));
             let made = cell(&self.passes, key);
             let outputs = &made.get_or_init(|| self.make(case, index, &inputs)).outputs;
             for (place, (id, image)) in pass.outputs.iter().zip(outputs).enumerate() {

@@ -18,7 +18,8 @@ use std::sync::{Mutex, PoisonError};
 fn main() -> ExitCode {
     let mut trials = Trials::new();
     for spec in isophote::registry::nodes() {
-        trials.add("edits::uniforms", spec.id, || parameters_only_rewrite_uniforms_and_allocate_nothing(spec));
+        trials
+            .add("edits::uniforms", spec.id, || parameters_only_rewrite_uniforms_and_allocate_nothing(spec));
         trials.add("edits::structure", spec.id, || structural_parameters_lead_to_a_new_plan(spec));
         trials.add("edits::picture", spec.id, || an_edited_plan_gives_the_picture_of_a_new_one(spec));
         trials.add("edits::warm_frame", spec.id, || a_warm_frame_creates_nothing_and_submits_once(spec));
@@ -40,7 +41,13 @@ fn same(a: &isophote_engine::Plan, b: &isophote_engine::Plan) -> bool {
 }
 
 /// One edit of a plan: the parameter becomes `value`. What is wrong, if anything.
-fn edit(setup: &mut Setup, planned: &mut Planned, request: Request, id: &str, value: Value) -> Option<String> {
+fn edit(
+    setup: &mut Setup,
+    planned: &mut Planned,
+    request: Request,
+    id: &str,
+    value: Value,
+) -> Option<String> {
     setup.graph.set(setup.node, id, value).unwrap();
     let mut change = Ok(Change::Structure);
     let memory = allocation_counter::measure(|| change = planned.update(&setup.graph));

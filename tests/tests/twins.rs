@@ -22,9 +22,8 @@ fn main() -> ExitCode {
     // Both tests look at the same steps, which are computed by whoever comes first.
     let kernels: Vec<_> = KERNELS.iter().map(|kernel| (*kernel, Arc::new(OnceLock::new()))).collect();
     for (kernel, steps) in kernels.clone() {
-        trials.add("twins", kernel.name, move || {
-            agreement(kernel, steps.get_or_init(|| sweep::steps(kernel)))
-        });
+        trials
+            .add("twins", kernel.name, move || agreement(kernel, steps.get_or_init(|| sweep::steps(kernel))));
     }
     for (kernel, steps) in kernels {
         trials.add("spoiled", kernel.name, move || {
@@ -55,11 +54,11 @@ impl Tally {
                 .run_images(&plan, &step.named_inputs(), step.region(), Control::default())
                 .map_err(|e| format!("{}: {e}", step.label))?;
             for (index, (ours, theirs)) in step.outputs.iter().zip(&results).enumerate() {
-                self.add(&format!("{} output {index}", step.label), step.kernel, &Difference::between(
-                    ours,
-                    theirs,
-                    &step.kernel.tolerance,
-                ));
+                self.add(
+                    &format!("{} output {index}", step.label),
+                    step.kernel,
+                    &Difference::between(ours, theirs, &step.kernel.tolerance),
+                );
             }
         }
         Ok(())
