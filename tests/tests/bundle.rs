@@ -2,9 +2,11 @@
 
 use isophote_tests::library;
 use isophote_tests::ofx::effect::Described;
+use isophote_tests::ofx::host::Host;
 use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::picture::{Layout, Picture};
-use isophote_tests::ofx::{Behaviour, Binary, Host, faults};
+use isophote_tests::ofx::plugin::Binary;
+use isophote_tests::ofx::state::Behaviour;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -29,26 +31,21 @@ fn property(list: &str, key: &str) -> String {
     rest.split_once("</string>").expect("its end").0.to_owned()
 }
 
-#[test]
-fn the_bundle_holds_what_hosts_look_for_and_renders() {
-    if !cfg!(target_os = "linux") {
-        return;
-    }
+/// The bundle, made as people make it, in `folder`.
+fn make(folder: &Path) {
     let target = library::path().parent().unwrap();
     let profile = target.file_name().unwrap();
-    let folder = tempfile::TempDir::new().unwrap();
     let mut bundle = Command::new(target.join("xtask"));
-    bundle.args(["bundle", "--install", "--to"]).arg(folder.path());
+    bundle.args(["bundle", "--install", "--to"]).arg(folder);
     if profile == "debug" {
         bundle.arg("--debug");
     }
     bundle.env("CARGO_TARGET_DIR", target.parent().unwrap()).current_dir(library::root());
     let made = bundle.output().unwrap();
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+}
 
-    let binaries = found(folder.path());
-    assert_eq!(binaries.len(), 1, "{binaries:?}");
-    let contents = folder.path().join("Isophote.ofx.bundle/Contents");
+fn check_list(contents: &Path) {
     let list = std::fs::read_to_string(contents.join("Info.plist")).unwrap();
     for (key, value) in [
         ("CFBundleExecutable", "Isophote.ofx"),
@@ -59,10 +56,10 @@ fn the_bundle_holds_what_hosts_look_for_and_renders() {
         assert_eq!(property(&list, key), value);
     }
     assert!(!property(&list, "CFBundleDevelopmentRegion").is_empty());
+}
 
-    let binary = Binary::open(&binaries[0]);
-    let resources = contents.join("Resources");
-    let listed = std::fs::read_dir(&resources).unwrap();
+fn check_icons(resources: &Path, binary: &Binary) {
+    let listed = std::fs::read_dir(resources).unwrap();
     let listed: BTreeSet<String> =
         listed.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
     let icons =
@@ -80,7 +77,10 @@ fn the_bundle_holds_what_hosts_look_for_and_renders() {
         assert!(drawing.contains("<svg") && drawing.contains("http://www.w3.org/2000/svg"), "{icon}");
         assert!(drawing.trim_end().ends_with("</svg>"), "{icon}");
     }
+}
 
+/// An edge is blurred, and flat parts stay.
+fn check_pixels(binary: &Binary) {
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();
     let plugin = binary.plugin("org.isophote.gaussian");
@@ -93,5 +93,21 @@ fn the_bundle_holds_what_hosts_look_for_and_renders() {
     let value = |x: usize| f32::from_ne_bytes(result[16 * x..16 * x + 4].try_into().unwrap());
     assert!(value(0) < 1e-3 && value(23) > 0.999, "flat parts stay");
     assert!((1..23).all(|x| value(x) <= value(x + 1)) && (0.2..0.5).contains(&value(11)), "the edge is soft");
-    assert!(faults().is_empty(), "{:?}", faults());
+    host.no_faults();
+}
+
+#[test]
+fn the_bundle_holds_what_hosts_look_for_and_renders() {
+    if !cfg!(target_os = "linux") {
+        return;
+    }
+    let folder = tempfile::TempDir::new().unwrap();
+    make(folder.path());
+    let binaries = found(folder.path());
+    assert_eq!(binaries.len(), 1, "{binaries:?}");
+    let contents = folder.path().join("Isophote.ofx.bundle/Contents");
+    check_list(&contents);
+    let binary = Binary::open(&binaries[0]);
+    check_icons(&contents.join("Resources"), &binary);
+    check_pixels(&binary);
 }

@@ -8,12 +8,45 @@ use isophote::graph::GraphInput;
 use isophote::spec::{ImageKind, NodeSpec};
 use isophote::{Graph, Planned, Request};
 use isophote_tests::library::{self, contract::*};
+use isophote_tests::trials::Trials;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::process::{Command, Output};
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 use tempfile::TempDir;
 
 const WARNINGS: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-g"];
+
+/// Tests by their names.
+macro_rules! named {
+    ($($test:ident)*) => { [$((concat!("c_host::", stringify!($test)), $test as fn())),*] };
+}
+
+fn main() -> ExitCode {
+    let mut trials = Trials::new();
+    // Those under valgrind take longest.
+    for (name, test) in named! {
+        a_c_program_lists_the_nodes_and_stylizes_under_valgrind
+        a_c_program_prints_a_plan_as_data_under_valgrind
+        the_header_is_cpp_too
+        the_header_has_the_layout_of_the_declarations
+        bad_arguments_of_the_c_program_are_one_line_each
+        a_c_program_may_end_without_cleaning_up
+        the_library_exports_the_entries_of_its_two_faces_and_no_more
+        the_library_needs_nothing_but_what_every_system_has
+        the_committed_header_is_the_generated_one
+    } {
+        trials.add_plain(name, test);
+    }
+    for node in nodes() {
+        trials.add("c_host::a_c_program_stylizes", node.id, || {
+            stylize(node.id, &[], false, 157, 101);
+        });
+        trials.add("c_host::a_c_program_prints_the_plan", node.id, || plan(node.id, false));
+    }
+    trials.run()
+}
 
 /// Whether a tool that the tests need is there; where it must be, its absence fails.
 fn has(tool: &str) -> bool {
@@ -30,14 +63,20 @@ fn folder() -> &'static Path {
     FOLDER.get_or_init(|| TempDir::new().expect("a folder for the test")).path()
 }
 
-/// Compiles one of the programs beside this file's folder, without a warning.
-fn compiled(source: &str) -> Option<PathBuf> {
+/// One of the programs of `tests/c`, compiled once in a process and without a warning.
+fn compiled(source: &'static str) -> Option<PathBuf> {
+    static PROGRAMS: Mutex<Option<HashMap<&str, Option<PathBuf>>>> = Mutex::new(None);
+    let mut programs = PROGRAMS.lock().unwrap_or_else(PoisonError::into_inner);
+    programs.get_or_insert_default().entry(source).or_insert_with(|| compile(source)).clone()
+}
+
+fn compile(source: &str) -> Option<PathBuf> {
     let (compiler, standard) =
         if source.ends_with(".cpp") { ("c++", "-std=c++17") } else { ("cc", "-std=c11") };
     if !has(compiler) {
         return None;
     }
-    let program = folder().join(format!("{source}.{:?}", std::thread::current().id()));
+    let program = folder().join(format!("{source}.program"));
     let output = Command::new(compiler)
         .arg(standard)
         .args(WARNINGS)
@@ -180,14 +219,6 @@ fn stylize(node: &str, settings: &[&str], under_valgrind: bool, width: u32, heig
     Some(text)
 }
 
-#[test]
-fn a_c_program_stylizes_with_every_node() {
-    for node in nodes() {
-        stylize(node.id, &[], false, 157, 101);
-    }
-}
-
-#[test]
 fn a_c_program_lists_the_nodes_and_stylizes_under_valgrind() {
     let settings = ["sigma_dg=1.5", "sigma_dt=2", "iterations=1"];
     let Some(text) = stylize("oriented_bilateral", &settings, has("valgrind"), 61, 37) else { return };
@@ -269,25 +300,15 @@ fn plan(node: &str, under_valgrind: bool) {
     }
 }
 
-#[test]
-fn a_c_program_prints_every_plan_as_data() {
-    for node in nodes() {
-        plan(node.id, false);
-    }
-}
-
-#[test]
 fn a_c_program_prints_a_plan_as_data_under_valgrind() {
     plan("oriented_bilateral", has("valgrind"));
 }
 
-#[test]
 fn the_header_is_cpp_too() {
     let Some(program) = compiled("header_cpp.cpp") else { return };
     printed(&Command::new(program).output().expect("the program can be started"), "header_cpp");
 }
 
-#[test]
 fn the_header_has_the_layout_of_the_declarations() {
     macro_rules! sizes {
         ($($name:ident)*) => { [$((stringify!($name), size_of::<$name>())),*] };
@@ -304,7 +325,6 @@ fn the_header_has_the_layout_of_the_declarations() {
     assert_eq!(text, expected);
 }
 
-#[test]
 fn bad_arguments_of_the_c_program_are_one_line_each() {
     let Some(program) = compiled("stylize.c") else { return };
     let input = folder().join("bad.ppm");
@@ -330,7 +350,6 @@ fn bad_arguments_of_the_c_program_are_one_line_each() {
     }
 }
 
-#[test]
 fn a_c_program_may_end_without_cleaning_up() {
     let Some(program) = compiled("leave.c") else { return };
     for end in ["stay", "unload"] {
@@ -345,7 +364,6 @@ fn a_c_program_may_end_without_cleaning_up() {
     }
 }
 
-#[test]
 fn the_library_exports_the_entries_of_its_two_faces_and_no_more() {
     if !cfg!(target_os = "linux") || !has("nm") {
         return;
@@ -357,7 +375,6 @@ fn the_library_exports_the_entries_of_its_two_faces_and_no_more() {
     assert_eq!(names, ["OfxGetNumberOfPlugins", "OfxGetPlugin", "OfxSetHost", "isophote_api"], "{text}");
 }
 
-#[test]
 fn the_library_needs_nothing_but_what_every_system_has() {
     if !cfg!(target_os = "linux") || !has("readelf") {
         return;
@@ -372,7 +389,6 @@ fn the_library_needs_nothing_but_what_every_system_has() {
     }
 }
 
-#[test]
 fn the_committed_header_is_the_generated_one() {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let run = Command::new(cargo)

@@ -1,4 +1,6 @@
 //! The OpenFX face in the host of `isophote_tests::ofx`: every effect, generated from the registry.
+//!
+//! Each trial has a copy of the library to itself, since a plugin knows one host.
 
 #![allow(unsafe_code, reason = "calls through the C table, and reading foreign layouts")]
 
@@ -18,3 +20,76 @@ mod regions;
 mod render;
 #[path = "openfx/scale.rs"]
 mod scale;
+
+use isophote_tests::ofx::plugin::{Binary, Lent};
+use isophote_tests::trials::Trials;
+use reference::{Expected, expected};
+use std::process::ExitCode;
+
+/// Tests by their names.
+macro_rules! named {
+    ($($module:ident::$test:ident,)*) => {
+        &[$((concat!("openfx::", stringify!($module), "::", stringify!($test)), $module::$test)),*]
+    };
+}
+
+/// What holds for the binary, whatever its effects.
+const OF_THE_BINARY: &[(&str, fn(&Binary))] = named! {
+    describe::every_node_that_can_be_an_effect_is_one,
+    describe::the_working_space_follows_the_host,
+    describe::hosts_that_manage_colours_are_asked_for_the_working_space,
+    describe::half_floats_are_offered_to_hosts_that_have_them,
+    describe::a_host_without_a_needed_suite_is_told,
+    quirks::a_scale_counts_wherever_the_host_says_it,
+    regions::a_host_without_tiles_may_give_parts_all_the_same,
+    regions::regions_shrink_with_the_scale,
+    render::the_colour_space_that_a_host_names_counts,
+    render::unknown_depths_are_refused,
+};
+
+/// What holds for every effect.
+const OF_EVERY_EFFECT: &[(&str, fn(&Binary, Expected))] = named! {
+    aspect::oblong_pixels_show_what_square_ones_show,
+    aspect::guides_have_oblong_pixels_too,
+    aspect::alpha_and_masks_are_those_of_the_hosts_pixels,
+    describe::descriptors_say_what_the_standard_asks_for,
+    describe::clips_are_source_and_output_and_in_general_a_mask_and_guides,
+    describe::controls_are_the_parameters_of_the_nodes,
+    describe::describing_is_the_same_every_time_and_stands_refused_properties,
+    memory::an_8k_frame_fits_into_4_gib,
+    quirks::rows_may_run_downwards_be_padded_and_begin_anywhere,
+    quirks::hosts_that_lack_what_can_be_lacked_get_their_pictures,
+    quirks::fields_are_rendered_from_their_own_lines,
+    regions::tiles_from_their_regions_of_interest_equal_the_full_frame,
+    regions::the_mask_is_needed_where_it_is_used_and_the_result_covers_the_source,
+    render::every_effect_equals_the_c_table_in_every_context_depth_and_component,
+    render::spaces_and_relations_to_alpha_equal_the_c_table,
+    render::the_alpha_of_the_source_stays_unless_it_is_processed,
+    render::lines_are_shown_alone_or_over_the_source,
+    render::guides_enter_in_the_general_context,
+    render::a_mask_decides_where_the_effect_shows,
+    render::identity_is_what_is_rendered,
+    render::a_missing_source_is_transparent_black_and_a_missing_output_a_failure,
+    render::the_threads_of_the_host_give_the_same_pixels,
+    render::twelve_renders_on_four_threads_are_the_same,
+    render::a_host_that_wants_to_stop_is_heard,
+    scale::half_size_looks_like_full_size_made_smaller,
+};
+
+fn main() -> ExitCode {
+    let mut trials = Trials::new();
+    for (name, test) in OF_THE_BINARY {
+        trials.add_plain(name, || test(&Lent::new()));
+    }
+    for effect in expected() {
+        for (name, test) in OF_EVERY_EFFECT {
+            trials.add(name, effect.node.id, move || test(&Lent::new(), effect));
+        }
+        trials.add("openfx::memory::an_8k_frame_is_rendered_in_4_gib", effect.node.id, move || {
+            memory::an_8k_frame_is_rendered_in_4_gib(&Lent::new(), effect);
+        });
+        // A minute and more for each effect.
+        trials.ignore_last();
+    }
+    trials.run()
+}

@@ -1,5 +1,5 @@
-//! The OpenFX face when things go wrong or go on for long: panics, bad calls, leaks. Alone in its process,
-//! since it measures and changes what belongs to all of it.
+//! The OpenFX face when things go wrong or go on for long: panics, bad calls, leaks. Each test has a process of
+//! its own, since it measures or changes what belongs to all of one.
 
 #![allow(unsafe_code, reason = "changing the environment, and calls that no host should make")]
 
@@ -8,22 +8,58 @@ mod allocations;
 
 use isophote_tests::library;
 use isophote_tests::ofx::effect::{Described, Wanted};
+use isophote_tests::ofx::host::Host;
 use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::picture::{Layout, Picture};
-use isophote_tests::ofx::{Behaviour, Binary, Host, faults};
+use isophote_tests::ofx::plugin::Binary;
+use isophote_tests::ofx::state::Behaviour;
+use isophote_tests::trials::Trials;
 use std::ffi::CStr;
+use std::process::{Command, ExitCode};
 use std::ptr::null_mut;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 const SIZE: i32 = 32;
 /// Allocations that the runner of the tests may make or free meanwhile.
 const MOST_OF_OTHERS: i64 = 100;
 
-/// The tests run one after the other, whatever their runner does: they measure the whole process.
-fn alone() -> MutexGuard<'static, ()> {
-    static ALONE: Mutex<()> = Mutex::new(());
-    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
+/// Names the test that this process is for.
+const TEST: &str = "ISOPHOTE_FAULT_TEST";
+
+/// Tests by their names.
+macro_rules! named {
+    ($($test:ident)*) => { [$((stringify!($test), $test)),*] };
+}
+
+const TESTS: [(&str, fn()); 6] = named! {
+    a_panic_becomes_a_status_and_the_host_goes_on
+    failures_are_shown_once_through_whatever_messages_there_are
+    bad_calls_are_answered
+    allocations_of_this_process_are_counted
+    a_thousand_instances_of_all_effects_leak_nothing
+    a_hundred_loads_leak_nothing
+};
+
+fn main() -> ExitCode {
+    if let Ok(name) = std::env::var(TEST) {
+        // A panic ends the process with a code that is not 0.
+        TESTS.iter().filter(|(known, _)| *known == name).for_each(|(_, test)| test());
+        return ExitCode::SUCCESS;
+    }
+    let mut trials = Trials::new();
+    for (name, _) in TESTS {
+        trials.add_plain(&format!("openfx_faults::{name}"), || in_a_process(name));
+    }
+    trials.run()
+}
+
+/// Runs a test in a process of its own: it measures or changes what belongs to all of one.
+fn in_a_process(name: &str) {
+    let program = std::env::current_exe().unwrap();
+    let run = Command::new(program).env(TEST, name).output().unwrap();
+    let printed = [run.stdout, run.stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).concat();
+    print!("{printed}");
+    assert!(run.status.success(), "{}\n{printed}", run.status);
 }
 
 fn picture(layout: Layout) -> Picture {
@@ -38,9 +74,7 @@ fn resident() -> i64 {
     text.split_whitespace().nth(1).and_then(|pages| pages.parse::<i64>().ok()).unwrap_or(0) * 4096
 }
 
-#[test]
 fn a_panic_becomes_a_status_and_the_host_goes_on() {
-    let _alone = alone();
     if !cfg!(debug_assertions) {
         return;
     }
@@ -49,7 +83,7 @@ fn a_panic_becomes_a_status_and_the_host_goes_on() {
     let (plugin, layout) = (binary.plugin("org.isophote.gaussian"), Layout::default());
     let ask = |action: Option<&CStr>| {
         const VARIABLE: &str = "ISOPHOTE_OFX_PANIC";
-        // SAFETY: the host keeps all other tests of this process waiting, and nothing else runs in it.
+        // SAFETY: no other test runs in this process, and no other thread reads the environment now.
         unsafe {
             match action {
                 Some(action) => {
@@ -74,12 +108,10 @@ fn a_panic_becomes_a_status_and_the_host_goes_on() {
     ask(None);
     assert_eq!(instance.try_render(layout, [SIZE; 2], &wanted).0, kOfxStatOK);
     drop(instance);
-    assert!(faults().is_empty(), "{:?}", faults());
+    host.no_faults();
 }
 
-#[test]
-fn failures_are_told_once_through_whatever_messages_there_are() {
-    let _alone = alone();
+fn failures_are_shown_once_through_whatever_messages_there_are() {
     if !cfg!(debug_assertions) {
         return;
     }
@@ -96,25 +128,24 @@ fn failures_are_told_once_through_whatever_messages_there_are() {
         (Behaviour { name: c"DaVinciResolve", ..usual.clone() }, 0, 0),
     ] {
         let host = Host::new(behaviour);
-        let told = || host.inner.messages.lock().unwrap().len();
+        let messages = || host.inner.messages.lock().unwrap().len();
         let instance = Described::new(&host, plugin).instance(kOfxImageEffectContextFilter);
         instance.connect("Source", picture(layout));
         let render = || instance.try_render(layout, [SIZE; 2], &Wanted::new([0, 0, SIZE, SIZE])).0;
-        // SAFETY: the host keeps all other tests of this process waiting, and nothing else runs in it.
+        // SAFETY: no other test runs in this process, and no other thread reads the environment now.
         unsafe { std::env::set_var(VARIABLE, plugin.identifier()) };
         assert_eq!([render(), render()], [kOfxStatErrMemory; 2]);
-        assert_eq!(told(), shown, "{:?}", host.inner.behaviour);
+        assert_eq!(messages(), shown, "{:?}", host.inner.behaviour);
         // SAFETY: as above.
         unsafe { std::env::remove_var(VARIABLE) };
         assert_eq!([render(), render()], [kOfxStatOK; 2]);
-        assert_eq!(told(), kept, "{:?}", host.inner.behaviour);
+        assert_eq!(messages(), kept, "{:?}", host.inner.behaviour);
+        drop(instance);
+        host.no_faults();
     }
-    assert!(faults().is_empty(), "{:?}", faults());
 }
 
-#[test]
 fn bad_calls_are_answered() {
-    let _alone = alone();
     let binary = Binary::open(library::path());
     let host = Host::new(Behaviour::default());
     for plugin in binary.plugins() {
@@ -181,9 +212,7 @@ fn assert_as_fast([first, last]: [Duration; 2]) {
     assert!(last < first * 3 + Duration::from_millis(2), "{first:?} at first, {last:?} at last");
 }
 
-#[test]
 fn allocations_of_this_process_are_counted() {
-    let _alone = alone();
     if !cfg!(all(target_os = "linux", target_env = "gnu")) {
         return;
     }
@@ -208,9 +237,7 @@ fn allocations_of_this_process_are_counted() {
 /// Instances of each effect that are created, rendered and destroyed: more than a thousand altogether.
 const INSTANCES: usize = 48;
 
-#[test]
 fn a_thousand_instances_of_all_effects_leak_nothing() {
-    let _alone = alone();
     let binary = Binary::open(library::path());
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();
@@ -227,12 +254,10 @@ fn a_thousand_instances_of_all_effects_leak_nothing() {
         all = [all[0] + times[0], all[1] + times[1]];
     }
     assert_as_fast(all);
-    assert!(faults().is_empty(), "{:?}", faults());
+    host.no_faults();
 }
 
-#[test]
 fn a_hundred_loads_leak_nothing() {
-    let _alone = alone();
     let layout = Layout::default();
     let source = picture(layout);
     let mut turn = 0;
@@ -255,7 +280,7 @@ fn a_hundred_loads_leak_nothing() {
         for plugin in binary.plugins() {
             assert_eq!(plugin.act(kOfxActionUnload, null_mut(), None, None), kOfxStatOK);
         }
+        host.no_faults();
     });
     assert_as_fast(times);
-    assert!(faults().is_empty(), "{:?}", faults());
 }

@@ -1,93 +1,16 @@
-//! Descriptors and instances of the test host, and how tests drive them.
+//! How tests drive a plugin's effects: described, instantiated, rendered.
 
+use super::handles::handle_of;
+use super::host::Host;
 use super::interface::*;
+use super::objects::{Clip, Effect, MAGIC, Param};
 use super::picture::{Layout, Picture};
+use super::plugin::Plugin;
 use super::properties::{Set, Value};
-use super::{Host, Inner, Plugin, handle_of};
-use std::ffi::{CStr, CString};
+use super::state::lock;
+use std::ffi::CStr;
+use std::sync::Mutex;
 use std::sync::atomic::Ordering;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
-pub(super) const MAGIC: u64 = 0x0ef_fec7;
-
-/// Locks, also after a test has failed.
-pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// A parameter, described or with a value.
-#[derive(Debug)]
-pub struct Param {
-    pub(super) magic: u64,
-    /// Its type.
-    pub kind: CString,
-    /// Its name.
-    pub name: CString,
-    /// Its properties.
-    pub set: Box<Set>,
-    pub(super) value: Mutex<Vec<Value>>,
-}
-
-/// A clip, described or with a picture.
-#[derive(Debug)]
-pub struct Clip {
-    pub(super) magic: u64,
-    /// Its name.
-    pub name: CString,
-    /// Its properties.
-    pub set: Box<Set>,
-    pub(super) picture: Mutex<Option<Picture>>,
-}
-
-/// A descriptor or an instance; its address is its handle.
-#[derive(Debug)]
-pub struct Effect {
-    pub(super) magic: u64,
-    /// The host.
-    pub host: Arc<Inner>,
-    /// Whether it may be rendered.
-    pub is_instance: bool,
-    /// Its properties.
-    pub set: Box<Set>,
-    pub(super) param_set: Box<Set>,
-    #[expect(clippy::vec_box, reason = "plugins hold their addresses as handles")]
-    pub(super) params: Mutex<Vec<Box<Param>>>,
-    #[expect(clippy::vec_box, reason = "plugins hold their addresses as handles")]
-    pub(super) clips: Mutex<Vec<Box<Clip>>>,
-}
-
-impl Effect {
-    pub(super) fn new(host: &Arc<Inner>, is_instance: bool) -> Box<Self> {
-        let what = if is_instance { "instance" } else { "descriptor" };
-        let mut effect = Box::new(Self {
-            magic: MAGIC,
-            host: Arc::clone(host),
-            is_instance,
-            set: Set::new(host, what),
-            param_set: Set::new(host, what),
-            params: Mutex::default(),
-            clips: Mutex::default(),
-        });
-        let owner = handle_of(&*effect) as usize;
-        effect.param_set = Set::owned_by(host, what, owner);
-        effect
-    }
-
-    /// What plugins are given.
-    pub fn handle(&self) -> Handle {
-        handle_of(self)
-    }
-
-    /// Looks at the parameters, in the order of their definition.
-    pub fn each_param(&self, mut look: impl FnMut(&Param)) {
-        lock(&self.params).iter().for_each(|param| look(param));
-    }
-
-    /// Names of the clips, in the order of their definition.
-    pub fn clip_names(&self) -> Vec<String> {
-        lock(&self.clips).iter().map(|c| c.name.to_string_lossy().into_owned()).collect()
-    }
-}
 
 /// A plugin's effect, loaded and described.
 #[derive(Debug)]
@@ -200,7 +123,7 @@ impl Drop for Instance<'_> {
     fn drop(&mut self) {
         let status = self.plugin.act(kOfxActionDestroyInstance, self.effect.handle(), None, None);
         if status != kOfxStatOK {
-            super::fault(format!("DestroyInstance: {status}"));
+            self.host.inner.fault(format!("DestroyInstance: {status}"));
         }
     }
 }

@@ -1,10 +1,11 @@
 //! Property sets of the test host.
 
+use super::handles::{Named, handle_of, owned};
 use super::interface::*;
-use super::{Inner, Named, fault, handle_of, owned};
+use super::shapes::{REQUIRED, shape};
+use super::state::{Inner, fault, lock};
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
-use std::ptr::null_mut;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 /// What a property holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,7 +80,7 @@ impl Set {
     }
 
     fn values(&self) -> MutexGuard<'_, Named<Vec<Value>>> {
-        self.values.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.values)
     }
 
     /// Sets a property as the host.
@@ -151,93 +152,6 @@ unsafe fn set<'a>(handle: Handle, what: &str) -> Option<&'a Set> {
     }
 }
 
-/// Type of a property ('i', 'd', 's' or 'p') and how many values it has at most.
-fn shape(name: &CStr) -> Option<(char, i32)> {
-    const ANY: i32 = 1 << 16;
-    let text = name.to_string_lossy();
-    if text.starts_with(ROI_PREFIX) {
-        return Some(('d', 4));
-    }
-    if name == PIXEL_ORDER || name == PREFERRED_COLOURSPACES_OF_SOURCE {
-        return Some(('s', 1));
-    }
-    if !STRINGS.iter().any(|(_, value)| *value == name) {
-        return None;
-    }
-    Some(match name {
-        n if n == kOfxPropVersion => ('i', ANY),
-        n if n == kOfxPropIcon => ('s', 2),
-        n if n == kOfxImagePropData => ('p', 1),
-        n if n == kOfxImagePropBounds || n == kOfxImagePropRegionOfDefinition => ('i', 4),
-        n if n == kOfxImageEffectPropRenderWindow => ('i', 4),
-        n if n == kOfxImageEffectPropRegionOfDefinition || n == kOfxImageEffectPropRegionOfInterest => {
-            ('d', 4)
-        }
-        n if n == kOfxImageEffectPropRenderScale => ('d', 2),
-        n if n == kOfxPropTime || n == kOfxImagePropPixelAspectRatio => ('d', 1),
-        n if n == kOfxParamPropIncrement => ('d', 4),
-        n if [
-            kOfxImageEffectPropSupportedContexts,
-            kOfxImageEffectPropSupportedPixelDepths,
-            kOfxImageEffectPropSupportedComponents,
-            kOfxParamPropChoiceOption,
-            kOfxParamPropPageChild,
-            kOfxImageEffectPropColourManagementAvailableConfigs,
-            kOfxImageEffectPropClipPreferencesSlaveParam,
-        ]
-        .contains(&n) =>
-        {
-            ('s', ANY)
-        }
-        // Of the parameter's own type.
-        n if [kOfxParamPropDefault, kOfxParamPropMin, kOfxParamPropMax].contains(&n) => ('?', 4),
-        n if [kOfxParamPropDisplayMin, kOfxParamPropDisplayMax].contains(&n) => ('?', 4),
-        n if [
-            kOfxImageEffectPluginPropSingleInstance,
-            kOfxImageEffectPluginPropHostFrameThreading,
-            kOfxImageEffectPluginPropFieldRenderTwiceAlways,
-            kOfxImageEffectPropSupportsMultiResolution,
-            kOfxImageEffectPropSupportsTiles,
-            kOfxImageEffectPropTemporalClipAccess,
-            kOfxImageEffectPropSupportsMultipleClipDepths,
-            kOfxImageEffectPropSupportsMultipleClipPARs,
-            kOfxImageEffectInstancePropSequentialRender,
-            kOfxImagePropRowBytes,
-            kOfxImageClipPropOptional,
-            kOfxImageClipPropIsMask,
-            kOfxImageClipPropConnected,
-            kOfxParamPropAnimates,
-            kOfxParamPropDigits,
-            kOfxParamPropGroupOpen,
-        ]
-        .contains(&n) =>
-        {
-            ('i', 1)
-        }
-        _ => ('s', 1),
-    })
-}
-
-/// Properties that no host can do without; all others may be refused.
-const REQUIRED: [&CStr; 16] = [
-    kOfxImageEffectPropSupportedContexts,
-    kOfxImageEffectPropSupportedPixelDepths,
-    kOfxImageEffectPropSupportedComponents,
-    kOfxImageEffectPropContext,
-    kOfxImageEffectPropPixelDepth,
-    kOfxImageEffectPropComponents,
-    kOfxImagePropData,
-    kOfxImagePropBounds,
-    kOfxImagePropRowBytes,
-    kOfxImageEffectPropRenderWindow,
-    kOfxImageEffectPropRegionOfInterest,
-    kOfxPropTime,
-    kOfxParamPropDefault,
-    kOfxParamPropChoiceOption,
-    kOfxPropName,
-    kOfxPropLabel,
-];
-
 fn is_refused(set: &Set, name: &CStr) -> bool {
     let behaviour = &set.host.behaviour;
     let roi = name.to_bytes().starts_with(ROI_PREFIX.as_bytes());
@@ -248,7 +162,7 @@ fn is_refused(set: &Set, name: &CStr) -> bool {
 
 /// Every call ends the life of texts given out before.
 fn bury(set: &Set) {
-    let mut lent = set.lent.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut lent = lock(&set.lent);
     if set.host.behaviour.strings_die {
         for text in lent.drain(..) {
             // Overwritten before it is freed, so that whoever still reads it reads nonsense.
@@ -266,15 +180,15 @@ unsafe fn put(handle: Handle, name: *const c_char, index: c_int, kind: char, val
     };
     bury(set);
     let Some((wanted, most)) = shape(&name) else {
-        fault(format!("{} sets {name:?}, which there is not", set.what));
+        set.host.fault(format!("{} sets {name:?}, which there is not", set.what));
         return kOfxStatErrUnknown;
     };
     if (wanted != kind && wanted != '?') || index < 0 {
-        fault(format!("{} sets {name:?}[{index}] as '{kind}' and not as '{wanted}'", set.what));
+        set.host.fault(format!("{} sets {name:?}[{index}] as '{kind}' and not as '{wanted}'", set.what));
         return kOfxStatErrValue;
     }
     if index >= most {
-        fault(format!("{} sets {name:?}[{index}], which has {most} values", set.what));
+        set.host.fault(format!("{} sets {name:?}[{index}], which has {most} values", set.what));
         return kOfxStatErrBadIndex;
     }
     if is_refused(set, &name) {
@@ -284,7 +198,7 @@ unsafe fn put(handle: Handle, name: *const c_char, index: c_int, kind: char, val
     let list = values.entry(name.clone()).or_default();
     let index = index as usize;
     if index > list.len() {
-        fault(format!("{} sets {name:?}[{index}] before those in front of it", set.what));
+        set.host.fault(format!("{} sets {name:?}[{index}] before those in front of it", set.what));
         return kOfxStatErrBadIndex;
     }
     if index == list.len() {
@@ -308,7 +222,7 @@ unsafe fn get<T>(
     };
     bury(set);
     if shape(&name).is_none() {
-        fault(format!("{} is asked for {name:?}, which there is not", set.what));
+        set.host.fault(format!("{} is asked for {name:?}, which there is not", set.what));
     }
     if is_refused(set, &name) {
         return kOfxStatErrUnknown;
@@ -328,7 +242,7 @@ unsafe fn get<T>(
             kOfxStatOK
         }
         None => {
-            fault(format!("{} is asked for {name:?} as another type", set.what));
+            set.host.fault(format!("{} is asked for {name:?} as another type", set.what));
             kOfxStatErrValue
         }
     }
@@ -374,7 +288,7 @@ unsafe extern "C" fn get_pointer(h: Handle, n: *const c_char, i: c_int, v: *mut 
 unsafe extern "C" fn get_string(h: Handle, n: *const c_char, i: c_int, v: *mut *mut c_char) -> OfxStatus {
     let take = |set: &Set, value: &Value| match value {
         Value::String(text) => {
-            let mut lent = set.lent.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut lent = lock(&set.lent);
             lent.push(text.clone());
             lent.last().map(|text| text.as_ptr().cast_mut())
         }
@@ -441,12 +355,4 @@ pub const SUITE: OfxPropertySuiteV1 = OfxPropertySuiteV1 {
 pub(crate) unsafe fn of<'a>(handle: Handle, what: &str) -> Option<&'a Set> {
     // SAFETY: as the caller promised.
     unsafe { set(handle, what) }
-}
-
-/// Nothing, for a place that a plugin asked to be filled.
-pub(crate) fn nothing(place: *mut Handle) {
-    if !place.is_null() {
-        // SAFETY: the plugin gave a place for a handle.
-        unsafe { place.write(null_mut()) };
-    }
 }

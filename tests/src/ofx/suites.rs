@@ -1,9 +1,10 @@
 //! The functions of the test host, and the library of variadic ones that is compiled from C.
 
-use super::effect::{Clip, Effect, MAGIC, Param, lock};
+use super::handles::{handle_of, nothing, owned};
 use super::interface::*;
+use super::objects::{Clip, Effect, MAGIC, Param};
 use super::properties::{self, Set, Value};
-use super::{Behaviour, fault, owned};
+use super::state::{self, Behaviour, Suite, fault, lock};
 use std::cell::Cell;
 use std::ffi::{c_char, c_int, c_uint, c_void};
 use std::process::Command;
@@ -58,6 +59,25 @@ impl Suites {
             },
         }
     }
+
+    /// Those that the host gives out. The addresses hold while `self` is where it is.
+    pub(super) fn list(&self, behaviour: &Behaviour) -> Vec<Suite> {
+        let suite = |name, version, address| Suite { name, version, address };
+        let mut list = vec![
+            suite(kOfxPropertySuite, 1, (&raw const self.properties).addr()),
+            suite(kOfxImageEffectSuite, 1, (&raw const self.effects).addr()),
+            suite(kOfxParameterSuite, 1, (&raw const self.params).addr()),
+            suite(kOfxMessageSuite, 1, (&raw const self.first_messages).addr()),
+        ];
+        if behaviour.message_version >= 2 {
+            list.push(suite(kOfxMessageSuite, 2, (&raw const self.messages).addr()));
+        }
+        if behaviour.processors > 0 || behaviour.null_functions {
+            list.push(suite(kOfxMultiThreadSuite, 1, (&raw const self.threads).addr()));
+        }
+        list.retain(|suite| !behaviour.without.contains(&suite.name));
+        list
+    }
 }
 
 pub(super) unsafe extern "C" fn fetch(host: Handle, name: *const c_char, version: c_int) -> *const c_void {
@@ -66,24 +86,9 @@ pub(super) unsafe extern "C" fn fetch(host: Handle, name: *const c_char, version
     else {
         return std::ptr::null();
     };
-    let (behaviour, suites) = (&set.host.behaviour, &set.host.suites);
-    PROCESSORS.store(behaviour.processors, Ordering::SeqCst);
-    if behaviour.without.contains(&name.as_c_str()) {
-        return std::ptr::null();
-    }
-    match (name.as_c_str(), version) {
-        (n, 1) if n == kOfxPropertySuite => (&raw const suites.properties).cast(),
-        (n, 1) if n == kOfxImageEffectSuite => (&raw const suites.effects).cast(),
-        (n, 1) if n == kOfxParameterSuite => (&raw const suites.params).cast(),
-        (n, 1) if n == kOfxMultiThreadSuite && (behaviour.processors > 0 || behaviour.null_functions) => {
-            (&raw const suites.threads).cast()
-        }
-        (n, 2) if n == kOfxMessageSuite && behaviour.message_version >= 2 => {
-            (&raw const suites.messages).cast()
-        }
-        (n, 1) if n == kOfxMessageSuite => (&raw const suites.first_messages).cast(),
-        _ => std::ptr::null(),
-    }
+    let suites = set.host.suites.get().map_or(&[][..], Vec::as_slice);
+    let found = suites.iter().find(|suite| suite.name == name.as_c_str() && suite.version == version);
+    found.map_or(std::ptr::null(), |suite| suite.address as *const c_void)
 }
 
 // ----- variadic functions -----
@@ -174,7 +179,7 @@ unsafe extern "C" fn said(handle: *mut c_void, kind: *const c_char, text: *const
     // SAFETY: the C function gives strings with a closing zero.
     let (kind, text) = unsafe { (owned(kind), owned(text)) };
     if kind.as_deref() != Some(kOfxMessageError) {
-        fault(format!("{kind:?} is no kind of message"));
+        effect.host.fault(format!("{kind:?} is no kind of message"));
     }
     lock(&effect.host.messages).push(text.unwrap_or_default().to_string_lossy().into_owned());
     kOfxStatOK
@@ -184,7 +189,7 @@ unsafe extern "C" fn clear_message(effect: Handle) -> OfxStatus {
     let effect = thing!(effect, Effect, "clearPersistentMessage");
     let mut messages = lock(&effect.host.messages);
     if messages.is_empty() {
-        fault("clearPersistentMessage without a message");
+        effect.host.fault("clearPersistentMessage without a message");
     }
     messages.clear();
     kOfxStatOK
@@ -198,17 +203,17 @@ unsafe extern "C" fn param_define(
     name: *const c_char,
     place: *mut Handle,
 ) -> OfxStatus {
-    properties::nothing(place);
+    nothing(place);
     // SAFETY: the plugin's arguments, as the standard has them.
     let (set, kind, name) = unsafe { (properties::of(set, "paramDefine"), owned(kind), owned(name)) };
     let (Some(set), Some(kind), Some(name)) = (set, kind, name) else { return kOfxStatErrBadHandle };
     let effect = thing!((set.owner as Handle), Effect, "paramDefine");
     if effect.is_instance {
-        fault("paramDefine on an instance");
+        effect.host.fault("paramDefine on an instance");
     }
     let mut params = lock(&effect.params);
     if params.iter().any(|p| p.name == name) {
-        fault(format!("two parameters are named {name:?}"));
+        effect.host.fault(format!("two parameters are named {name:?}"));
         return kOfxStatErrExists;
     }
     let set = Set::new(&effect.host, "descriptor");
@@ -227,8 +232,8 @@ unsafe extern "C" fn param_handle(
     place: *mut Handle,
     properties_place: *mut Handle,
 ) -> OfxStatus {
-    properties::nothing(place);
-    properties::nothing(properties_place);
+    nothing(place);
+    nothing(properties_place);
     // SAFETY: as above.
     let (Some(set), Some(name)) = (unsafe { properties::of(set, "paramGetHandle") }, unsafe { owned(name) })
     else {
@@ -240,7 +245,7 @@ unsafe extern "C" fn param_handle(
     // SAFETY: as above.
     unsafe {
         if let Some(place) = place.as_mut() {
-            *place = super::handle_of(&**param);
+            *place = handle_of(&**param);
         }
         if let Some(place) = properties_place.as_mut() {
             *place = param.set.handle();
@@ -287,12 +292,12 @@ unsafe extern "C" fn effect_params(effect: Handle, place: *mut Handle) -> OfxSta
 }
 
 unsafe extern "C" fn clip_define(effect: Handle, name: *const c_char, place: *mut Handle) -> OfxStatus {
-    properties::nothing(place);
+    nothing(place);
     let effect = thing!(effect, Effect, "clipDefine");
     // SAFETY: as above.
     let Some(name) = (unsafe { owned(name) }) else { return kOfxStatErrBadHandle };
     if effect.is_instance {
-        fault("clipDefine on an instance");
+        effect.host.fault("clipDefine on an instance");
     }
     let set = Set::new(&effect.host, "descriptor");
     // SAFETY: as above.
@@ -309,8 +314,8 @@ unsafe extern "C" fn clip_handle(
     place: *mut Handle,
     properties_place: *mut Handle,
 ) -> OfxStatus {
-    properties::nothing(place);
-    properties::nothing(properties_place);
+    nothing(place);
+    nothing(properties_place);
     let effect = thing!(effect, Effect, "clipGetHandle");
     // SAFETY: as above.
     let Some(name) = (unsafe { owned(name) }) else { return kOfxStatErrBadHandle };
@@ -322,7 +327,7 @@ unsafe extern "C" fn clip_handle(
     // SAFETY: as above.
     unsafe {
         if let Some(place) = place.as_mut() {
-            *place = super::handle_of(&**clip);
+            *place = handle_of(&**clip);
         }
         if let Some(place) = properties_place.as_mut() {
             *place = clip.set.handle();
@@ -337,7 +342,7 @@ unsafe extern "C" fn clip_image(
     _: *const OfxRectD,
     place: *mut Handle,
 ) -> OfxStatus {
-    properties::nothing(place);
+    nothing(place);
     let clip = thing!(clip, Clip, "clipGetImage");
     let mut picture = lock(&clip.picture);
     let Some(picture) = picture.as_mut() else { return kOfxStatFailed };
@@ -356,7 +361,7 @@ unsafe extern "C" fn clip_release(image: Handle) -> OfxStatus {
         return kOfxStatErrBadHandle;
     };
     if set.what != "image" {
-        fault("clipReleaseImage of what is no image");
+        set.host.fault("clipReleaseImage of what is no image");
         return kOfxStatErrBadHandle;
     }
     set.host.lent.fetch_sub(1, Ordering::SeqCst);
@@ -398,11 +403,6 @@ const EFFECTS: OfxImageEffectSuiteV1 = OfxImageEffectSuiteV1 {
 
 // ----- threads -----
 
-/// The suite's functions are not told which host is meant.
-static PROCESSORS: std::sync::atomic::AtomicU32 = std::sync::atomic::AtomicU32::new(0);
-/// Runs of the suite, in all hosts.
-pub static RUNS: std::sync::atomic::AtomicU32 = std::sync::atomic::AtomicU32::new(0);
-
 thread_local! {
     static SPAWNED: Cell<bool> = const { Cell::new(false) };
 }
@@ -422,13 +422,18 @@ unsafe extern "C" fn multi_thread(
         fault("multiThread is entered from a thread that it started");
         return kOfxStatErrExists;
     }
-    RUNS.fetch_add(1, Ordering::SeqCst);
+    // The functions of this suite are not told which host is meant.
+    let host = state::current();
+    if let Some(host) = &host {
+        host.runs.fetch_add(1, Ordering::SeqCst);
+    }
     let argument = Argument(argument);
     std::thread::scope(|scope| {
         for index in 0..threads {
-            let argument = &argument;
+            let (argument, host) = (&argument, &host);
             scope.spawn(move || {
                 SPAWNED.set(true);
+                host.iter().for_each(state::enter);
                 // SAFETY: the plugin's function, called as the standard has it.
                 unsafe { work(index, threads, argument.0) };
             });
@@ -439,7 +444,7 @@ unsafe extern "C" fn multi_thread(
 
 unsafe extern "C" fn processors(place: *mut c_uint) -> OfxStatus {
     // SAFETY: the plugin gave a place.
-    unsafe { place.write(PROCESSORS.load(Ordering::SeqCst).max(1)) };
+    unsafe { place.write(state::current().map_or(1, |host| host.behaviour.processors.max(1))) };
     kOfxStatOK
 }
 

@@ -1,59 +1,57 @@
 //! Hosts as they are: memory in every layout, missing properties and functions, forgotten scales, fields.
 
 use crate::reference::*;
-use crate::render::{plain, source};
 use isophote_tests::ofx::effect::{Described, Wanted};
+use isophote_tests::ofx::host::Host;
 use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::picture::{Layout, Picture};
-use isophote_tests::ofx::{Behaviour, Host};
+use isophote_tests::ofx::plugin::Binary;
+use isophote_tests::ofx::state::Behaviour;
 use std::sync::atomic::Ordering;
 
 const SIZE: [i32; 2] = [WIDTH, HEIGHT];
 
-#[test]
-fn rows_may_run_downwards_be_padded_and_begin_anywhere() {
+pub fn rows_may_run_downwards_be_padded_and_begin_anywhere(binary: &Binary, effect: Expected) {
     let host = Host::new(Behaviour::default());
-    for effect in expected() {
-        let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextFilter);
-        plain(&instance);
-        for depth in [kOfxBitDepthFloat, kOfxBitDepthByte] {
-            let usual = Layout { depth, ..Layout::default() };
+    let instance = Described::new(&host, effect.plugin(binary)).instance(kOfxImageEffectContextFilter);
+    plain(&instance);
+    for depth in [kOfxBitDepthFloat, kOfxBitDepthByte] {
+        let usual = Layout { depth, ..Layout::default() };
+        instance.connect("Source", source(usual, false));
+        let wanted = instance.render(usual, SIZE).packed();
+        for layout in [
+            Layout { negative: true, ..usual },
+            // Rows at addresses that no float may have.
+            Layout { padding: 7, ..usual },
+            Layout { origin: [-31, 17], negative: true, padding: 3, ..usual },
+            Layout { blue_first: true, ..usual },
+        ] {
+            instance.connect("Source", source(layout, false));
+            let got = instance.render(layout, SIZE).packed();
+            assert!(got == wanted, "{} {layout:?}", effect.plugin(binary).identifier());
+            // Input and output need not be alike.
             instance.connect("Source", source(usual, false));
-            let wanted = instance.render(usual, SIZE).packed();
-            for layout in [
-                Layout { negative: true, ..usual },
-                // Rows at addresses that no float may have.
-                Layout { padding: 7, ..usual },
-                Layout { origin: [-31, 17], negative: true, padding: 3, ..usual },
-                Layout { blue_first: true, ..usual },
-            ] {
-                instance.connect("Source", source(layout, false));
-                let got = instance.render(layout, SIZE).packed();
-                assert!(got == wanted, "{} {layout:?}", effect.plugin.identifier());
-                // Input and output need not be alike.
-                instance.connect("Source", source(usual, false));
-                let mixed = Layout { origin: [0, 0], ..layout };
-                assert!(instance.render(mixed, SIZE).packed() == wanted);
-            }
+            let mixed = Layout { origin: [0, 0], ..layout };
+            assert!(instance.render(mixed, SIZE).packed() == wanted);
         }
     }
-    no_faults();
+    host.no_faults();
 }
 
-#[test]
-fn hosts_that_lack_what_can_be_lacked_get_their_pictures() {
+pub fn hosts_that_lack_what_can_be_lacked_get_their_pictures(binary: &Binary, effect: Expected) {
     let layout = Layout { alpha: None, ..Layout::default() };
     let render = |behaviour: Behaviour| {
         let host = Host::new(behaviour);
-        let mut all = Vec::new();
-        for effect in expected() {
-            let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextGeneral);
+        let picture = {
+            let described = Described::new(&host, effect.plugin(binary));
+            let instance = described.instance(kOfxImageEffectContextGeneral);
             instance.set("working_space", 1);
             instance.connect("Source", source(layout, true));
-            all.push(instance.render(layout, SIZE).packed());
-        }
+            instance.render(layout, SIZE).packed()
+        };
         assert_eq!(host.inner.lent.load(Ordering::SeqCst), 0);
-        all
+        host.no_faults();
+        picture
     };
     let wanted = render(Behaviour::default());
     let hosts = [
@@ -67,14 +65,12 @@ fn hosts_that_lack_what_can_be_lacked_get_their_pictures() {
         Behaviour { without: vec![kOfxMultiThreadSuite, kOfxMessageSuite], ..Behaviour::default() },
     ];
     for behaviour in hosts {
-        let told = format!("{behaviour:?}");
-        assert!(render(behaviour) == wanted, "{told}");
+        let shown = format!("{behaviour:?}");
+        assert!(render(behaviour) == wanted, "{shown}");
     }
-    no_faults();
 }
 
-#[test]
-fn a_scale_counts_wherever_the_host_says_it() {
+pub fn a_scale_counts_wherever_the_host_says_it(binary: &Binary) {
     let identifier = "org.isophote.gaussian";
     let picture = |layout| {
         let packed = packed(&scene(WIDTH, HEIGHT, true), &layout);
@@ -84,13 +80,14 @@ fn a_scale_counts_wherever_the_host_says_it() {
     let render = |tiles, scale: f64, regions: f64, claimed_scale: f64| {
         let host = Host::new(Behaviour { tiles, ..Behaviour::default() });
         let instance =
-            Described::new(&host, binary().plugin(identifier)).instance(kOfxImageEffectContextFilter);
+            Described::new(&host, binary.plugin(identifier)).instance(kOfxImageEffectContextFilter);
         let layout = Layout { scale: regions, claimed_scale, ..Layout::default() };
         instance.set("sigma", 4.0);
         instance.connect("Source", picture(layout));
         let wanted = Wanted { scale, ..Wanted::new([0, 0, WIDTH, HEIGHT]) };
         let (status, picture) = instance.try_render(layout, SIZE, &wanted);
         assert_eq!(status, kOfxStatOK);
+        host.no_faults();
         values(&picture.packed(), &layout)
     };
     let apart = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
@@ -107,59 +104,52 @@ fn a_scale_counts_wherever_the_host_says_it() {
             apart(&got, &quarter)
         );
     }
-    no_faults();
 }
 
-#[test]
-fn fields_are_rendered_from_their_own_lines() {
+pub fn fields_are_rendered_from_their_own_lines(binary: &Binary, effect: Expected) {
     let host = Host::new(Behaviour::default());
-    for effect in expected() {
-        let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextFilter);
-        plain(&instance);
-        let both = Layout { field: kOfxImageFieldBoth, ..Layout::default() };
-        let rows: Vec<Vec<f32>> =
-            scene(WIDTH, HEIGHT, true).chunks_exact(WIDTH as usize * 4).map(<[f32]>::to_vec).collect();
-        for (field, parity) in [(kOfxImageFieldLower, 0), (kOfxImageFieldUpper, 1)] {
-            // Rows count from the bottom; a line of the other field repeats one of this.
-            let doubled: Vec<f32> = (0..HEIGHT)
-                .flat_map(|row| {
-                    let up = HEIGHT - 1 - row;
-                    let line = if up % 2 == parity {
-                        up
-                    } else if parity == 0 {
-                        up - 1
-                    } else {
-                        up + 1
-                    };
-                    let line = if line >= HEIGHT { up - 1 } else { line };
-                    rows[(HEIGHT - 1 - line) as usize].clone()
-                })
-                .collect();
-            instance.connect("Source", Picture::packed_in(both, WIDTH, HEIGHT, &packed(&doubled, &both)));
-            let whole = instance.render(both, SIZE);
-            let wanted = Wanted { field, ..Wanted::new([0, 0, WIDTH, HEIGHT]) };
-            // An interlaced picture and one of doubled lines come out alike.
-            for lines in [rows.concat(), doubled] {
-                instance.connect("Source", Picture::packed_in(both, WIDTH, HEIGHT, &packed(&lines, &both)));
-                let (status, got) = instance.try_render(both, SIZE, &wanted);
-                assert_eq!(status, kOfxStatOK);
-                for y in 0..HEIGHT {
-                    let row = [0, y, WIDTH, y + 1];
-                    if y % 2 == parity {
-                        assert!(
-                            got.crop(row).packed() == whole.crop(row).packed(),
-                            "{}",
-                            effect.plugin.identifier()
-                        );
-                    } else {
-                        assert!(
-                            got.crop(row).packed().iter().all(|b| *b == 0xa5),
-                            "a row of the other field"
-                        );
-                    }
+    let instance = Described::new(&host, effect.plugin(binary)).instance(kOfxImageEffectContextFilter);
+    plain(&instance);
+    let both = Layout { field: kOfxImageFieldBoth, ..Layout::default() };
+    let rows: Vec<Vec<f32>> =
+        scene(WIDTH, HEIGHT, true).chunks_exact(WIDTH as usize * 4).map(<[f32]>::to_vec).collect();
+    for (field, parity) in [(kOfxImageFieldLower, 0), (kOfxImageFieldUpper, 1)] {
+        // Rows count from the bottom; a line of the other field repeats one of this.
+        let doubled: Vec<f32> = (0..HEIGHT)
+            .flat_map(|row| {
+                let up = HEIGHT - 1 - row;
+                let line = if up % 2 == parity {
+                    up
+                } else if parity == 0 {
+                    up - 1
+                } else {
+                    up + 1
+                };
+                let line = if line >= HEIGHT { up - 1 } else { line };
+                rows[(HEIGHT - 1 - line) as usize].clone()
+            })
+            .collect();
+        instance.connect("Source", Picture::packed_in(both, WIDTH, HEIGHT, &packed(&doubled, &both)));
+        let whole = instance.render(both, SIZE);
+        let wanted = Wanted { field, ..Wanted::new([0, 0, WIDTH, HEIGHT]) };
+        // An interlaced picture and one of doubled lines come out alike.
+        for lines in [rows.concat(), doubled] {
+            instance.connect("Source", Picture::packed_in(both, WIDTH, HEIGHT, &packed(&lines, &both)));
+            let (status, got) = instance.try_render(both, SIZE, &wanted);
+            assert_eq!(status, kOfxStatOK);
+            for y in 0..HEIGHT {
+                let row = [0, y, WIDTH, y + 1];
+                if y % 2 == parity {
+                    assert!(
+                        got.crop(row).packed() == whole.crop(row).packed(),
+                        "{}",
+                        effect.plugin(binary).identifier()
+                    );
+                } else {
+                    assert!(got.crop(row).packed().iter().all(|b| *b == 0xa5), "a row of the other field");
                 }
             }
         }
     }
-    no_faults();
+    host.no_faults();
 }

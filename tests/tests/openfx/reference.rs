@@ -4,21 +4,16 @@ use isophote::graph::GraphInput;
 use isophote::spec::{ImageKind, NodeSpec};
 use isophote::{ColourSpace, Graph};
 use isophote_engine::pixels::Sample;
-use isophote_tests::cases;
-use isophote_tests::library::{self, Loaded, contract::*, text};
-use isophote_tests::ofx::picture::Layout;
-use isophote_tests::ofx::{Binary, Plugin};
+use isophote_tests::library::{Loaded, contract::*, text};
+use isophote_tests::ofx::effect::Instance;
+use isophote_tests::ofx::picture::{Layout, Picture};
+use isophote_tests::ofx::plugin::{Binary, Plugin};
 use std::ffi::CString;
 use std::ptr::{null, null_mut};
 use std::sync::OnceLock;
 
 pub const WIDTH: i32 = 41;
 pub const HEIGHT: i32 = 29;
-
-pub fn binary() -> &'static Binary {
-    static BINARY: OnceLock<Binary> = OnceLock::new();
-    BINARY.get_or_init(|| Binary::open(library::path()))
-}
 
 fn table() -> &'static Loaded {
     static LOADED: OnceLock<Loaded> = OnceLock::new();
@@ -29,10 +24,9 @@ fn table() -> &'static Loaded {
 #[derive(Clone, Copy)]
 pub struct Expected {
     pub node: &'static NodeSpec,
-    pub plugin: Plugin,
 }
 
-/// The effects of the registry, or of the nodes that `ISOPHOTE_NODES` names.
+/// The effects of the registry.
 pub fn expected() -> Vec<Expected> {
     let colour_alone = |n: &NodeSpec| {
         n.inputs.iter().any(|p| p.kind == ImageKind::Color)
@@ -42,8 +36,8 @@ pub fn expected() -> Vec<Expected> {
         n.id == "tensor_view"
             || (matches!(n.output.kind, ImageKind::Color | ImageKind::Scalar) && colour_alone(n))
     };
-    let nodes = cases::nodes().into_iter().filter(is_effect);
-    nodes.map(|node| Expected { node, plugin: binary().plugin(&identifier(node)) }).collect()
+    let nodes = isophote::registry::nodes().iter().copied().filter(is_effect);
+    nodes.map(|node| Expected { node }).collect()
 }
 
 pub fn identifier(node: &NodeSpec) -> String {
@@ -52,6 +46,11 @@ pub fn identifier(node: &NodeSpec) -> String {
 }
 
 impl Expected {
+    /// The plugin of the effect.
+    pub fn plugin(&self, binary: &Binary) -> Plugin {
+        binary.plugin(&identifier(self.node))
+    }
+
     pub fn is_lines(&self) -> bool {
         self.node.output.kind == ImageKind::Scalar
     }
@@ -114,53 +113,56 @@ pub struct Through<'a> {
 }
 
 impl Through<'_> {
+    /// Runs the graph on `inputs`, each packed pixels by the name of their port.
     pub fn c(&self, inputs: &[(&str, &[u8], Layout)], layout: Layout) -> Vec<u8> {
-        let api = table().api;
-        let json = CString::new(self.graph.to_json().unwrap()).unwrap();
-        let mut graph = 0;
-        let [width, height] = self.size.map(|n| n as u32);
-        let request = IsophoteRequest {
-            width,
-            height,
-            scale: self.scale,
-            space: self.space as u32,
-            alpha: if self.premultiplied { ISOPHOTE_ALPHA_PREMULTIPLIED } else { ISOPHOTE_ALPHA_STRAIGHT },
-            guides: 0,
-        };
-        let sample = |layout: &Layout| match layout.sample() {
-            Sample::U8 => ISOPHOTE_SAMPLE_U8,
-            Sample::U16 => ISOPHOTE_SAMPLE_U16,
-            Sample::F16 => ISOPHOTE_SAMPLE_F16,
-            Sample::F32 => ISOPHOTE_SAMPLE_F32,
-        };
         let names: Vec<CString> = inputs.iter().map(|(name, ..)| CString::new(*name).unwrap()).collect();
         let images: Vec<IsophoteInput> = inputs
             .iter()
             .zip(&names)
             .map(|((_, bytes, layout), name)| IsophoteInput {
                 name: name.as_ptr(),
-                image: IsophoteImage {
-                    data: bytes.as_ptr().cast(),
-                    row_stride: width as isize * layout.pixel() as isize,
-                    sample: sample(layout),
-                    channels: layout.channels() as u32,
-                    width,
-                    height,
-                    x: 0,
-                    y: 0,
-                },
+                image: self.image(bytes.as_ptr(), layout),
             })
             .collect();
-        let mut out = vec![0_u8; (width * height) as usize * layout.pixel()];
-        let target = IsophoteTarget {
-            data: out.as_mut_ptr().cast(),
+        let mut out = vec![0_u8; (self.size[0] * self.size[1]) as usize * layout.pixel()];
+        let IsophoteImage { row_stride, sample, channels, width, height, x, y, .. } =
+            self.image(null(), &layout);
+        let data = out.as_mut_ptr().cast();
+        self.process(&images, &IsophoteTarget { data, row_stride, sample, channels, width, height, x, y });
+        out
+    }
+
+    fn image(&self, data: *const u8, layout: &Layout) -> IsophoteImage {
+        let [width, height] = self.size.map(|n| n as u32);
+        let sample = match layout.sample() {
+            Sample::U8 => ISOPHOTE_SAMPLE_U8,
+            Sample::U16 => ISOPHOTE_SAMPLE_U16,
+            Sample::F16 => ISOPHOTE_SAMPLE_F16,
+            Sample::F32 => ISOPHOTE_SAMPLE_F32,
+        };
+        IsophoteImage {
+            data: data.cast(),
             row_stride: width as isize * layout.pixel() as isize,
-            sample: sample(&layout),
+            sample,
             channels: layout.channels() as u32,
             width,
             height,
             x: 0,
             y: 0,
+        }
+    }
+
+    fn process(&self, images: &[IsophoteInput], target: &IsophoteTarget) {
+        let api = table().api;
+        let json = CString::new(self.graph.to_json().unwrap()).unwrap();
+        let mut graph = 0;
+        let request = IsophoteRequest {
+            width: self.size[0] as u32,
+            height: self.size[1] as u32,
+            scale: self.scale,
+            space: self.space as u32,
+            alpha: if self.premultiplied { ISOPHOTE_ALPHA_PREMULTIPLIED } else { ISOPHOTE_ALPHA_STRAIGHT },
+            guides: 0,
         };
         // SAFETY: text with a closing zero, images of the sizes they name, and places for the answers.
         unsafe {
@@ -172,7 +174,7 @@ impl Through<'_> {
                 images.as_ptr(),
                 images.len() as u32,
                 null(),
-                &raw const target,
+                &raw const *target,
                 null(),
                 null_mut(),
             );
@@ -180,7 +182,6 @@ impl Through<'_> {
             assert_eq!(status, ISOPHOTE_OK, "{said}");
             assert_eq!((api.graph_destroy)(graph), ISOPHOTE_OK);
         }
-        out
     }
 }
 
@@ -205,8 +206,13 @@ pub fn difference(a: &[u8], b: &[u8], layout: &Layout) -> f32 {
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
 }
 
-/// Fails when the host noticed that a plugin broke a rule.
-pub fn no_faults() {
-    let faults = isophote_tests::ofx::faults();
-    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+/// The picture of the tests in a layout.
+pub fn source(layout: Layout, opaque: bool) -> Picture {
+    Picture::packed_in(layout, WIDTH, HEIGHT, &packed(&scene(WIDTH, HEIGHT, opaque), &layout))
+}
+
+/// Working space sRGB, alpha filtered too: what the C table does.
+pub fn plain(instance: &Instance<'_>) {
+    instance.set("working_space", 1);
+    instance.set("process_alpha", 1);
 }

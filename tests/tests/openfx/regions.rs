@@ -1,13 +1,14 @@
 //! Tiles against full frames, and regions of interest against the plan's support.
 
 use crate::reference::*;
-use crate::render::plain;
 use isophote::{Planned, Request};
 use isophote_engine::Rect;
 use isophote_tests::ofx::effect::{Described, Wanted};
+use isophote_tests::ofx::host::Host;
 use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::picture::{Layout, Picture};
-use isophote_tests::ofx::{Behaviour, Host};
+use isophote_tests::ofx::plugin::Binary;
+use isophote_tests::ofx::state::Behaviour;
 use std::ffi::CString;
 
 const SIZE: [i32; 2] = [97, 71];
@@ -16,58 +17,54 @@ fn source(layout: Layout) -> Picture {
     Picture::packed_in(layout, SIZE[0], SIZE[1], &packed(&scene(SIZE[0], SIZE[1], false), &layout))
 }
 
-#[test]
-fn tiles_from_their_regions_of_interest_equal_the_full_frame() {
+pub fn tiles_from_their_regions_of_interest_equal_the_full_frame(binary: &Binary, effect: Expected) {
     let host = Host::new(Behaviour::default());
     let name = CString::new(format!("{ROI_PREFIX}Source")).unwrap();
-    for effect in expected() {
-        let described = Described::new(&host, effect.plugin);
-        let declared = described.descriptor.set.int(kOfxImageEffectPropSupportsTiles).unwrap();
-        let support = Planned::new(&effect.graph(false), Request::new(256, 256)).unwrap().plan().support();
-        let local = support != isophote_engine::Support::Global;
-        assert_eq!(declared, i32::from(local), "{}", effect.plugin.identifier());
-        for (origin, aspect) in [([0, 0], 1.0), ([-13, 7], 1.0667), ([4, -3], 2.0)] {
-            let layout = Layout { origin, aspect, padding: 6, ..Layout::default() };
-            let instance = described.instance(kOfxImageEffectContextFilter);
-            plain(&instance);
-            let source = source(layout);
+    let described = Described::new(&host, effect.plugin(binary));
+    let declared = described.descriptor.set.int(kOfxImageEffectPropSupportsTiles).unwrap();
+    let support = Planned::new(&effect.graph(false), Request::new(256, 256)).unwrap().plan().support();
+    let local = support != isophote_engine::Support::Global;
+    assert_eq!(declared, i32::from(local), "{}", effect.plugin(binary).identifier());
+    for (origin, aspect) in [([0, 0], 1.0), ([-13, 7], 1.0667), ([4, -3], 2.0)] {
+        let layout = Layout { origin, aspect, padding: 6, ..Layout::default() };
+        let instance = described.instance(kOfxImageEffectContextFilter);
+        plain(&instance);
+        let source = source(layout);
+        instance.connect("Source", source.clone());
+        let full = instance.render(layout, SIZE);
+        let [x, y] = origin;
+        for window in [[0, 0, 31, 20], [31, 20, 64, 71], [40, 33, 41, 34], [90, 60, 97, 71]] {
+            let window = [window[0] + x, window[1] + y, window[2] + x, window[3] + y];
+            let [x1, y1, x2, y2] = window.map(f64::from);
+            let roi = instance.regions([x1 * aspect, y1, x2 * aspect, y2], 1.0).expect("a region");
+            let roi = roi.numbers(&name);
+            let pixels = [roi[0] / aspect, roi[1], roi[2] / aspect, roi[3]].map(|v| v.round() as i32);
+            let region = Rect {
+                x0: window[0] - x,
+                x1: window[2] - x,
+                y0: SIZE[1] - (window[3] - y),
+                y1: SIZE[1] - (window[1] - y),
+            };
+            let needed = needed(&effect, region, aspect);
+            let wanted = [needed.x0 + x, SIZE[1] - needed.y1 + y, needed.x1 + x, SIZE[1] - needed.y0 + y];
+            assert_eq!(pixels, wanted, "{}", effect.plugin(binary).identifier());
+            instance.connect("Source", source.crop(pixels));
+            let (status, tile) = instance.try_render(layout, SIZE, &Wanted::new(window));
+            assert_eq!(status, kOfxStatOK);
+            let worst = difference(&tile.crop(window).packed(), &full.crop(window).packed(), &layout);
+            assert_eq!(worst, 0.0, "{} at {window:?}", effect.plugin(binary).identifier());
             instance.connect("Source", source.clone());
-            let full = instance.render(layout, SIZE);
-            let [x, y] = origin;
-            for window in [[0, 0, 31, 20], [31, 20, 64, 71], [40, 33, 41, 34], [90, 60, 97, 71]] {
-                let window = [window[0] + x, window[1] + y, window[2] + x, window[3] + y];
-                let [x1, y1, x2, y2] = window.map(f64::from);
-                let roi = instance.regions([x1 * aspect, y1, x2 * aspect, y2], 1.0).expect("a region");
-                let roi = roi.numbers(&name);
-                let pixels = [roi[0] / aspect, roi[1], roi[2] / aspect, roi[3]].map(|v| v.round() as i32);
-                let region = Rect {
-                    x0: window[0] - x,
-                    x1: window[2] - x,
-                    y0: SIZE[1] - (window[3] - y),
-                    y1: SIZE[1] - (window[1] - y),
-                };
-                let needed = needed(&effect, region, aspect);
-                let wanted = [needed.x0 + x, SIZE[1] - needed.y1 + y, needed.x1 + x, SIZE[1] - needed.y0 + y];
-                assert_eq!(pixels, wanted, "{}", effect.plugin.identifier());
-                instance.connect("Source", source.crop(pixels));
-                let (status, tile) = instance.try_render(layout, SIZE, &Wanted::new(window));
-                assert_eq!(status, kOfxStatOK);
-                let worst = difference(&tile.crop(window).packed(), &full.crop(window).packed(), &layout);
-                assert_eq!(worst, 0.0, "{} at {window:?}", effect.plugin.identifier());
-                instance.connect("Source", source.clone());
-            }
         }
     }
-    no_faults();
+    host.no_faults();
 }
 
-#[test]
-fn a_host_without_tiles_may_give_parts_all_the_same() {
+pub fn a_host_without_tiles_may_give_parts_all_the_same(binary: &Binary) {
     let host = Host::new(Behaviour { tiles: false, ..Behaviour::default() });
     let layout = Layout::default();
     let name = CString::new(format!("{ROI_PREFIX}Source")).unwrap();
-    let instance = Described::new(&host, binary().plugin("org.isophote.gaussian"))
-        .instance(kOfxImageEffectContextFilter);
+    let instance =
+        Described::new(&host, binary.plugin("org.isophote.gaussian")).instance(kOfxImageEffectContextFilter);
     plain(&instance);
     let source = source(layout);
     instance.connect("Source", source.clone());
@@ -81,7 +78,7 @@ fn a_host_without_tiles_may_give_parts_all_the_same() {
     let (status, tile) = instance.try_render(layout, SIZE, &Wanted::new(window));
     assert_eq!(status, kOfxStatOK);
     assert!(tile.crop(window).packed() == full.crop(window).packed());
-    no_faults();
+    host.no_faults();
 }
 
 /// What the plan says that a region needs, in rows from the top. Pixels that are wider than high are made
@@ -104,37 +101,36 @@ fn needed(effect: &Expected, region: Rect, aspect: f64) -> Rect {
     Rect { x0, x1, ..window }.union(&region)
 }
 
-#[test]
-fn the_mask_is_needed_where_it_is_used_and_the_result_covers_the_source() {
+pub fn the_mask_is_needed_where_it_is_used_and_the_result_covers_the_source(
+    binary: &Binary,
+    effect: Expected,
+) {
     let host = Host::new(Behaviour::default());
     let layout = Layout { origin: [5, -9], ..Layout::default() };
-    for effect in expected() {
-        let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextGeneral);
-        instance.connect("Source", source(layout));
-        instance.connect("Mask", source(layout));
-        let regions = instance.regions([20.0, 10.0, 30.0, 20.0], 1.0).expect("regions");
-        let mask = CString::new(format!("{ROI_PREFIX}Mask")).unwrap();
-        assert_eq!(regions.numbers(&mask), [20.0, 10.0, 30.0, 20.0]);
-        let (args, answer) = (instance.args(), instance.args());
-        args.put(kOfxPropTime, vec![0.0.into()]);
-        let status = instance.act(kOfxImageEffectActionGetRegionOfDefinition, Some(&args), Some(&answer));
-        assert_eq!(status, kOfxStatOK);
-        assert_eq!(answer.numbers(kOfxImageEffectPropRegionOfDefinition), [5.0, -9.0, 102.0, 62.0]);
-        let answer = instance.args();
-        let status = instance.act(kOfxImageEffectActionGetClipPreferences, None, Some(&answer));
-        assert_eq!(status, kOfxStatOK);
-        let state = answer.text(kOfxImageEffectPropPreMultiplication).unwrap();
-        assert_eq!(state, "OfxImageAlphaPremultiplied");
-    }
-    no_faults();
+    let instance = Described::new(&host, effect.plugin(binary)).instance(kOfxImageEffectContextGeneral);
+    instance.connect("Source", source(layout));
+    instance.connect("Mask", source(layout));
+    let regions = instance.regions([20.0, 10.0, 30.0, 20.0], 1.0).expect("regions");
+    let mask = CString::new(format!("{ROI_PREFIX}Mask")).unwrap();
+    assert_eq!(regions.numbers(&mask), [20.0, 10.0, 30.0, 20.0]);
+    let (args, answer) = (instance.args(), instance.args());
+    args.put(kOfxPropTime, vec![0.0.into()]);
+    let status = instance.act(kOfxImageEffectActionGetRegionOfDefinition, Some(&args), Some(&answer));
+    assert_eq!(status, kOfxStatOK);
+    assert_eq!(answer.numbers(kOfxImageEffectPropRegionOfDefinition), [5.0, -9.0, 102.0, 62.0]);
+    let answer = instance.args();
+    let status = instance.act(kOfxImageEffectActionGetClipPreferences, None, Some(&answer));
+    assert_eq!(status, kOfxStatOK);
+    let state = answer.text(kOfxImageEffectPropPreMultiplication).unwrap();
+    assert_eq!(state, "OfxImageAlphaPremultiplied");
+    host.no_faults();
 }
 
-#[test]
-fn regions_shrink_with_the_scale() {
+pub fn regions_shrink_with_the_scale(binary: &Binary) {
     let host = Host::new(Behaviour::default());
     let name = CString::new(format!("{ROI_PREFIX}Source")).unwrap();
-    let instance = Described::new(&host, binary().plugin("org.isophote.gaussian"))
-        .instance(kOfxImageEffectContextFilter);
+    let instance =
+        Described::new(&host, binary.plugin("org.isophote.gaussian")).instance(kOfxImageEffectContextFilter);
     instance.set("sigma", 4.0);
     let halo = |scale: f64| {
         instance.connect("Source", source(Layout { scale, ..Layout::default() }));

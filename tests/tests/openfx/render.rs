@@ -4,27 +4,18 @@ use crate::reference::*;
 use isophote::ColourSpace;
 use isophote::Value;
 use isophote::spec::Unit;
-use isophote_tests::ofx::effect::{Described, Instance, Wanted};
+use isophote_tests::ofx::effect::{Described, Wanted};
+use isophote_tests::ofx::host::Host;
 use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::picture::{Layout, Picture};
-use isophote_tests::ofx::{Behaviour, Host, suites};
+use isophote_tests::ofx::plugin::Binary;
+use isophote_tests::ofx::state::Behaviour;
 use std::ffi::CStr;
 use std::sync::atomic::Ordering;
 
 const SIZE: [i32; 2] = [WIDTH, HEIGHT];
 const DEPTHS: [&CStr; 4] = [kOfxBitDepthFloat, kOfxBitDepthHalf, kOfxBitDepthShort, kOfxBitDepthByte];
 const COMPONENTS: [&CStr; 3] = [kOfxImageComponentRGBA, kOfxImageComponentRGB, kOfxImageComponentAlpha];
-
-/// The picture of the tests in a layout.
-pub fn source(layout: Layout, opaque: bool) -> Picture {
-    Picture::packed_in(layout, WIDTH, HEIGHT, &packed(&scene(WIDTH, HEIGHT, opaque), &layout))
-}
-
-/// Working space sRGB, alpha filtered too: what the C table does.
-pub fn plain(instance: &Instance<'_>) {
-    instance.set("working_space", 1);
-    instance.set("process_alpha", 1);
-}
 
 fn through(graph: &isophote::Graph, source: &Picture, layout: Layout, space: ColourSpace) -> Vec<u8> {
     let through = Through {
@@ -37,69 +28,63 @@ fn through(graph: &isophote::Graph, source: &Picture, layout: Layout, space: Col
     through.c(&[("color", &source.packed(), layout)], layout)
 }
 
-#[test]
-fn every_effect_equals_the_c_table_in_every_context_depth_and_component() {
+pub fn every_effect_equals_the_c_table_in_every_context_depth_and_component(
+    binary: &Binary,
+    effect: Expected,
+) {
     let host = Host::new(Behaviour::default());
-    for effect in expected() {
-        let described = Described::new(&host, effect.plugin);
-        let graph = effect.graph(false);
-        for components in COMPONENTS {
-            for depth in DEPTHS {
-                let layout = Layout { depth, components, ..Layout::default() };
-                let source = source(layout, false);
-                let wanted = through(&graph, &source, layout, ColourSpace::Srgb);
-                for context in [kOfxImageEffectContextFilter, kOfxImageEffectContextGeneral] {
-                    let instance = described.instance(context);
-                    plain(&instance);
-                    instance.connect("Source", source.clone());
-                    let got = instance.render(layout, SIZE).packed();
-                    let worst = difference(&got, &wanted, &layout);
-                    let allowed =
-                        if depth == kOfxBitDepthFloat || depth == kOfxBitDepthHalf { 0.0 } else { 1.0 };
-                    assert!(
-                        worst <= allowed,
-                        "{} {depth:?} {components:?} {context:?}: {worst}",
-                        effect.plugin.identifier()
-                    );
-                }
-            }
-        }
-    }
-    no_faults();
-}
-
-#[test]
-fn spaces_and_relations_to_alpha_equal_the_c_table() {
-    let host = Host::new(Behaviour::default());
-    for effect in expected() {
-        let described = Described::new(&host, effect.plugin);
-        let graph = effect.graph(false);
-        let instance = described.instance(kOfxImageEffectContextFilter);
-        for alpha in [None, Some(kOfxImagePreMultiplied), Some(kOfxImageUnPreMultiplied)] {
-            for (index, space) in
-                [ColourSpace::Linear, ColourSpace::Srgb, ColourSpace::Srgb, ColourSpace::AcesCg]
-                    .into_iter()
-                    .enumerate()
-            {
-                let layout = Layout { alpha, ..Layout::default() };
-                let source = source(layout, false);
+    let described = Described::new(&host, effect.plugin(binary));
+    let graph = effect.graph(false);
+    for components in COMPONENTS {
+        for depth in DEPTHS {
+            let layout = Layout { depth, components, ..Layout::default() };
+            let source = source(layout, false);
+            let wanted = through(&graph, &source, layout, ColourSpace::Srgb);
+            for context in [kOfxImageEffectContextFilter, kOfxImageEffectContextGeneral] {
+                let instance = described.instance(context);
                 plain(&instance);
-                instance.set("working_space", index as i32);
                 instance.connect("Source", source.clone());
                 let got = instance.render(layout, SIZE).packed();
-                let wanted = through(&graph, &source, layout, space);
-                assert!(got == wanted, "{} {alpha:?} {space:?}", effect.plugin.identifier());
+                let worst = difference(&got, &wanted, &layout);
+                let allowed = if depth == kOfxBitDepthFloat || depth == kOfxBitDepthHalf { 0.0 } else { 1.0 };
+                assert!(
+                    worst <= allowed,
+                    "{} {depth:?} {components:?} {context:?}: {worst}",
+                    effect.plugin(binary).identifier()
+                );
             }
         }
     }
-    no_faults();
+    host.no_faults();
 }
 
-#[test]
-fn the_colour_space_that_a_host_names_counts() {
+pub fn spaces_and_relations_to_alpha_equal_the_c_table(binary: &Binary, effect: Expected) {
+    let host = Host::new(Behaviour::default());
+    let described = Described::new(&host, effect.plugin(binary));
+    let graph = effect.graph(false);
+    let instance = described.instance(kOfxImageEffectContextFilter);
+    for alpha in [None, Some(kOfxImagePreMultiplied), Some(kOfxImageUnPreMultiplied)] {
+        for (index, space) in [ColourSpace::Linear, ColourSpace::Srgb, ColourSpace::Srgb, ColourSpace::AcesCg]
+            .into_iter()
+            .enumerate()
+        {
+            let layout = Layout { alpha, ..Layout::default() };
+            let source = source(layout, false);
+            plain(&instance);
+            instance.set("working_space", index as i32);
+            instance.connect("Source", source.clone());
+            let got = instance.render(layout, SIZE).packed();
+            let wanted = through(&graph, &source, layout, space);
+            assert!(got == wanted, "{} {alpha:?} {space:?}", effect.plugin(binary).identifier());
+        }
+    }
+    host.no_faults();
+}
+
+pub fn the_colour_space_that_a_host_names_counts(binary: &Binary) {
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();
-    let described = Described::new(&host, binary().plugin("org.isophote.gaussian"));
+    let described = Described::new(&host, binary.plugin("org.isophote.gaussian"));
     let render = |space: i32, name: Option<&'static CStr>| {
         let instance = described.instance(kOfxImageEffectContextFilter);
         instance.set("working_space", space);
@@ -115,207 +100,194 @@ fn the_colour_space_that_a_host_names_counts() {
     assert!(render(1, Some(c"ofx_scene_linear")) == linear && render(0, Some(c"ACEScg")) == aces);
     assert!(render(3, Some(c"ofx_scene_linear")) == aces && render(0, Some(c"arri_logc4")) == linear);
     assert!(render(2, Some(c"lin_rec709_srgb")) == srgb, "as is");
-    no_faults();
+    host.no_faults();
 }
 
-#[test]
-fn the_alpha_of_the_source_stays_unless_it_is_processed() {
+pub fn the_alpha_of_the_source_stays_unless_it_is_processed(binary: &Binary, effect: Expected) {
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();
-    for effect in expected() {
-        let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextFilter);
-        instance.set("working_space", 1);
-        let source = source(layout, false);
-        instance.connect("Source", source.clone());
-        let got = values(&instance.render(layout, SIZE).packed(), &layout);
-        let before = values(&source.packed(), &layout);
-        for (after, before) in got.chunks_exact(4).zip(before.chunks_exact(4)) {
-            assert_eq!(after[3], before[3], "{}", effect.plugin.identifier());
-            assert!(after.iter().all(|v| v.is_finite()));
-        }
-        // An opaque image is one, whatever its alpha holds.
-        let opaque = Layout { alpha: Some(kOfxImageOpaque), ..layout };
-        instance.connect("Source", source_of_opaque(&source, opaque));
-        let got = values(&instance.render(opaque, SIZE).packed(), &layout);
-        assert!(got.chunks_exact(4).all(|p| (p[3] - 1.0).abs() < 1e-6), "{}", effect.plugin.identifier());
+    let instance = Described::new(&host, effect.plugin(binary)).instance(kOfxImageEffectContextFilter);
+    instance.set("working_space", 1);
+    let source = source(layout, false);
+    instance.connect("Source", source.clone());
+    let got = values(&instance.render(layout, SIZE).packed(), &layout);
+    let before = values(&source.packed(), &layout);
+    for (after, before) in got.chunks_exact(4).zip(before.chunks_exact(4)) {
+        assert_eq!(after[3], before[3], "{}", effect.plugin(binary).identifier());
+        assert!(after.iter().all(|v| v.is_finite()));
     }
-    no_faults();
+    // An opaque image is one, whatever its alpha holds.
+    let opaque = Layout { alpha: Some(kOfxImageOpaque), ..layout };
+    instance.connect("Source", source_of_opaque(&source, opaque));
+    let got = values(&instance.render(opaque, SIZE).packed(), &layout);
+    assert!(got.chunks_exact(4).all(|p| (p[3] - 1.0).abs() < 1e-6), "{}", effect.plugin(binary).identifier());
+    host.no_faults();
 }
 
 fn source_of_opaque(source: &Picture, layout: Layout) -> Picture {
     Picture::packed_in(layout, WIDTH, HEIGHT, &source.packed())
 }
 
-#[test]
-fn lines_are_shown_alone_or_over_the_source() {
+pub fn lines_are_shown_alone_or_over_the_source(binary: &Binary, effect: Expected) {
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();
-    for effect in expected().into_iter().filter(|e| e.is_lines()) {
-        let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextFilter);
-        plain(&instance);
-        let source = source(layout, true);
-        instance.connect("Source", source.clone());
-        for over in [false, true] {
-            instance.set("lines_output", i32::from(over));
-            let got = instance.render(layout, SIZE).packed();
-            assert!(got == through(&effect.graph(over), &source, layout, ColourSpace::Srgb));
-        }
+    let instance = Described::new(&host, effect.plugin(binary)).instance(kOfxImageEffectContextFilter);
+    plain(&instance);
+    let source = source(layout, true);
+    instance.connect("Source", source.clone());
+    for over in [false, true] {
+        instance.set("lines_output", i32::from(over));
+        let got = instance.render(layout, SIZE).packed();
+        assert!(got == through(&effect.graph(over), &source, layout, ColourSpace::Srgb));
     }
-    no_faults();
+    host.no_faults();
 }
 
-#[test]
-fn guides_enter_in_the_general_context() {
+pub fn guides_enter_in_the_general_context(binary: &Binary, effect: Expected) {
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();
     let depth_layout = Layout { components: kOfxImageComponentAlpha, ..layout };
-    for effect in expected() {
-        let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextGeneral);
-        let names = instance.effect.clip_names();
-        if !names.contains(&"Normal".to_owned()) || !names.contains(&"Depth".to_owned()) {
-            continue;
-        }
-        plain(&instance);
-        if instance.has("guide_weight") {
-            instance.set("guide_weight", 1.0);
-        }
-        let step = |x: i32| if x < WIDTH / 2 { [0.0, 0.0, 1.0, 1.0] } else { [0.8, 0.0, 0.6, 1.0] };
-        let normals: Vec<f32> = (0..WIDTH * HEIGHT).flat_map(|i| step(i % WIDTH)).collect();
-        let depths: Vec<f32> =
-            (0..WIDTH * HEIGHT).map(|i| if i / WIDTH < HEIGHT / 2 { 2.0 } else { 5.0 }).collect();
-        let bytes = |values: &[f32]| values.iter().flat_map(|v| v.to_ne_bytes()).collect::<Vec<u8>>();
-        let (normals, depths) = (bytes(&normals), bytes(&depths));
-        let source = source(layout, true);
-        instance.connect("Source", source.clone());
-        instance.connect("Normal", Picture::packed_in(layout, WIDTH, HEIGHT, &normals));
-        instance.connect("Depth", Picture::packed_in(depth_layout, WIDTH, HEIGHT, &depths));
-        let got = instance.render(layout, SIZE).packed();
-        let mut graph = effect.graph(false);
-        if let Ok(node) = graph.find("n")
-            && graph.value(node, "guide_weight").is_ok()
-        {
-            graph.set_text(node, "guide_weight", "1").unwrap();
-        }
-        if let Ok(tensor) = graph.find("t") {
-            graph.set_text(tensor, "guide_weight", "1").unwrap();
-        }
-        let wanted =
-            Through { graph: &graph, size: SIZE, scale: 1.0, space: ColourSpace::Srgb, premultiplied: true }
-                .c(
-                    &[
-                        ("color", &source.packed(), layout),
-                        ("normal", &normals, layout),
-                        ("depth", &depths, depth_layout),
-                    ],
-                    layout,
-                );
-        assert!(got == wanted, "{}", effect.plugin.identifier());
-        let without = through(&graph, &source, layout, ColourSpace::Srgb);
-        assert!(got != without, "{} does not mind its guides", effect.plugin.identifier());
+    let instance = Described::new(&host, effect.plugin(binary)).instance(kOfxImageEffectContextGeneral);
+    let names = instance.effect.clip_names();
+    if !names.contains(&"Normal".to_owned()) || !names.contains(&"Depth".to_owned()) {
+        return;
     }
-    no_faults();
+    plain(&instance);
+    if instance.has("guide_weight") {
+        instance.set("guide_weight", 1.0);
+    }
+    let step = |x: i32| if x < WIDTH / 2 { [0.0, 0.0, 1.0, 1.0] } else { [0.8, 0.0, 0.6, 1.0] };
+    let normals: Vec<f32> = (0..WIDTH * HEIGHT).flat_map(|i| step(i % WIDTH)).collect();
+    let depths: Vec<f32> =
+        (0..WIDTH * HEIGHT).map(|i| if i / WIDTH < HEIGHT / 2 { 2.0 } else { 5.0 }).collect();
+    let bytes = |values: &[f32]| values.iter().flat_map(|v| v.to_ne_bytes()).collect::<Vec<u8>>();
+    let (normals, depths) = (bytes(&normals), bytes(&depths));
+    let source = source(layout, true);
+    instance.connect("Source", source.clone());
+    instance.connect("Normal", Picture::packed_in(layout, WIDTH, HEIGHT, &normals));
+    instance.connect("Depth", Picture::packed_in(depth_layout, WIDTH, HEIGHT, &depths));
+    let got = instance.render(layout, SIZE).packed();
+    let mut graph = effect.graph(false);
+    if let Ok(node) = graph.find("n")
+        && graph.value(node, "guide_weight").is_ok()
+    {
+        graph.set_text(node, "guide_weight", "1").unwrap();
+    }
+    if let Ok(tensor) = graph.find("t") {
+        graph.set_text(tensor, "guide_weight", "1").unwrap();
+    }
+    let wanted =
+        Through { graph: &graph, size: SIZE, scale: 1.0, space: ColourSpace::Srgb, premultiplied: true }.c(
+            &[
+                ("color", &source.packed(), layout),
+                ("normal", &normals, layout),
+                ("depth", &depths, depth_layout),
+            ],
+            layout,
+        );
+    assert!(got == wanted, "{}", effect.plugin(binary).identifier());
+    let without = through(&graph, &source, layout, ColourSpace::Srgb);
+    assert!(got != without, "{} does not mind its guides", effect.plugin(binary).identifier());
+    host.no_faults();
 }
 
-#[test]
-fn a_mask_decides_where_the_effect_shows() {
+pub fn a_mask_decides_where_the_effect_shows(binary: &Binary, effect: Expected) {
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();
     let mask_layout = Layout { components: kOfxImageComponentAlpha, ..layout };
-    for effect in expected() {
-        let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextGeneral);
-        plain(&instance);
-        let source = source(layout, true);
-        instance.connect("Source", source.clone());
-        let full = values(&instance.render(layout, SIZE).packed(), &layout);
-        let amount = |x: i32| [0.0_f32, 1.0, 0.25][(x * 3 / WIDTH) as usize];
-        let mask: Vec<u8> = (0..WIDTH * HEIGHT).flat_map(|i| amount(i % WIDTH).to_ne_bytes()).collect();
-        instance.connect("Mask", Picture::packed_in(mask_layout, WIDTH, HEIGHT, &mask));
-        let got = values(&instance.render(layout, SIZE).packed(), &layout);
-        let before = values(&source.packed(), &layout);
-        for (i, ((got, full), before)) in got.iter().zip(&full).zip(&before).enumerate() {
-            let a = amount(i as i32 / 4 % WIDTH);
-            let wanted = full * a + before * (1.0 - a);
-            assert!((got - wanted).abs() <= 1e-6 * wanted.abs().max(1.0), "{}", effect.plugin.identifier());
-            assert!(a == 0.25 || *got == if a == 1.0 { *full } else { *before });
-        }
-        instance.set("mask_apply", 0);
-        assert_eq!(values(&instance.render(layout, SIZE).packed(), &layout), full);
+    let instance = Described::new(&host, effect.plugin(binary)).instance(kOfxImageEffectContextGeneral);
+    plain(&instance);
+    let source = source(layout, true);
+    instance.connect("Source", source.clone());
+    let full = values(&instance.render(layout, SIZE).packed(), &layout);
+    let amount = |x: i32| [0.0_f32, 1.0, 0.25][(x * 3 / WIDTH) as usize];
+    let mask: Vec<u8> = (0..WIDTH * HEIGHT).flat_map(|i| amount(i % WIDTH).to_ne_bytes()).collect();
+    instance.connect("Mask", Picture::packed_in(mask_layout, WIDTH, HEIGHT, &mask));
+    let got = values(&instance.render(layout, SIZE).packed(), &layout);
+    let before = values(&source.packed(), &layout);
+    for (i, ((got, full), before)) in got.iter().zip(&full).zip(&before).enumerate() {
+        let a = amount(i as i32 / 4 % WIDTH);
+        let wanted = full * a + before * (1.0 - a);
+        assert!(
+            (got - wanted).abs() <= 1e-6 * wanted.abs().max(1.0),
+            "{}",
+            effect.plugin(binary).identifier()
+        );
+        assert!(a == 0.25 || *got == if a == 1.0 { *full } else { *before });
     }
-    no_faults();
+    instance.set("mask_apply", 0);
+    assert_eq!(values(&instance.render(layout, SIZE).packed(), &layout), full);
+    host.no_faults();
 }
 
-#[test]
-fn identity_is_what_is_rendered() {
+pub fn identity_is_what_is_rendered(binary: &Binary, effect: Expected) {
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();
-    for effect in expected() {
-        let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextFilter);
-        assert!(!instance.is_identity());
-        let mix = if effect.is_lines() { "lines_mix" } else { "mix" };
-        if !instance.has(mix) {
-            continue;
+    let instance = Described::new(&host, effect.plugin(binary)).instance(kOfxImageEffectContextFilter);
+    assert!(!instance.is_identity());
+    let mix = if effect.is_lines() { "lines_mix" } else { "mix" };
+    if !instance.has(mix) {
+        return;
+    }
+    instance.set(mix, 0.0);
+    if effect.is_lines() {
+        assert!(!instance.is_identity(), "lines alone are no identity");
+        instance.set("lines_output", 1);
+    }
+    assert!(instance.is_identity(), "{}", effect.plugin(binary).identifier());
+    let source = source(layout, false);
+    instance.connect("Source", source.clone());
+    assert!(instance.render(layout, SIZE).packed() == source.packed());
+    instance.set(mix, 1.0);
+    let nodes = [effect.node, isophote::registry::find("composite_lines").unwrap()];
+    let node = nodes[usize::from(effect.is_lines())];
+    for param in node.params().filter(|p| p.neutral_at_zero && p.id != "mix") {
+        let name = if effect.is_lines() { format!("lines_{}", param.id) } else { param.id.to_owned() };
+        match param.default {
+            Value::Int(_) => instance.set(&name, 0),
+            _ => instance.set(&name, if param.unit == Unit::Pixels { 0.009 } else { 0.0 }),
         }
-        instance.set(mix, 0.0);
-        if effect.is_lines() {
-            assert!(!instance.is_identity(), "lines alone are no identity");
-            instance.set("lines_output", 1);
-        }
-        assert!(instance.is_identity(), "{}", effect.plugin.identifier());
-        let source = source(layout, false);
-        instance.connect("Source", source.clone());
+        assert!(instance.is_identity(), "{} {name}", effect.plugin(binary).identifier());
         assert!(instance.render(layout, SIZE).packed() == source.packed());
-        instance.set(mix, 1.0);
-        let nodes = [effect.node, isophote::registry::find("composite_lines").unwrap()];
-        let node = nodes[usize::from(effect.is_lines())];
-        for param in node.params().filter(|p| p.neutral_at_zero && p.id != "mix") {
-            let name = if effect.is_lines() { format!("lines_{}", param.id) } else { param.id.to_owned() };
-            match param.default {
-                Value::Int(_) => instance.set(&name, 0),
-                _ => instance.set(&name, if param.unit == Unit::Pixels { 0.009 } else { 0.0 }),
-            }
-            assert!(instance.is_identity(), "{} {name}", effect.plugin.identifier());
-            assert!(instance.render(layout, SIZE).packed() == source.packed());
-            // And what the filter itself makes of it is no other picture.
-            let mut graph = effect.graph(effect.is_lines());
-            let id = graph.find(if effect.is_lines() { "l" } else { "n" }).unwrap();
-            let zero = if matches!(param.default, Value::Int(_)) { "0" } else { "0.0" };
-            graph.set_text(id, param.id, zero).unwrap();
-            let filtered = through(&graph, &source, layout, ColourSpace::Srgb);
-            let worst = difference(&filtered, &source.packed(), &layout);
-            assert!(worst < 2e-6, "{} {name}: {worst}", effect.plugin.identifier());
-            let Value::Float(_) = param.default else {
-                instance.set(&name, 1);
-                continue;
-            };
-            instance.set(&name, 1.0);
-            assert!(!instance.is_identity());
-        }
+        // And what the filter itself makes of it is no other picture.
+        let mut graph = effect.graph(effect.is_lines());
+        let id = graph.find(if effect.is_lines() { "l" } else { "n" }).unwrap();
+        let zero = if matches!(param.default, Value::Int(_)) { "0" } else { "0.0" };
+        graph.set_text(id, param.id, zero).unwrap();
+        let filtered = through(&graph, &source, layout, ColourSpace::Srgb);
+        let worst = difference(&filtered, &source.packed(), &layout);
+        assert!(worst < 2e-6, "{} {name}: {worst}", effect.plugin(binary).identifier());
+        let Value::Float(_) = param.default else {
+            instance.set(&name, 1);
+            continue;
+        };
+        instance.set(&name, 1.0);
+        assert!(!instance.is_identity());
     }
-    no_faults();
+    host.no_faults();
 }
 
-#[test]
-fn a_missing_source_is_transparent_black_and_a_missing_output_a_failure() {
+pub fn a_missing_source_is_transparent_black_and_a_missing_output_a_failure(
+    binary: &Binary,
+    effect: Expected,
+) {
     let host = Host::new(Behaviour::default());
-    for effect in expected() {
-        let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextGeneral);
-        let layout = Layout::default();
-        assert!(instance.render(layout, SIZE).packed().iter().all(|b| *b == 0));
-        let alpha = Layout { components: kOfxImageComponentAlpha, depth: kOfxBitDepthByte, ..layout };
-        assert!(instance.render(alpha, SIZE).packed().iter().all(|b| *b == 0));
-        instance.connect("Source", source(layout, true));
-        let wanted = Wanted::new([0, 0, WIDTH, HEIGHT]);
-        assert_eq!(instance.render_connected(&wanted), kOfxStatFailed);
-    }
+    let instance = Described::new(&host, effect.plugin(binary)).instance(kOfxImageEffectContextGeneral);
+    let layout = Layout::default();
+    assert!(instance.render(layout, SIZE).packed().iter().all(|b| *b == 0));
+    let alpha = Layout { components: kOfxImageComponentAlpha, depth: kOfxBitDepthByte, ..layout };
+    assert!(instance.render(alpha, SIZE).packed().iter().all(|b| *b == 0));
+    instance.connect("Source", source(layout, true));
+    let wanted = Wanted::new([0, 0, WIDTH, HEIGHT]);
+    assert_eq!(instance.render_connected(&wanted), kOfxStatFailed);
     assert_eq!(host.inner.lent.load(Ordering::SeqCst), 0);
-    no_faults();
+    host.no_faults();
 }
 
-#[test]
-fn unknown_depths_are_refused() {
+pub fn unknown_depths_are_refused(binary: &Binary) {
     let host = Host::new(Behaviour::default());
-    let instance = Described::new(&host, binary().plugin("org.isophote.gaussian"))
-        .instance(kOfxImageEffectContextFilter);
+    let instance =
+        Described::new(&host, binary.plugin("org.isophote.gaussian")).instance(kOfxImageEffectContextFilter);
     let layout = Layout::default();
     let unknown = Layout { depth: kOfxBitDepthNone, ..layout };
     instance.connect("Source", source(unknown, true));
@@ -326,73 +298,63 @@ fn unknown_depths_are_refused() {
     assert_eq!(host.inner.lent.load(Ordering::SeqCst), 0);
 }
 
-#[test]
-fn the_threads_of_the_host_give_the_same_pixels() {
+pub fn the_threads_of_the_host_give_the_same_pixels(binary: &Binary, effect: Expected) {
     let layout = Layout::default();
     let render = |processors, null_functions| {
         let host = Host::new(Behaviour { processors, null_functions, ..Behaviour::default() });
-        let mut all = Vec::new();
-        for effect in expected() {
-            let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextFilter);
-            instance.connect("Source", source(layout, true));
-            all.push(instance.render(layout, SIZE).packed());
-        }
-        all
+        let described = Described::new(&host, effect.plugin(binary));
+        let instance = described.instance(kOfxImageEffectContextFilter);
+        instance.connect("Source", source(layout, true));
+        let got = instance.render(layout, SIZE).packed();
+        host.no_faults();
+        (got, host.inner.runs.load(Ordering::SeqCst))
     };
-    let alone = render(0, false);
-    let runs = suites::RUNS.load(Ordering::SeqCst);
-    assert!(render(3, false) == alone);
-    assert!(suites::RUNS.load(Ordering::SeqCst) > runs, "the host's threads were not used");
-    assert!(render(1, false) == alone && render(0, true) == alone);
-    no_faults();
+    let (alone, _) = render(0, false);
+    let (together, runs) = render(3, false);
+    assert!(together == alone);
+    assert!(runs > 0, "the host's threads were not used");
+    assert!(render(1, false).0 == alone && render(0, true).0 == alone);
 }
 
-#[test]
-fn twelve_renders_on_four_threads_are_the_same() {
+pub fn twelve_renders_on_four_threads_are_the_same(binary: &Binary, effect: Expected) {
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();
-    for effect in expected() {
-        let described = Described::new(&host, effect.plugin);
-        let render = || {
-            let instance = described.instance(kOfxImageEffectContextFilter);
-            instance.connect("Source", source(layout, false));
-            instance.render(layout, SIZE).packed()
-        };
-        let first = render();
-        std::thread::scope(|scope| {
-            for _ in 0..4 {
-                scope.spawn(|| {
-                    for _ in 0..3 {
-                        // As one host has it: everything anew for every frame, on every thread.
-                        let again = Described::new(&host, effect.plugin);
-                        let instance = again.instance(kOfxImageEffectContextFilter);
-                        instance.connect("Source", source(layout, false));
-                        assert!(instance.render(layout, SIZE).packed() == first);
-                    }
-                });
-            }
-        });
-    }
+    let described = Described::new(&host, effect.plugin(binary));
+    let render = || {
+        let instance = described.instance(kOfxImageEffectContextFilter);
+        instance.connect("Source", source(layout, false));
+        instance.render(layout, SIZE).packed()
+    };
+    let first = render();
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| {
+                for _ in 0..3 {
+                    // As one host has it: everything anew for every frame, on every thread.
+                    let again = Described::new(&host, effect.plugin(binary));
+                    let instance = again.instance(kOfxImageEffectContextFilter);
+                    instance.connect("Source", source(layout, false));
+                    assert!(instance.render(layout, SIZE).packed() == first);
+                }
+            });
+        }
+    });
     assert_eq!(host.inner.lent.load(Ordering::SeqCst), 0);
-    no_faults();
+    host.no_faults();
 }
 
-#[test]
-fn a_host_that_wants_to_stop_is_heard() {
+pub fn a_host_that_wants_to_stop_is_heard(binary: &Binary, effect: Expected) {
     let layout = Layout::default();
     for after in [0, 3] {
         let host = Host::new(Behaviour { abort_after: Some(after), ..Behaviour::default() });
-        for effect in expected() {
-            host.inner.asked.store(0, Ordering::SeqCst);
-            let instance = Described::new(&host, effect.plugin).instance(kOfxImageEffectContextFilter);
-            instance.connect("Source", source(layout, true));
-            let wanted = Wanted::new([0, 0, WIDTH, HEIGHT]);
-            let (status, picture) = instance.try_render(layout, SIZE, &wanted);
-            assert_eq!(status, kOfxStatOK);
-            assert_eq!(picture.touched_outside([0; 4]), 0, "{} went on", effect.plugin.identifier());
-            assert!(host.inner.asked.load(Ordering::SeqCst) > after);
-        }
+        let instance = Described::new(&host, effect.plugin(binary)).instance(kOfxImageEffectContextFilter);
+        instance.connect("Source", source(layout, true));
+        let wanted = Wanted::new([0, 0, WIDTH, HEIGHT]);
+        let (status, picture) = instance.try_render(layout, SIZE, &wanted);
+        assert_eq!(status, kOfxStatOK);
+        assert_eq!(picture.touched_outside([0; 4]), 0, "it went on");
+        assert!(host.inner.asked.load(Ordering::SeqCst) > after);
         assert_eq!(host.inner.lent.load(Ordering::SeqCst), 0);
+        host.no_faults();
     }
-    no_faults();
 }

@@ -1,0 +1,142 @@
+//! What all handles of a host lead back to: how it behaves, and what it noted of its plugins.
+
+use std::cell::RefCell;
+use std::ffi::{CStr, c_int};
+use std::sync::atomic::{AtomicI32, AtomicU32};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
+
+/// Locks, also after a test has failed.
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// How a host behaves.
+#[derive(Clone, Debug)]
+pub struct Behaviour {
+    /// Its name.
+    pub name: &'static CStr,
+    /// Properties that it does not know: setting and getting them is answered with "unknown".
+    pub refused: Vec<&'static CStr>,
+    /// Whether it refuses every property that the standard does not require of it.
+    pub refuses_optional: bool,
+    /// Whether images may be parts of pictures.
+    pub tiles: bool,
+    /// Whether it has half floats.
+    pub half: bool,
+    /// Processors of its multi-thread suite; 0 for a host without the suite.
+    pub processors: u32,
+    /// Whether the multi-thread suite and the message suite consist of null functions.
+    pub null_functions: bool,
+    /// Whether a text that was asked for is destroyed at the next call.
+    pub strings_die: bool,
+    /// Whether it calls clips without a picture connected.
+    pub all_connected: bool,
+    /// Whether properties of clips and images are missing as far as a plugin can do without.
+    pub bare: bool,
+    /// After so many questions it wants to stop.
+    pub abort_after: Option<u32>,
+    /// The latest version of its message suite.
+    pub message_version: c_int,
+    /// Suites that it lacks.
+    pub without: Vec<&'static CStr>,
+}
+
+impl Default for Behaviour {
+    fn default() -> Self {
+        Self {
+            name: c"org.isophote.tests",
+            refused: Vec::new(),
+            refuses_optional: false,
+            tiles: true,
+            half: true,
+            processors: 0,
+            null_functions: false,
+            strings_die: false,
+            all_connected: false,
+            bare: false,
+            abort_after: None,
+            message_version: 2,
+            without: Vec::new(),
+        }
+    }
+}
+
+/// A suite that a host gives out.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Suite {
+    /// Its name.
+    pub name: &'static CStr,
+    /// Its version.
+    pub version: c_int,
+    /// Where its functions are, for the life of the host.
+    pub address: usize,
+}
+
+/// What all handles of a host lead back to.
+#[derive(Debug)]
+pub struct Inner {
+    /// How it behaves.
+    pub behaviour: Behaviour,
+    /// Images that were lent and not given back.
+    pub lent: AtomicI32,
+    /// How often it was asked whether to stop.
+    pub asked: AtomicU32,
+    /// Runs of its multi-thread suite.
+    pub runs: AtomicU32,
+    /// Messages that it shows.
+    pub messages: Mutex<Vec<String>>,
+    /// What its plugins did against the standard.
+    faults: Mutex<Vec<String>>,
+    pub(super) suites: OnceLock<Vec<Suite>>,
+}
+
+/// What was done against the standard where no host could be told from it.
+static NOBODYS: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+thread_local! {
+    /// The host whose plugin this thread last called. Some functions of the standard are not told which
+    /// host is meant.
+    static CURRENT: RefCell<Weak<Inner>> = const { RefCell::new(Weak::new()) };
+}
+
+impl Inner {
+    pub(super) fn new(behaviour: Behaviour) -> Self {
+        Self {
+            behaviour,
+            lent: AtomicI32::new(0),
+            asked: AtomicU32::new(0),
+            runs: AtomicU32::new(0),
+            messages: Mutex::default(),
+            faults: Mutex::default(),
+            suites: OnceLock::new(),
+        }
+    }
+
+    /// Notes that the plugin broke a rule.
+    pub(super) fn fault(&self, what: impl Into<String>) {
+        lock(&self.faults).push(what.into());
+    }
+
+    /// What plugins did against the standard so far.
+    pub(super) fn faults(&self) -> Vec<String> {
+        [lock(&self.faults).clone(), lock(&NOBODYS).clone()].concat()
+    }
+}
+
+/// Makes the host that of the calling thread, until another is.
+pub(super) fn enter(host: &Arc<Inner>) {
+    CURRENT.set(Arc::downgrade(host));
+}
+
+/// The host of the calling thread.
+pub(super) fn current() -> Option<Arc<Inner>> {
+    CURRENT.with_borrow(Weak::upgrade)
+}
+
+/// Notes that a plugin broke a rule, where it did not say of which host.
+pub(super) fn fault(what: impl Into<String>) {
+    match current() {
+        Some(host) => host.fault(what),
+        None => lock(&NOBODYS).push(what.into()),
+    }
+}
