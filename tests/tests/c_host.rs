@@ -29,6 +29,7 @@ fn main() -> ExitCode {
     for (name, test) in named! {
         a_c_program_lists_the_nodes_and_stylizes_under_valgrind
         a_c_program_prints_a_plan_as_data_under_valgrind
+        a_c_program_runs_plans_with_vulkan
         the_header_is_cpp_too
         the_header_has_the_layout_of_the_declarations
         bad_arguments_of_the_c_program_are_one_line_each
@@ -240,7 +241,6 @@ fn has_file(path: &str, package: &str) -> bool {
     false
 }
 
-#[test]
 fn a_c_program_runs_plans_with_vulkan() {
     if !has_file("/usr/include/vulkan/vulkan.h", "libvulkan-dev") {
         return;

@@ -137,9 +137,11 @@ fn a_warm_frame_creates_nothing_and_submits_once(spec: &'static NodeSpec) -> Opt
     let _alone = COUNTED.lock().unwrap_or_else(PoisonError::into_inner);
     let device = device::device(spec.id)?;
     let executor = isophote_engine::gpu::Executor::new(device.clone());
+    // Large enough for every level of the pyramids that people use.
+    let [width, height] = [96, 54];
     let mut setup = cases::setup(spec, false);
-    let mut planned = run::planned(&setup.graph, Request::new(320, 180));
-    let region = Rect::of_size(320, 180);
+    let mut planned = run::planned(&setup.graph, Request::new(width, height));
+    let region = Rect::of_size(width, height);
     let mut program = Program::lower(planned.plan(), region).unwrap();
     let mut prepared = executor.prepare(&program).unwrap();
     for port in planned.plan().inputs() {

@@ -275,6 +275,28 @@ fn every_file_says_what_it_is_for_and_stays_short() {
 }
 
 #[test]
+fn tests_without_the_built_in_harness_list_all_of_theirs() {
+    // There the attribute does nothing, and what bears it would never run.
+    let attribute = ["#[", "test]"].concat();
+    let manifest = std::fs::read_to_string(root().join("tests/Cargo.toml")).unwrap();
+    let own: Vec<&str> = manifest
+        .split("[[test]]")
+        .skip(1)
+        .filter(|table| table.contains("harness = false"))
+        .filter_map(|table| table.split('"').nth(1))
+        .collect();
+    assert!(!own.is_empty());
+    for path in sources(&[".rs"]) {
+        let Ok(inner) = path.strip_prefix(root().join("tests/tests")) else { continue };
+        let first = inner.components().next().unwrap().as_os_str().to_str().unwrap();
+        if own.contains(&first.trim_end_matches(".rs")) {
+            let text = std::fs::read_to_string(&path).unwrap();
+            assert!(!text.lines().any(|l| l.trim() == attribute), "{} has {attribute}", path.display());
+        }
+    }
+}
+
+#[test]
 fn unsafe_code_stays_in_its_rooms_and_each_block_has_a_reason() {
     // Spelt in two parts, so that this file does not find itself.
     let keyword = ["un", "safe"].concat();

@@ -1,43 +1,246 @@
-//! `cargo xtask test`: everything that must hold before a change lands.
+//! `cargo xtask test`: everything that must hold before a change lands, or the tests of one thing.
 
-use crate::error::Result;
+use crate::error::{Context, Failure, Result};
 use crate::setup::{self, BINUTILS, C_COMPILER, CPP_COMPILER, VALGRIND, VULKAN, VULKAN_HEADERS, XVFB};
-use crate::tools::{cargo, heading};
+use crate::tools::{cargo, cargo_command, heading, root, target_dir};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::sync::Mutex;
+use std::time::Instant;
 
 /// Options of `cargo xtask test`.
 #[derive(clap::Args)]
 pub struct Options {
+    /// Only tests whose name, or whose file's name, contains this: a kernel, a node, a test
+    filter: Option<String>,
+
+    /// Only say what tests there are
+    #[arg(long)]
+    list: bool,
+
     /// Only the tests; no formatting, lints, documents or generated files
     #[arg(long)]
     tests_only: bool,
 }
 
-/// Sets up what the tests need, then runs them all.
+/// Sets up what the tests need, then runs those that are asked for, or all of them and every other check.
 ///
 /// # Errors
-/// The first check that fails.
+/// The checks that fail.
 pub fn run(options: &Options) -> Result<()> {
     setup::ensure(&[&C_COMPILER, &CPP_COMPILER, &BINUTILS, &VULKAN, &VULKAN_HEADERS, &VALGRIND, &XVFB])?;
-    if !options.tests_only {
-        heading("formatting");
-        cargo(&["fmt", "--all", "--", "--check"])?;
-        heading("lints");
-        cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])?;
-        heading("generated files");
-        crate::header::run(&crate::header::Options { check: true })?;
-        crate::readme::run(&crate::readme::Options { check: true })?;
-        heading("documents");
-        cargo(&["doc", "--workspace", "--no-deps", "--quiet"])?;
+    let is_everything = options.filter.is_none() && !options.list;
+    if is_everything && !options.tests_only {
+        check_sources()?;
     }
     heading("build");
     cargo(&["build", "--workspace", "--quiet"])?;
+    let programs = programs()?;
+    if options.list {
+        return list(&programs, options.filter.as_deref());
+    }
     heading("tests");
-    // The declared OpenFX interface has a workspace of its own; its manifest says why.
-    let manifest = crate::tools::root().join("tests/interface/Cargo.toml");
-    let results = crate::tools::target_dir("interface");
-    let mut interface = crate::tools::cargo_command(&["test", "--locked", "--quiet", "--manifest-path"]);
-    crate::tools::run(interface.arg(manifest).arg("--target-dir").arg(results))?;
-    cargo(&["test", "--workspace", "--no-fail-fast"])
+    let mut failed = match &options.filter {
+        Some(filter) => run_named(&programs, filter)?,
+        None => run_all(programs)?,
+    };
+    if is_everything {
+        let [documents, interface] = [documents(), interface()];
+        failed.extend(documents.is_err().then(|| "the examples of the documents".to_owned()));
+        failed.extend(interface.is_err().then(|| "the OpenFX interface".to_owned()));
+    }
+    if failed.is_empty() { Ok(()) } else { Err(Failure(format!("these tests fail: {}", failed.join(", ")))) }
+}
+
+/// Formatting, lints, generated files and documents.
+fn check_sources() -> Result<()> {
+    heading("formatting");
+    check_formatting()?;
+    heading("lints");
+    cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])?;
+    heading("generated files");
+    crate::header::run(&crate::header::Options { check: true })?;
+    crate::readme::run(&crate::readme::Options { check: true })?;
+    heading("documents");
+    cargo(&["doc", "--workspace", "--no-deps", "--quiet"])
+}
+
+/// Checks every Rust file of the repository. `cargo fmt` does not see those that macros and build scripts
+/// declare.
+fn check_formatting() -> Result<()> {
+    let mut git = Command::new("git");
+    let listed = git.args(["ls-files", "*.rs"]).current_dir(root()).output();
+    let listed = listed.context(|| "git, which lists the files, cannot be started".into())?;
+    let files = String::from_utf8_lossy(&listed.stdout).into_owned();
+    let files: Vec<&str> = files.lines().filter(|file| root().join(file).exists()).collect();
+    if !listed.status.success() || files.is_empty() {
+        return Err(Failure("git does not list the repository's files".into()));
+    }
+    let mut rustfmt = Command::new("rustfmt");
+    crate::tools::run(rustfmt.args(["--edition", "2024", "--check"]).args(files).current_dir(root()))
+        .map_err(|_| Failure("some files are not formatted: run rustfmt on them".into()))
+}
+
+fn documents() -> Result<()> {
+    cargo(&["test", "--workspace", "--doc", "--quiet"])
+}
+
+/// The declared OpenFX interface has a workspace of its own; its manifest says why.
+fn interface() -> Result<()> {
+    let mut interface = cargo_command(&["test", "--locked", "--quiet", "--manifest-path"]);
+    let manifest = root().join("tests/interface/Cargo.toml");
+    crate::tools::run(interface.arg(manifest).arg("--target-dir").arg(target_dir("interface")))
+}
+
+/// A program of tests.
+struct Program {
+    /// Stem of its file.
+    name: String,
+    path: PathBuf,
+    /// Folder of its package, where it runs.
+    folder: PathBuf,
+}
+
+impl Program {
+    fn command(&self) -> Command {
+        let mut command = Command::new(&self.path);
+        let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+        let library = target_dir("debug").join(format!("{prefix}isophote{suffix}"));
+        command
+            .current_dir(&self.folder)
+            .env("CARGO_MANIFEST_DIR", &self.folder)
+            .env("ISOPHOTE_LIBRARY", library)
+            .env("ISOPHOTE_REQUIRE_GPU", "1")
+            .env("NODEVICE_SELECT", "1");
+        command
+    }
+
+    /// Its tests whose name contains the filter, or all of them when its own name does.
+    fn tests(&self, filter: &str) -> Result<Vec<String>> {
+        let output = self.command().arg("--list").output();
+        let output = output.context(|| format!("{} cannot be started", self.path.display()))?;
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        let names = text.lines().filter_map(|line| line.strip_suffix(": test"));
+        let is_meant = self.name.contains(filter);
+        Ok(names.filter(|name| is_meant || name.contains(filter)).map(str::to_owned).collect())
+    }
+}
+
+/// Builds all programs of tests.
+fn programs() -> Result<Vec<Program>> {
+    let mut build = cargo_command(&["test", "--workspace", "--no-run", "--quiet"]);
+    build.arg("--message-format=json-render-diagnostics").stderr(Stdio::inherit());
+    let output = build.output().context(|| "cargo cannot be started".into())?;
+    if !output.status.success() {
+        return Err(Failure("the tests cannot be built".into()));
+    }
+    let messages = String::from_utf8_lossy(&output.stdout).into_owned();
+    let is_test = |line: &&str| line.contains(r#""profile":{"#) && line.contains(r#""test":true}"#);
+    let programs = messages.lines().filter(is_test).filter_map(|line| {
+        let path = PathBuf::from(field(line, "executable")?);
+        let folder = Path::new(&field(line, "manifest_path")?).parent()?.to_owned();
+        // Cargo adds a hash.
+        let name = path.file_stem()?.to_str()?.rsplit_once('-')?.0.to_owned();
+        Some(Program { name, path, folder })
+    });
+    Ok(programs.collect())
+}
+
+/// A text of one of cargo's messages.
+fn field(message: &str, name: &str) -> Option<String> {
+    let (_, rest) = message.split_once(&format!(r#""{name}":""#))?;
+    let (value, _) = rest.split_once('"')?;
+    Some(value.replace(r"\\", r"\"))
+}
+
+fn list(programs: &[Program], filter: Option<&str>) -> Result<()> {
+    for program in programs {
+        for test in program.tests(filter.unwrap_or_default())? {
+            println!("{}: {test}", program.name);
+        }
+    }
+    Ok(())
+}
+
+/// Runs the tests that the filter means, one program after the other. Returns the programs that fail.
+fn run_named(programs: &[Program], filter: &str) -> Result<Vec<String>> {
+    let (mut failed, mut found) = (Vec::new(), 0);
+    for program in programs {
+        let tests = program.tests(filter)?;
+        if tests.is_empty() {
+            continue;
+        }
+        found += tests.len();
+        let mut command = program.command();
+        if !program.name.contains(filter) {
+            command.arg(filter);
+        }
+        println!("\n-- {}", program.name);
+        if crate::tools::run(&mut command).is_err() {
+            failed.push(program.name.clone());
+        }
+    }
+    if found == 0 {
+        return Err(Failure(format!("no test's name contains '{filter}'; --list shows them all")));
+    }
+    Ok(failed)
+}
+
+/// Programs that take long, the longest first.
+const LONG: [&str; 5] = ["twins", "colour", "tiles", "openfx", "edits"];
+
+/// Programs that measure time, and run when nothing else does.
+const ALONE: [&str; 1] = ["openfx_faults"];
+
+/// Programs that run at a time. Each has as many threads as there are cores; while one waits for a
+/// device, or for its last test, the other computes.
+const LANES: usize = 2;
+
+/// Runs all programs. Returns those that fail.
+fn run_all(mut programs: Vec<Program>) -> Result<Vec<String>> {
+    programs.sort_by_key(|p| LONG.iter().position(|long| *long == p.name).unwrap_or(LONG.len()));
+    let (alone, together): (Vec<Program>, Vec<Program>) =
+        programs.into_iter().partition(|p| ALONE.contains(&p.name.as_str()));
+    let failed = Mutex::new(Vec::new());
+    for (programs, lanes) in [(together, LANES), (alone, 1)] {
+        let waiting = Mutex::new(programs.into_iter());
+        std::thread::scope(|scope| {
+            for _ in 0..lanes {
+                scope.spawn(|| {
+                    while let Some(program) = lock(&waiting).next() {
+                        let started = Instant::now();
+                        let output = program.command().output();
+                        // Locked, so that what two programs print stays apart.
+                        let mut failed = lock(&failed);
+                        if !show(&program, &output, started.elapsed().as_secs_f64()) {
+                            failed.push(program.name);
+                        }
+                    }
+                });
+            }
+        });
+    }
+    Ok(failed.into_inner().unwrap_or_default())
+}
+
+/// Prints what a program printed; whether its tests hold.
+fn show(program: &Program, output: &std::io::Result<Output>, seconds: f64) -> bool {
+    println!("\n-- {} ({seconds:.1} s)", program.name);
+    match output {
+        Ok(output) => {
+            print!("{}", String::from_utf8_lossy(&output.stdout));
+            eprint!("{}", String::from_utf8_lossy(&output.stderr));
+            output.status.success()
+        }
+        Err(error) => {
+            eprintln!("{} cannot be started: {error}", program.path.display());
+            false
+        }
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
 /// Makes the golden images anew. Look at them before they are committed.
@@ -45,6 +248,19 @@ pub fn run(options: &Options) -> Result<()> {
 /// # Errors
 /// When they cannot be made.
 pub fn bless() -> Result<()> {
-    let mut command = crate::tools::cargo_command(&["test", "--workspace", "--test", "goldens"]);
+    let mut command = cargo_command(&["test", "--workspace", "--test", "goldens"]);
     crate::tools::run(command.env("ISOPHOTE_BLESS", "1"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::field;
+
+    #[test]
+    fn fields_of_messages_are_found() {
+        let message =
+            r#"{"reason":"compiler-artifact","manifest_path":"C:\\a b\\Cargo.toml","executable":null}"#;
+        assert_eq!(field(message, "manifest_path").as_deref(), Some(r"C:\a b\Cargo.toml"));
+        assert_eq!(field(message, "executable"), None);
+    }
 }

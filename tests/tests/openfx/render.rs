@@ -129,6 +129,9 @@ fn source_of_opaque(source: &Picture, layout: Layout) -> Picture {
 }
 
 pub fn lines_are_shown_alone_or_over_the_source(binary: &Binary, effect: Expected) {
+    if !effect.is_lines() {
+        return;
+    }
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();
     let instance = Described::new(&host, effect.plugin(binary)).instance(kOfxImageEffectContextFilter);
