@@ -33,8 +33,14 @@ macro_rules! named {
     };
 }
 
+/// A test of the binary, by its name.
+type OfTheBinary = (&'static str, fn(&Binary));
+
+/// A test of an effect, by its name.
+type OfAnEffect = (&'static str, fn(&Binary, Expected));
+
 /// What holds for the binary, whatever its effects.
-const OF_THE_BINARY: &[(&str, fn(&Binary))] = named! {
+const OF_THE_BINARY: &[OfTheBinary] = named! {
     describe::every_node_that_can_be_an_effect_is_one,
     describe::the_working_space_follows_the_host,
     describe::hosts_that_manage_colours_are_asked_for_the_working_space,
@@ -48,7 +54,7 @@ const OF_THE_BINARY: &[(&str, fn(&Binary))] = named! {
 };
 
 /// What holds for every effect.
-const OF_EVERY_EFFECT: &[(&str, fn(&Binary, Expected))] = named! {
+const OF_EVERY_EFFECT: &[OfAnEffect] = named! {
     aspect::oblong_pixels_show_what_square_ones_show,
     aspect::guides_have_oblong_pixels_too,
     aspect::alpha_and_masks_are_those_of_the_hosts_pixels,
