@@ -184,104 +184,117 @@ fn null_pointers_are_named() {
     }
 }
 
+/// A graph that is called wrongly.
+struct Called<'a> {
+    api: &'a IsophoteApi,
+    graph: IsophoteGraph,
+}
+
+impl Called<'_> {
+    /// The call gave this status, and its message has this part.
+    fn check(&self, status: IsophoteStatus, expected: IsophoteStatus, part: &str) {
+        let said = message(self.api, self.graph);
+        assert_eq!(status, expected, "{said}");
+        assert!(said.contains(part), "'{said}' lacks '{part}'");
+    }
+
+    fn json(&self) -> String {
+        // SAFETY: the text is writable.
+        text(|t| unsafe { assert_eq!((self.api.graph_to_json)(self.graph, t), ISOPHOTE_OK) })
+    }
+
+    fn set_wrong_values(&self) {
+        let Self { api, graph } = *self;
+        let (rho, derivative) = (c("rho"), c("derivative"));
+        let (rho, derivative) = (rho.as_ptr(), derivative.as_ptr());
+        let check = |status, expected, part| self.check(status, expected, part);
+        // SAFETY: the texts end with zeros.
+        unsafe {
+            for value in [f64::NAN, f64::INFINITY, -1.0, 1e300, -1e-300 - 1.0] {
+                check((api.graph_set_float)(graph, 0, rho, value), ISOPHOTE_OUT_OF_RANGE, "'rho'");
+            }
+            let (misspelt, sobal) = (c("rhoo"), c("sobal"));
+            let unknown = (api.graph_set_float)(graph, 0, misspelt.as_ptr(), 1.0);
+            check(unknown, ISOPHOTE_UNKNOWN, "did you mean 'rho'?");
+            check((api.graph_set_float)(graph, 7, rho, 1.0), ISOPHOTE_UNKNOWN, "no node 7");
+            let last = (api.graph_set_float)(graph, u32::MAX, rho, 1.0);
+            check(last, ISOPHOTE_UNKNOWN, "no node 4294967295");
+            check((api.graph_set_bool)(graph, 0, rho, 1), ISOPHOTE_WRONG_TYPE, "graph_set_float");
+            let color = [0.5_f32; 4];
+            check((api.graph_set_color)(graph, 0, rho, color.as_ptr()), ISOPHOTE_WRONG_TYPE, "is a number");
+            let number = (api.graph_set_float)(graph, 0, derivative, 1.0);
+            check(number, ISOPHOTE_WRONG_TYPE, "graph_set_choice");
+            let choice = (api.graph_set_choice)(graph, 0, derivative, sobal.as_ptr());
+            check(choice, ISOPHOTE_UNKNOWN, "did you mean 'sobel'?");
+            let wide = c("wide");
+            let worded = (api.graph_set_text)(graph, 0, rho, wide.as_ptr());
+            check(worded, ISOPHOTE_OUT_OF_RANGE, "not 'wide'");
+            let bytes = (api.graph_set_float)(graph, 0, c"\xff\xfe".as_ptr(), 1.0);
+            check(bytes, ISOPHOTE_INVALID_ARGUMENT, "not UTF-8");
+        }
+    }
+
+    fn connect_wrongly(&self) {
+        let Self { api, graph } = *self;
+        let (color, depth) = (c"color".as_ptr(), c"depth".as_ptr());
+        let (colour, dept) = (c"colour".as_ptr(), c"dept".as_ptr());
+        let check = |status, expected, part| self.check(status, expected, part);
+        // SAFETY: the texts end with zeros.
+        unsafe {
+            check((api.graph_connect)(graph, 0, 0, color), ISOPHOTE_CONNECTION, "takes color");
+            check((api.graph_connect)(graph, 0, 0, colour), ISOPHOTE_UNKNOWN, "'color'");
+            check((api.graph_connect_input)(graph, depth, 0, color), ISOPHOTE_CONNECTION, "not depth");
+            check((api.graph_connect_input)(graph, dept, 0, depth), ISOPHOTE_UNKNOWN, "object_id");
+            check((api.graph_set_output)(graph, 1), ISOPHOTE_UNKNOWN, "no node 1");
+        }
+    }
+
+    fn add_wrongly(&self) {
+        let mut index = 0;
+        let mut check = |name: &str, node: &str, expected, part| {
+            let (name, node) = (c(name), c(node));
+            // SAFETY: the texts end with zeros, the place is writable.
+            let status =
+                unsafe { (self.api.graph_add)(self.graph, name.as_ptr(), node.as_ptr(), &raw mut index) };
+            self.check(status, expected, part);
+        };
+        check("structure_tensor", "gaussian", ISOPHOTE_INVALID_ARGUMENT, "two nodes");
+        check("", "gaussian", ISOPHOTE_INVALID_ARGUMENT, "cannot name");
+        check("new", "gausian", ISOPHOTE_UNKNOWN, "did you mean 'gaussian'?");
+    }
+
+    /// What is right still works, and can be read back.
+    fn set_right_values(&self) {
+        let Self { api, graph } = *self;
+        let (rho, derivative, sobel) = (c("rho"), c("derivative"), c("sobel"));
+        // SAFETY: the texts end with zeros, the places are writable.
+        unsafe {
+            assert_eq!((api.graph_set_float)(graph, 0, rho.as_ptr(), 0.1), ISOPHOTE_OK);
+            let status = (api.graph_set_choice)(graph, 0, derivative.as_ptr(), sobel.as_ptr());
+            assert_eq!(status, ISOPHOTE_OK);
+            let mut value = IsophoteValue { kind: 9, choice_index: 9, choice: null(), number: [9.0; 4] };
+            assert_eq!((api.graph_get)(graph, 0, rho.as_ptr(), &raw mut value), ISOPHOTE_OK);
+            assert_eq!((value.kind, value.number[0]), (ISOPHOTE_PARAM_FLOAT, 0.1));
+            assert_eq!((api.graph_get)(graph, 0, derivative.as_ptr(), &raw mut value), ISOPHOTE_OK);
+            assert_eq!((value.kind, value.choice_index), (ISOPHOTE_PARAM_CHOICE, 1));
+            assert_eq!(CStr::from_ptr(value.choice), c"sobel");
+        }
+    }
+}
+
 #[test]
 fn unknown_names_and_wrong_values_leave_the_graph_as_it_was() {
     let library = Loaded::new();
-    let api = library.api;
-    let graph = single(api, "structure_tensor");
-    let json = |graph| {
-        // SAFETY: the text is writable.
-        text(|t| unsafe { assert_eq!((api.graph_to_json)(graph, t), ISOPHOTE_OK) })
-    };
-    let before = json(graph);
-    let check = |status: IsophoteStatus, expected: IsophoteStatus, part: &str| {
-        let said = message(api, graph);
-        assert_eq!(status, expected, "{said}");
-        assert!(said.contains(part), "'{said}' lacks '{part}'");
-    };
-    let (rho, derivative) = (c("rho"), c("derivative"));
-    let mut index = 0;
-    // SAFETY: the texts end with zeros, the places are writable.
-    unsafe {
-        for value in [f64::NAN, f64::INFINITY, -1.0, 1e300, -1e-300 - 1.0] {
-            check((api.graph_set_float)(graph, 0, rho.as_ptr(), value), ISOPHOTE_OUT_OF_RANGE, "'rho'");
-        }
-        let float = c("rhoo");
-        check((api.graph_set_float)(graph, 0, float.as_ptr(), 1.0), ISOPHOTE_UNKNOWN, "did you mean 'rho'?");
-        check((api.graph_set_float)(graph, 7, rho.as_ptr(), 1.0), ISOPHOTE_UNKNOWN, "no node 7");
-        check(
-            (api.graph_set_float)(graph, u32::MAX, rho.as_ptr(), 1.0),
-            ISOPHOTE_UNKNOWN,
-            "no node 4294967295",
-        );
-        check((api.graph_set_bool)(graph, 0, rho.as_ptr(), 1), ISOPHOTE_WRONG_TYPE, "graph_set_float");
-        check(
-            (api.graph_set_color)(graph, 0, rho.as_ptr(), [0.5_f32; 4].as_ptr()),
-            ISOPHOTE_WRONG_TYPE,
-            "is a number",
-        );
-        check(
-            (api.graph_set_float)(graph, 0, derivative.as_ptr(), 1.0),
-            ISOPHOTE_WRONG_TYPE,
-            "graph_set_choice",
-        );
-        check(
-            (api.graph_set_choice)(graph, 0, derivative.as_ptr(), c("sobal").as_ptr()),
-            ISOPHOTE_UNKNOWN,
-            "did you mean 'sobel'?",
-        );
-        check(
-            (api.graph_set_text)(graph, 0, rho.as_ptr(), c("wide").as_ptr()),
-            ISOPHOTE_OUT_OF_RANGE,
-            "not 'wide'",
-        );
-        check(
-            (api.graph_set_float)(graph, 0, c"\xff\xfe".as_ptr(), 1.0),
-            ISOPHOTE_INVALID_ARGUMENT,
-            "not UTF-8",
-        );
-        check((api.graph_connect)(graph, 0, 0, c("color").as_ptr()), ISOPHOTE_CONNECTION, "takes color");
-        check((api.graph_connect)(graph, 0, 0, c("colour").as_ptr()), ISOPHOTE_UNKNOWN, "'color'");
-        check(
-            (api.graph_connect_input)(graph, c("depth").as_ptr(), 0, c("color").as_ptr()),
-            ISOPHOTE_CONNECTION,
-            "not depth",
-        );
-        check(
-            (api.graph_connect_input)(graph, c("dept").as_ptr(), 0, c("depth").as_ptr()),
-            ISOPHOTE_UNKNOWN,
-            "object_id",
-        );
-        check(
-            (api.graph_add)(graph, c("structure_tensor").as_ptr(), c("gaussian").as_ptr(), &raw mut index),
-            ISOPHOTE_INVALID_ARGUMENT,
-            "two nodes",
-        );
-        check(
-            (api.graph_add)(graph, c("").as_ptr(), c("gaussian").as_ptr(), &raw mut index),
-            ISOPHOTE_INVALID_ARGUMENT,
-            "cannot name",
-        );
-        check(
-            (api.graph_add)(graph, c("new").as_ptr(), c("gausian").as_ptr(), &raw mut index),
-            ISOPHOTE_UNKNOWN,
-            "did you mean 'gaussian'?",
-        );
-        check((api.graph_set_output)(graph, 1), ISOPHOTE_UNKNOWN, "no node 1");
-        assert_eq!(json(graph), before);
-
-        // What is right still works, and can be read back.
-        assert_eq!((api.graph_set_float)(graph, 0, rho.as_ptr(), 0.1), ISOPHOTE_OK);
-        assert_eq!((api.graph_set_choice)(graph, 0, derivative.as_ptr(), c("sobel").as_ptr()), ISOPHOTE_OK);
-        let mut value = IsophoteValue { kind: 9, choice_index: 9, choice: null(), number: [9.0; 4] };
-        assert_eq!((api.graph_get)(graph, 0, rho.as_ptr(), &raw mut value), ISOPHOTE_OK);
-        assert_eq!((value.kind, value.number[0]), (ISOPHOTE_PARAM_FLOAT, 0.1));
-        assert_eq!((api.graph_get)(graph, 0, derivative.as_ptr(), &raw mut value), ISOPHOTE_OK);
-        assert_eq!((value.kind, value.choice_index), (ISOPHOTE_PARAM_CHOICE, 1));
-        assert_eq!(CStr::from_ptr(value.choice), c"sobel");
-        assert_ne!(json(graph), before);
-        (api.graph_destroy)(graph);
-    }
+    let called = Called { api: library.api, graph: single(library.api, "structure_tensor") };
+    let before = called.json();
+    called.set_wrong_values();
+    called.connect_wrongly();
+    called.add_wrongly();
+    assert_eq!(called.json(), before);
+    called.set_right_values();
+    assert_ne!(called.json(), before);
+    // SAFETY: it takes any handle.
+    assert_eq!(unsafe { (library.api.graph_destroy)(called.graph) }, ISOPHOTE_OK);
 }
 
 #[test]

@@ -184,6 +184,16 @@ fn impossible_images_are_refused_and_nothing_is_written() {
         assert_eq!(status, expected, "{as_target:?}: {said}");
         assert!(said.contains("the target image"), "{said}");
     }
+    assert!(out.iter().all(|v| *v == -7.0));
+}
+
+#[test]
+fn missing_unknown_and_doubled_inputs_are_refused() {
+    let library = Loaded::new();
+    let run = Run::new(&library, "gaussian");
+    let data = picture();
+    let good = floats(&data);
+    let out = vec![-7.0_f32; data.len()];
     let missing = run.run(&[], &target(floats(&out)));
     assert_eq!(missing.0, ISOPHOTE_INPUT);
     assert!(missing.1.contains("'color' is missing; 45x31 pixels"), "{}", missing.1);

@@ -56,15 +56,9 @@ fn as_field(image: &Image) -> Field {
     image.data().chunks_exact(4).map(|t| [0, 1, 2].map(|c| f64::from(t[c]))).collect()
 }
 
-#[test]
-fn relaxation_on_a_pyramid_solves_laplaces_equation() {
-    let tensors = known_tensors();
-    let fixed: Vec<bool> = tensors.data().chunks_exact(4).map(|t| t[3] == 1.0).collect();
-    let known = as_field(&tensors);
-    let start: Field = known.iter().zip(&fixed).map(|(t, f)| if *f { *t } else { [0.0; 3] }).collect();
-
-    // Successive over-relaxation to the converged solution.
-    let mut solution = start.clone();
+/// The converged solution, by successive over-relaxation.
+fn over_relaxed(start: Field, fixed: &[bool]) -> Field {
+    let mut solution = start;
     let mut change = 1.0f64;
     while change > 1e-10 {
         change = 0.0;
@@ -83,18 +77,35 @@ fn relaxation_on_a_pyramid_solves_laplaces_equation() {
             }
         }
     }
-    let mut jacobi = start;
-    for _ in 0..1000 {
-        let mut next = jacobi.clone();
+    solution
+}
+
+/// So many iterations of Jacobi's method.
+fn iterated(start: Field, fixed: &[bool], count: usize) -> Field {
+    let mut field = start;
+    for _ in 0..count {
+        let mut next = field.clone();
         for y in 0..SIDE {
             for x in 0..SIDE {
                 if !fixed[y * SIDE + x] {
-                    next[y * SIDE + x] = average(&jacobi, x, y);
+                    next[y * SIDE + x] = average(&field, x, y);
                 }
             }
         }
-        jacobi = next;
+        field = next;
     }
+    field
+}
+
+#[test]
+fn relaxation_on_a_pyramid_solves_laplaces_equation() {
+    let tensors = known_tensors();
+    let fixed: Vec<bool> = tensors.data().chunks_exact(4).map(|t| t[3] == 1.0).collect();
+    let known = as_field(&tensors);
+    let start: Field = known.iter().zip(&fixed).map(|(t, f)| if *f { *t } else { [0.0; 3] }).collect();
+
+    let solution = over_relaxed(start.clone(), &fixed);
+    let jacobi = iterated(start, &fixed, 1000);
     let share = fixed.iter().filter(|f| **f).count() as f64 / fixed.len() as f64;
     let title = format!(
         "Distance from the converged solution of Laplace's equation where {:.0} % of the tensors are kept, in \

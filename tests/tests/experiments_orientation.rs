@@ -144,9 +144,57 @@ fn on_lanes([e, f, g]: [f32; 3]) -> (f32, f32, [f32; 2]) {
     dispatch!(Level::new(), simd => lanes(simd, [e, f, g]))
 }
 
+/// A tensor of this condition, turned at random; some lie along an axis nearly exactly, where the
+/// determinant loses nothing.
+fn random_tensor(random: &mut Random, condition: f64) -> [f32; 3] {
+    let angle = if random.below(2) == 0 {
+        random.unit() * std::f64::consts::PI
+    } else {
+        random.normal() / condition.sqrt() + 0.5 * std::f64::consts::PI * random.below(2) as f64
+    };
+    let (sin, cos) = angle.sin_cos();
+    let lambda1 = 10f64.powf(24.0 * random.unit() - 12.0);
+    let lambda2 = lambda1 / condition;
+    [
+        lambda1 * cos * cos + lambda2 * sin * sin,
+        (lambda1 - lambda2) * sin * cos,
+        lambda1 * sin * sin + lambda2 * cos * cos,
+    ]
+    .map(|v| v as f32)
+}
+
+/// Relative errors of both eigenvalues, of the smaller one as B - R, and of the angle, in units of the last
+/// place; `None` where rounding has made the determinant negative.
+fn errors_of([e, f, g]: [f32; 3]) -> Option<[f64; 4]> {
+    let epsilon = f64::from(f32::EPSILON);
+    let (ef, ff, gf) = (f64::from(e), f64::from(f), f64::from(g));
+    let (want1, want2, want_angle) = exact(ef, ff, gf);
+    let (got1, got2, [x, y]) = scalar::eigen(e, f, g);
+    let (lane1, lane2, [lx, ly]) = on_lanes([e, f, g]);
+    let near = |a: f32, b: f32| (a - b).abs() <= 4.0 * f32::EPSILON * a.abs().max(b.abs());
+    assert!(near(got1, lane1) && (x * ly - y * lx).abs() < 4.0 * f32::EPSILON, "{e} {f} {g}");
+    let determinant = ef * gf - ff * ff;
+    if determinant <= 0.0 {
+        return None;
+    }
+    // What rounding E G and F^2 must cost, however the rest is done.
+    let loss = (ef * gf + ff * ff) / determinant;
+    let relative = |got: f32, want: f64| (f64::from(got) / want - 1.0).abs() / epsilon;
+    let radius = ((0.5 * (e - g)).powi(2) + f * f).sqrt();
+    let naive = 0.5 * (e + g) - radius;
+    let angle = if want1 > want2 * 1.000_01 {
+        let turned = f64::from(y).atan2(f64::from(x)) - want_angle;
+        let off = (turned / std::f64::consts::PI - (turned / std::f64::consts::PI).round()).abs();
+        off * std::f64::consts::PI / epsilon
+    } else {
+        0.0
+    };
+    let smaller = relative(got2, want2).max(relative(lane2, want2)) / loss;
+    Some([relative(got1, want1), smaller, relative(naive, want2) / loss, angle])
+}
+
 #[test]
 fn the_eigen_solver_is_as_exact_as_its_numbers_allow() {
-    let epsilon = f64::from(f32::EPSILON);
     let mut random = Random::new(234);
     let mut table = Table::new(
         8,
@@ -156,47 +204,11 @@ fn the_eigen_solver_is_as_exact_as_its_numbers_allow() {
         &["condition", "lambda1", "lambda2", "lambda2 as B - R", "angle"],
     );
     for exponent in 0..=7 {
-        let condition = 10f64.powi(exponent);
         let mut worst = [0.0f64; 4];
         for _ in 0..20_000 {
-            // Some lie along an axis nearly exactly, where the determinant loses nothing.
-            let angle = if random.below(2) == 0 {
-                random.unit() * std::f64::consts::PI
-            } else {
-                random.normal() / condition.sqrt() + 0.5 * std::f64::consts::PI * random.below(2) as f64
-            };
-            let (sin, cos) = angle.sin_cos();
-            let lambda1 = 10f64.powf(24.0 * random.unit() - 12.0);
-            let lambda2 = lambda1 / condition;
-            let [e, f, g] = [
-                lambda1 * cos * cos + lambda2 * sin * sin,
-                (lambda1 - lambda2) * sin * cos,
-                lambda1 * sin * sin + lambda2 * cos * cos,
-            ]
-            .map(|v| v as f32);
-            let (ef, ff, gf) = (f64::from(e), f64::from(f), f64::from(g));
-            let (want1, want2, want_angle) = exact(ef, ff, gf);
-            let (got1, got2, [x, y]) = scalar::eigen(e, f, g);
-            let (lane1, lane2, [lx, ly]) = on_lanes([e, f, g]);
-            let near = |a: f32, b: f32| (a - b).abs() <= 4.0 * f32::EPSILON * a.abs().max(b.abs());
-            assert!(near(got1, lane1) && (x * ly - y * lx).abs() < 4.0 * f32::EPSILON, "{e} {f} {g}");
-            let determinant = ef * gf - ff * ff;
-            if determinant <= 0.0 {
-                continue;
-            }
-            // What rounding E G and F^2 must cost, however the rest is done.
-            let loss = (ef * gf + ff * ff) / determinant;
-            let error2 = (f64::from(got2) / want2 - 1.0).abs() / epsilon / loss;
-            let error2_lanes = (f64::from(lane2) / want2 - 1.0).abs() / epsilon / loss;
-            let radius = ((0.5 * (e - g)).powi(2) + f * f).sqrt();
-            let naive = f64::from(0.5 * (e + g) - radius);
-            worst[0] = worst[0].max((f64::from(got1) / want1 - 1.0).abs() / epsilon);
-            worst[1] = worst[1].max(error2.max(error2_lanes));
-            worst[2] = worst[2].max((naive / want2 - 1.0).abs() / epsilon / loss);
-            if want1 > want2 * 1.000_01 {
-                let turned = f64::from(y).atan2(f64::from(x)) - want_angle;
-                let off = (turned / std::f64::consts::PI - (turned / std::f64::consts::PI).round()).abs();
-                worst[3] = worst[3].max(off * std::f64::consts::PI / epsilon);
+            let tensor = random_tensor(&mut random, 10f64.powi(exponent));
+            for (worst, error) in worst.iter_mut().zip(errors_of(tensor).into_iter().flatten()) {
+                *worst = worst.max(error);
             }
         }
         table.row(&[

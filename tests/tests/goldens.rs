@@ -130,7 +130,7 @@ fn main() -> ExitCode {
     for golden in all() {
         let again = golden.clone();
         trials.add("goldens::cpu", &golden.name, move || the_cpu_gives_the_golden_image(&again));
-        trials.add("goldens::gpu", &golden.name.clone(), move || the_gpu_gives_the_golden_image(&golden));
+        trials.add("goldens::gpu", golden.name.clone(), move || the_gpu_gives_the_golden_image(&golden));
     }
     trials.add_plain("goldens::every_one_belongs_to_a_node_and_all_are_small", || {
         every_golden_image_belongs_to_a_node_and_all_are_small();

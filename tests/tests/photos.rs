@@ -56,6 +56,12 @@ fn around(image: &Image, x: i32, y: i32, radius: i32, most: bool) -> f32 {
     found
 }
 
+/// Least luma of the eight neighbours of a pixel that is not at the border.
+fn least_beside(image: &Image, x: i32, y: i32) -> f32 {
+    let rest = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy))).filter(|d| *d != (0, 0));
+    rest.map(|(dx, dy)| luma(image.pixel(x + dx, y + dy))).fold(f32::MAX, f32::min)
+}
+
 fn check(name: &str) {
     let Some(photo) = photo(name) else { return };
     let (w, h) = (photo.width() as i32, photo.height() as i32);
@@ -92,12 +98,10 @@ fn check(name: &str) {
                 drawn += 1;
                 neighbours += near;
             }
-            let own = luma(cartoon.pixel(x, y));
-            let rest = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy))).filter(|d| *d != (0, 0));
-            let clamped = rest.map(|(dx, dy)| ((x + dx).clamp(0, w - 1), (y + dy).clamp(0, h - 1)));
-            let least = clamped.map(|(x, y)| luma(cartoon.pixel(x, y))).fold(f32::MAX, f32::min);
             // Darker than all its neighbours by far.
-            speckles += usize::from(x > 0 && y > 0 && x < w - 1 && y < h - 1 && own < least - 0.15);
+            let is_inside = x > 0 && y > 0 && x < w - 1 && y < h - 1;
+            speckles +=
+                usize::from(is_inside && luma(cartoon.pixel(x, y)) < least_beside(&cartoon, x, y) - 0.15);
         }
     }
     let share = |n: usize| n as f32 / pixels;
