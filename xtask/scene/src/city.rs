@@ -155,6 +155,12 @@ fn houses(writer: &mut Writer) {
     let corner = writer.model("corner house", &corner_house());
     writer.place("corner house", corner, Vec3::new(18.8, 0.0, 1.0), -82.0);
     life::banner(writer, Vec3::new(15.0, 5.6, 12.2), -90.0);
+    near_houses(writer);
+    far_houses(writer);
+}
+
+/// The houses about the square, each of which is modelled for itself.
+fn near_houses(writer: &mut Writer) {
     use Material::{PaintedWood, PlasterOchre, PlasterRed, PlasterRose, PlasterWhite, Wood};
     let near = [
         (
@@ -182,7 +188,6 @@ fn houses(writer: &mut Writer) {
         (Vec3::new(-19.0, 0.0, -14.5), 90.0, Vec2::new(8.8, 6.6), 3, PlasterWhite, PlasterOchre, Wood, 15),
     ];
     for (place, degrees, size, storeys, plaster, dado, shutters, seed) in near {
-        let detailed = true;
         let house = House {
             size,
             storeys,
@@ -190,14 +195,42 @@ fn houses(writer: &mut Writer) {
             dado,
             shutters,
             seed,
-            detailed,
+            detailed: true,
             balcony: seed == 12,
             outside_stair: false,
         };
         let mesh = writer.model("house", &house.build());
         writer.place("house", mesh, place, degrees);
     }
-    // Farther away three kinds of house repeat.
+}
+
+/// Where the far houses stand: x, z, and degrees about the vertical.
+const FAR_HOUSES: [(f32, f32, f32); 20] = [
+    (-31.0, -12.0, 70.0),
+    (-29.0, 2.0, 95.0),
+    (-28.0, -24.0, 60.0),
+    (-17.0, -33.0, 12.0),
+    (-6.0, -37.0, -8.0),
+    (3.5, -34.0, 15.0),
+    (13.0, -38.0, -20.0),
+    (22.0, -30.0, -40.0),
+    (30.0, -16.0, -75.0),
+    (30.5, 6.0, -95.0),
+    (-24.0, -44.0, 25.0),
+    (-12.0, -48.0, 0.0),
+    (0.0, -50.0, 20.0),
+    (18.0, -49.0, -12.0),
+    (31.0, -40.0, -35.0),
+    (31.0, 18.0, -85.0),
+    (-29.0, 31.0, 140.0),
+    (-17.0, 40.0, 165.0),
+    (20.0, 40.5, 195.0),
+    (31.5, 31.0, -120.0),
+];
+
+/// Farther away three kinds of house repeat.
+fn far_houses(writer: &mut Writer) {
+    use Material::{PaintedWood, PlasterOchre, PlasterRed, PlasterRose, PlasterWhite};
     let kinds = [
         (Vec2::new(7.0, 6.0), 2, PlasterWhite, PlasterRose, 21),
         (Vec2::new(8.6, 6.4), 2, PlasterOchre, PlasterWhite, 22),
@@ -217,29 +250,7 @@ fn houses(writer: &mut Writer) {
         };
         writer.model("far house", &house.build())
     });
-    let places = [
-        (-31.0, -12.0, 70.0),
-        (-29.0, 2.0, 95.0),
-        (-28.0, -24.0, 60.0),
-        (-17.0, -33.0, 12.0),
-        (-6.0, -37.0, -8.0),
-        (3.5, -34.0, 15.0),
-        (13.0, -38.0, -20.0),
-        (22.0, -30.0, -40.0),
-        (30.0, -16.0, -75.0),
-        (30.5, 6.0, -95.0),
-        (-24.0, -44.0, 25.0),
-        (-12.0, -48.0, 0.0),
-        (0.0, -50.0, 20.0),
-        (18.0, -49.0, -12.0),
-        (31.0, -40.0, -35.0),
-        (31.0, 18.0, -85.0),
-        (-29.0, 31.0, 140.0),
-        (-17.0, 40.0, 165.0),
-        (20.0, 40.5, 195.0),
-        (31.5, 31.0, -120.0),
-    ];
-    for (index, (x, z, degrees)) in places.into_iter().enumerate() {
+    for (index, (x, z, degrees)) in FAR_HOUSES.into_iter().enumerate() {
         writer.root(Node {
             name: "far house".into(),
             translation: Vec3::new(x, ground_height(x, z) - 0.3, z),
@@ -253,10 +264,16 @@ fn houses(writer: &mut Writer) {
 
 /// Trees, cypresses and bushes.
 fn trees(writer: &mut Writer) {
-    let broad = [
-        writer.model("plane tree", &nature::broadleaf(41, Vec3::new(0.95, 1.0, 0.85))),
-        writer.model("olive tree", &nature::broadleaf(43, Vec3::new(0.92, 0.95, 1.0))),
-    ];
+    let plane = writer.model("plane tree", &nature::broadleaf(41, Vec3::new(0.95, 1.0, 0.85)));
+    let olive = writer.model("olive tree", &nature::broadleaf(43, Vec3::new(0.92, 0.95, 1.0)));
+    broadleaved(writer, [plane, olive]);
+    grove(writer, olive);
+    cypresses(writer);
+    bushes(writer);
+}
+
+/// Single trees of two kinds.
+fn broadleaved(writer: &mut Writer, kinds: [usize; 2]) {
     let places = [
         (0, -12.6, -7.5, 40.0, 1.15),
         (1, PLANTERS[0].x, PLANTERS[0].z, 200.0, 1.2),
@@ -280,12 +297,15 @@ fn trees(writer: &mut Writer) {
             translation: Vec3::new(x, ground_height(x, z), z),
             rotation: Quat::from_rotation_y(f32::to_radians(degrees)),
             scale,
-            mesh: Some(broad[kind]),
+            mesh: Some(kinds[kind]),
             backdrop: is_outside(x, z),
             ..Node::default()
         });
     }
-    // An olive grove on the slope.
+}
+
+/// An olive grove on the slope.
+fn grove(writer: &mut Writer, olive: usize) {
     for row in 0..5 {
         for column in 0..5 {
             let (x, z) = (-42.0 - column as f32 * 5.2, -12.0 + row as f32 * 6.5 + column as f32 * 1.5);
@@ -294,12 +314,15 @@ fn trees(writer: &mut Writer) {
                 translation: Vec3::new(x, ground_height(x, z), z),
                 rotation: Quat::from_rotation_y((row * 5 + column) as f32 * 2.3),
                 scale: 0.72 + 0.05 * ((row * 2 + column * 3) % 4) as f32,
-                mesh: Some(broad[1]),
+                mesh: Some(olive),
                 backdrop: is_outside(x, z),
                 ..Node::default()
             });
         }
     }
+}
+
+fn cypresses(writer: &mut Writer) {
     let cypress = writer.model("cypress", &nature::cypress(47));
     let places = [
         (7.4, -4.0, 1.15),
@@ -325,6 +348,9 @@ fn trees(writer: &mut Writer) {
             ..Node::default()
         });
     }
+}
+
+fn bushes(writer: &mut Writer) {
     let bush = writer.model("bush", &nature::bush(53));
     for (index, (x, z)) in [
         (-10.9, 3.0),

@@ -66,35 +66,20 @@ pub fn wall(
         }
     }
     for opening in openings {
-        let (left, right) = (opening.x, opening.x + opening.width);
-        let (foot, head) = (opening.y, opening.y + opening.height);
-        let point = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
-        let mesh = model.part(top);
-        mesh.face(&[
-            point(left, foot, 0.0),
-            point(left, foot, -reveal),
-            point(left, head, -reveal),
-            point(left, head, 0.0),
-        ]);
-        mesh.face(&[
-            point(right, foot, -reveal),
-            point(right, foot, 0.0),
-            point(right, head, 0.0),
-            point(right, head, -reveal),
-        ]);
-        mesh.face(&[
-            point(left, head, -reveal),
-            point(right, head, -reveal),
-            point(right, head, 0.0),
-            point(left, head, 0.0),
-        ]);
-        mesh.face(&[
-            point(left, foot, 0.0),
-            point(right, foot, 0.0),
-            point(right, foot, -reveal),
-            point(left, foot, -reveal),
-        ]);
+        reveals(model.part(top), opening, reveal);
     }
+}
+
+/// Adds the four faces that lead from the edges of an opening into the wall, `depth` deep.
+fn reveals(mesh: &mut Mesh, opening: &Opening, depth: f32) {
+    let (left, right) = (opening.x, opening.x + opening.width);
+    let (foot, head) = (opening.y, opening.y + opening.height);
+    let front = |x: f32, y: f32| Vec3::new(x, y, 0.0);
+    let back = |x: f32, y: f32| Vec3::new(x, y, -depth);
+    mesh.face(&[front(left, foot), back(left, foot), back(left, head), front(left, head)]);
+    mesh.face(&[back(right, foot), front(right, foot), front(right, head), back(right, head)]);
+    mesh.face(&[back(left, head), back(right, head), front(right, head), front(left, head)]);
+    mesh.face(&[front(left, foot), front(right, foot), back(right, foot), back(left, foot)]);
 }
 
 /// A slope of pan and cover tiles.

@@ -100,8 +100,26 @@ pub fn pennants(writer: &mut Writer, places: &[(Vec3, f32)]) {
     }
 }
 
-/// Adds a bird with a body joint and one joint for each wing, gliding around a circle.
+/// Adds birds that glide around circles, each with a body joint and one joint for each wing.
 pub fn birds(writer: &mut Writer, centres: &[(Vec3, f32)]) {
+    let mut model = Model::default();
+    *model.part(Material::Plumage) = bird();
+    let mesh = writer.model("bird", &model);
+    for (index, &(centre, radius)) in centres.iter().enumerate() {
+        let circle = |t: f32| {
+            let angle = t * TAU + index as f32 * 2.1;
+            let place =
+                centre + Vec3::new(angle.sin() * radius, 0.4 * (angle * 2.0).sin(), angle.cos() * radius);
+            // It flies along the circle and leans into the turn.
+            (place, Quat::from_rotation_y(angle + PI / 2.0) * Quat::from_rotation_z(0.35))
+        };
+        let beat = |t: f32| 0.15 + 0.5 * (t * 6.0 * TAU + index as f32).sin();
+        glide(writer, mesh, circle, beat);
+    }
+}
+
+/// The mesh of a bird with its skin: joint 0 is the body, 1 and 2 are the wings.
+fn bird() -> Mesh {
     const SPAN: f32 = 0.85;
     let mut bird = Mesh::default();
     bird.ellipsoid(Vec3::ZERO, Vec3::new(0.10, 0.09, 0.34), 14);
@@ -131,49 +149,31 @@ pub fn birds(writer: &mut Writer, centres: &[(Vec3, f32)]) {
     bird.paint(|point, _| {
         if point.x.abs() > 0.62 || point.z < -0.5 { Vec3::splat(0.06) } else { Vec3::new(0.80, 0.78, 0.74) }
     });
-    let mut model = Model::default();
-    *model.part(Material::Plumage) = bird;
-    let mesh = writer.model("bird", &model);
+    bird
+}
+
+/// Adds one bird: `path` is its place and attitude and `beat` the angle of its wings, over a loop from 0 to 1.
+fn glide(writer: &mut Writer, mesh: usize, path: impl Fn(f32) -> (Vec3, Quat), beat: impl Fn(f32) -> f32) {
     const KEYS: usize = 32;
-    for (index, &(centre, radius)) in centres.iter().enumerate() {
-        let shoulder = Vec3::new(0.06, 0.03, 0.0);
-        let joint =
-            |name: &str, translation: Vec3| Node { name: name.into(), translation, ..Node::default() };
-        let left = writer.node(joint("left wing", shoulder * Vec3::new(-1.0, 1.0, 1.0)));
-        let right = writer.node(joint("right wing", shoulder));
-        let circle = |t: f32| {
-            let angle = t * TAU + index as f32 * 2.1;
-            let place =
-                centre + Vec3::new(angle.sin() * radius, 0.4 * (angle * 2.0).sin(), angle.cos() * radius);
-            // It flies along the circle and leans into the turn.
-            (place, Quat::from_rotation_y(angle + PI / 2.0) * Quat::from_rotation_z(0.35))
-        };
-        let body = writer.root(Node {
-            name: "bird".into(),
-            translation: circle(0.0).0,
-            rotation: circle(0.0).1,
-            children: vec![left, right],
-            ..Node::default()
-        });
-        let bind = [
-            Mat4::IDENTITY,
-            Mat4::from_translation(shoulder * Vec3::new(-1.0, 1.0, 1.0)),
-            Mat4::from_translation(shoulder),
-        ];
-        let skin = writer.skin("bird", &[body, left, right], &bind);
-        writer.root(Node { name: "bird skin".into(), mesh: Some(mesh), skin: Some(skin), ..Node::default() });
-        let along: Vec<f32> = (0..=KEYS).map(|key| key as f32 / KEYS as f32).collect();
-        let places = along.iter().map(|&t| circle(t).0).collect();
-        let turns = along.iter().map(|&t| circle(t).1).collect();
-        writer.animate(body, &times(KEYS), &Track::Translation(places), Interpolation::Linear);
-        writer.animate(body, &times(KEYS), &Track::Rotation(turns), Interpolation::Linear);
-        for (wing, side) in [(left, -1.0), (right, 1.0)] {
-            let beats = along
-                .iter()
-                .map(|t| Quat::from_rotation_z(side * (0.15 + 0.5 * (t * 6.0 * TAU + index as f32).sin())))
-                .collect();
-            writer.animate(wing, &times(KEYS), &Track::Rotation(beats), Interpolation::Linear);
-        }
+    let shoulder = Vec3::new(0.06, 0.03, 0.0);
+    let other = shoulder * Vec3::new(-1.0, 1.0, 1.0);
+    let joint = |name: &str, translation: Vec3| Node { name: name.into(), translation, ..Node::default() };
+    let left = writer.node(joint("left wing", other));
+    let right = writer.node(joint("right wing", shoulder));
+    let (translation, rotation) = path(0.0);
+    let children = vec![left, right];
+    let body = writer.root(Node { name: "bird".into(), translation, rotation, children, ..Node::default() });
+    let bind = [Mat4::IDENTITY, Mat4::from_translation(other), Mat4::from_translation(shoulder)];
+    let skin = writer.skin("bird", &[body, left, right], &bind);
+    writer.root(Node { name: "bird skin".into(), mesh: Some(mesh), skin: Some(skin), ..Node::default() });
+    let along: Vec<f32> = (0..=KEYS).map(|key| key as f32 / KEYS as f32).collect();
+    let places = along.iter().map(|&t| path(t).0).collect();
+    let turns = along.iter().map(|&t| path(t).1).collect();
+    writer.animate(body, &times(KEYS), &Track::Translation(places), Interpolation::Linear);
+    writer.animate(body, &times(KEYS), &Track::Rotation(turns), Interpolation::Linear);
+    for (wing, side) in [(left, -1.0), (right, 1.0)] {
+        let beats = along.iter().map(|&t| Quat::from_rotation_z(side * beat(t))).collect();
+        writer.animate(wing, &times(KEYS), &Track::Rotation(beats), Interpolation::Linear);
     }
 }
 

@@ -9,8 +9,18 @@ use std::f32::consts::{PI, TAU};
 /// A stall under striped cloth; it faces +z.
 pub fn stall() -> Model {
     let mut model = Model::default();
-    let (half, depth, front, rear) = (1.9, 1.25, 2.25, 2.9);
-    let wood = model.part(Material::Wood);
+    frame(model.part(Material::Wood));
+    awning(model.part(Material::StripedCloth));
+    goods(&mut model);
+    model
+}
+
+/// Half the width and half the depth of a stall, and the heights of its posts in front and at the back.
+const STALL: (f32, f32, f32, f32) = (1.9, 1.25, 2.25, 2.9);
+
+/// Posts, beams and the table of a stall.
+fn frame(wood: &mut Mesh) {
+    let (half, depth, front, rear) = STALL;
     for x in [-half, half] {
         for (z, height) in [(depth, front), (-depth, rear)] {
             wood.tube(&[Vec3::new(x, -0.1, z), Vec3::new(x, height, z)], &[0.06, 0.05], 10);
@@ -36,7 +46,11 @@ pub fn stall() -> Model {
         Vec3::new(half - 0.15, 0.82, depth - 0.13),
         Faces::All,
     );
-    let cloth = model.part(Material::StripedCloth);
+}
+
+/// The cloth over a stall.
+fn awning(cloth: &mut Mesh) {
+    let (half, depth, front, rear) = STALL;
     // The roof sags between the beams.
     cloth.patch(28, 14, Vec2::ONE, |u, v| {
         let sag = 0.16 * (PI * u).sin() * (PI * v).sin() + 0.02 * (u * TAU * 4.0).sin() * (PI * v).sin();
@@ -50,6 +64,10 @@ pub fn stall() -> Model {
         let wave = 0.03 * (u * TAU * 4.5).sin() * (1.0 - v);
         Vec3::new(x, front + 0.03 - scallop * (1.0 - v), depth + 0.25 + wave + 0.02 * (1.0 - v))
     });
+}
+
+/// Crates of produce on the table and before it.
+fn goods(model: &mut Model) {
     let mut random = Random::new(211);
     let colors = [
         Vec3::new(0.80, 0.28, 0.03),
@@ -67,7 +85,6 @@ pub fn stall() -> Model {
         let color = colors[if x < -1.0 { 3 } else { 0 }];
         model.place(&crate_of(color, &mut random), Vec3::new(x, 0.0, z), degrees);
     }
-    model
 }
 
 /// A slatted crate of round fruit, about 0.6 m wide.

@@ -65,174 +65,135 @@ pub struct Definition {
     pub unlit: bool,
 }
 
-const PLAIN: Definition = Definition {
-    name: "",
-    color: [1.0; 3],
-    metallic: 0.0,
-    roughness: 0.8,
-    tile: None,
-    texture: None,
-    normal: None,
-    surface: None,
-    emissive: None,
-    alpha_mask: false,
-    double_sided: false,
-    unlit: false,
-};
+impl Definition {
+    /// White, not metallic, rather rough; a look to begin with.
+    const fn new(name: &'static str) -> Self {
+        Self {
+            name,
+            color: [1.0; 3],
+            metallic: 0.0,
+            roughness: 0.8,
+            tile: None,
+            texture: None,
+            normal: None,
+            surface: None,
+            emissive: None,
+            alpha_mask: false,
+            double_sided: false,
+            unlit: false,
+        }
+    }
+
+    const fn color(self, red: f32, green: f32, blue: f32) -> Self {
+        Self { color: [red, green, blue], ..self }
+    }
+
+    const fn rough(self, roughness: f32) -> Self {
+        Self { roughness, ..self }
+    }
+
+    const fn metal(self) -> Self {
+        Self { metallic: 1.0, ..self }
+    }
+
+    const fn texture(self, texture: Texture) -> Self {
+        Self { texture: Some(texture), ..self }
+    }
+
+    /// One repetition of all textures covers so many metres.
+    const fn tile(self, metres: f32) -> Self {
+        Self { tile: Some(metres), ..self }
+    }
+
+    const fn normal(self, texture: Texture, strength: f32) -> Self {
+        Self { normal: Some((texture, strength)), ..self }
+    }
+
+    const fn surface(self, texture: Texture) -> Self {
+        Self { surface: Some(texture), ..self }
+    }
+
+    const fn emissive(self, color: [f32; 3], strength: f32) -> Self {
+        Self { emissive: Some((color, strength)), ..self }
+    }
+
+    const fn double_sided(self) -> Self {
+        Self { double_sided: true, ..self }
+    }
+
+    const fn unlit(self) -> Self {
+        Self { unlit: true, ..self }
+    }
+}
+
+fn plaster(name: &'static str) -> Definition {
+    Definition::new(name).rough(0.92).tile(4.0).texture(Texture::Plaster)
+}
+
+fn blocks(name: &'static str) -> Definition {
+    let look = Definition::new(name).rough(1.0).texture(Texture::Blocks);
+    look.normal(Texture::BlocksNormal, 1.0).surface(Texture::BlocksSurface)
+}
+
+fn wood(name: &'static str) -> Definition {
+    Definition::new(name).tile(1.6).texture(Texture::Wood)
+}
+
+fn leaves(name: &'static str, texture: Texture) -> Definition {
+    Definition { alpha_mask: true, ..Definition::new(name).texture(texture).double_sided() }
+}
 
 impl Material {
     /// The material's look.
     pub fn definition(self) -> Definition {
-        let plaster = |name, color| Definition {
-            name,
-            color,
-            roughness: 0.92,
-            tile: Some(4.0),
-            texture: Some(Texture::Plaster),
-            ..PLAIN
-        };
-        let wood =
-            |name, color| Definition { name, color, tile: Some(1.6), texture: Some(Texture::Wood), ..PLAIN };
-        let leaves = |name, color, texture| Definition {
-            name,
-            color,
-            texture: Some(texture),
-            alpha_mask: true,
-            double_sided: true,
-            ..PLAIN
-        };
-        let blocks = |name, color, tile| Definition {
-            name,
-            color,
-            tile: Some(tile),
-            texture: Some(Texture::Blocks),
-            normal: Some((Texture::BlocksNormal, 1.0)),
-            surface: Some(Texture::BlocksSurface),
-            roughness: 1.0,
-            ..PLAIN
-        };
-        let plain = |name, color, roughness| Definition { name, color, roughness, ..PLAIN };
+        let look = Definition::new;
         match self {
-            Self::Marble => Definition {
-                name: "marble",
-                color: [0.80, 0.75, 0.67],
-                roughness: 0.55,
-                tile: Some(3.0),
-                texture: Some(Texture::Marble),
-                ..PLAIN
-            },
-            Self::MarbleBlocks => blocks("marble blocks", [0.88, 0.82, 0.73], 2.4),
-            Self::Ashlar => blocks("ashlar", [0.80, 0.66, 0.47], 3.2),
-            Self::Paving => Definition {
-                name: "paving",
-                color: [0.74, 0.67, 0.57],
-                roughness: 0.85,
-                tile: Some(5.0),
-                texture: Some(Texture::Paving),
-                normal: Some((Texture::PavingNormal, 0.8)),
-                ..PLAIN
-            },
-            Self::Cobbles => Definition {
-                name: "cobbles",
-                color: [0.72, 0.66, 0.58],
-                tile: Some(2.6),
-                texture: Some(Texture::Cobbles),
-                normal: Some((Texture::CobblesNormal, 1.0)),
-                ..PLAIN
-            },
-            Self::Mosaic => {
-                Definition { name: "mosaic", roughness: 0.45, texture: Some(Texture::Mosaic), ..PLAIN }
+            Self::Marble => {
+                look("marble").color(0.80, 0.75, 0.67).rough(0.55).tile(3.0).texture(Texture::Marble)
             }
-            Self::Earth => Definition {
-                name: "earth",
-                roughness: 1.0,
-                tile: Some(5.0),
-                texture: Some(Texture::Earth),
-                ..PLAIN
-            },
-            Self::PlasterWhite => plaster("white plaster", [0.78, 0.71, 0.60]),
-            Self::PlasterOchre => plaster("ochre plaster", [0.80, 0.55, 0.26]),
-            Self::PlasterRose => plaster("rose plaster", [0.76, 0.47, 0.36]),
-            Self::PlasterRed => plaster("red paint", [0.44, 0.095, 0.06]),
-            Self::PlasterBlue => plaster("blue paint", [0.07, 0.16, 0.36]),
-            Self::RoofTiles => Definition {
-                name: "roof tiles",
-                tile: Some(3.2),
-                texture: Some(Texture::Terracotta),
-                ..PLAIN
-            },
-            Self::RoofFar => Definition {
-                name: "roof tiles, far",
-                tile: Some(3.2),
-                texture: Some(Texture::Tiles),
-                normal: Some((Texture::TilesNormal, 1.0)),
-                ..PLAIN
-            },
-            Self::Wood => wood("wood", [0.52, 0.36, 0.23]),
-            Self::PaintedWood => wood("painted wood", [0.12, 0.34, 0.36]),
-            Self::Bronze => Definition {
-                name: "bronze",
-                color: [0.62, 0.40, 0.20],
-                metallic: 1.0,
-                roughness: 0.38,
-                ..PLAIN
-            },
-            Self::Gold => Definition {
-                name: "gilding",
-                color: [0.95, 0.70, 0.28],
-                metallic: 1.0,
-                roughness: 0.32,
-                ..PLAIN
-            },
-            Self::Dark => plain("darkness", [0.015, 0.013, 0.012], 1.0),
-            Self::Water => Definition {
-                name: "water",
-                color: [0.05, 0.22, 0.25],
-                roughness: 0.12,
-                tile: Some(1.8),
-                normal: Some((Texture::WaterNormal, 0.5)),
-                ..PLAIN
-            },
-            Self::Spray => plain("running water", [0.62, 0.74, 0.76], 0.25),
-            Self::Broadleaf => leaves("broad leaves", [1.0; 3], Texture::Leaves),
-            Self::Cypress => leaves("cypress", [1.0; 3], Texture::Needles),
-            Self::Bark => {
-                Definition { name: "bark", texture: Some(Texture::Bark), ..wood("", [0.42, 0.33, 0.25]) }
+            Self::MarbleBlocks => blocks("marble blocks").color(0.88, 0.82, 0.73).tile(2.4),
+            Self::Ashlar => blocks("ashlar").color(0.80, 0.66, 0.47).tile(3.2),
+            Self::Paving => {
+                let look = look("paving").color(0.74, 0.67, 0.57).rough(0.85).tile(5.0);
+                look.texture(Texture::Paving).normal(Texture::PavingNormal, 0.8)
             }
-            Self::StripedCloth => Definition {
-                name: "striped cloth",
-                roughness: 0.95,
-                texture: Some(Texture::Stripes),
-                double_sided: true,
-                ..PLAIN
-            },
-            Self::Pennant => Definition {
-                name: "pennant",
-                roughness: 0.9,
-                texture: Some(Texture::Pennant),
-                double_sided: true,
-                ..PLAIN
-            },
-            Self::Terracotta => plain("terracotta", [0.55, 0.23, 0.12], 0.7),
-            Self::PaintedVase => {
-                Definition { name: "painted vase", roughness: 0.4, texture: Some(Texture::Vase), ..PLAIN }
+            Self::Cobbles => {
+                let look = look("cobbles").color(0.72, 0.66, 0.58).tile(2.6);
+                look.texture(Texture::Cobbles).normal(Texture::CobblesNormal, 1.0)
             }
-            Self::Produce => plain("produce", [1.0; 3], 0.6),
-            Self::Flame => Definition {
-                name: "flame",
-                color: [0.2, 0.05, 0.01],
-                emissive: Some(([1.0, 0.38, 0.06], 1.6)),
-                ..PLAIN
-            },
-            Self::Charcoal => Definition {
-                name: "embers",
-                color: [0.02, 0.02, 0.02],
-                emissive: Some(([0.8, 0.12, 0.01], 1.0)),
-                ..PLAIN
-            },
-            Self::Hills => Definition { name: "hills", unlit: true, ..PLAIN },
-            Self::Sky => Definition { name: "sky", texture: Some(Texture::Sky), unlit: true, ..PLAIN },
-            Self::Plumage => Definition { name: "plumage", double_sided: true, ..PLAIN },
+            Self::Mosaic => look("mosaic").rough(0.45).texture(Texture::Mosaic),
+            Self::Earth => look("earth").rough(1.0).tile(5.0).texture(Texture::Earth),
+            Self::PlasterWhite => plaster("white plaster").color(0.78, 0.71, 0.60),
+            Self::PlasterOchre => plaster("ochre plaster").color(0.80, 0.55, 0.26),
+            Self::PlasterRose => plaster("rose plaster").color(0.76, 0.47, 0.36),
+            Self::PlasterRed => plaster("red paint").color(0.44, 0.095, 0.06),
+            Self::PlasterBlue => plaster("blue paint").color(0.07, 0.16, 0.36),
+            Self::RoofTiles => look("roof tiles").tile(3.2).texture(Texture::Terracotta),
+            Self::RoofFar => {
+                look("roof tiles, far").tile(3.2).texture(Texture::Tiles).normal(Texture::TilesNormal, 1.0)
+            }
+            Self::Wood => wood("wood").color(0.52, 0.36, 0.23),
+            Self::PaintedWood => wood("painted wood").color(0.12, 0.34, 0.36),
+            Self::Bronze => look("bronze").color(0.62, 0.40, 0.20).metal().rough(0.38),
+            Self::Gold => look("gilding").color(0.95, 0.70, 0.28).metal().rough(0.32),
+            Self::Dark => look("darkness").color(0.015, 0.013, 0.012).rough(1.0),
+            Self::Water => {
+                look("water").color(0.05, 0.22, 0.25).rough(0.12).tile(1.8).normal(Texture::WaterNormal, 0.5)
+            }
+            Self::Spray => look("running water").color(0.62, 0.74, 0.76).rough(0.25),
+            Self::Broadleaf => leaves("broad leaves", Texture::Leaves),
+            Self::Cypress => leaves("cypress", Texture::Needles),
+            Self::Bark => wood("bark").color(0.42, 0.33, 0.25).texture(Texture::Bark),
+            Self::StripedCloth => look("striped cloth").rough(0.95).texture(Texture::Stripes).double_sided(),
+            Self::Pennant => look("pennant").rough(0.9).texture(Texture::Pennant).double_sided(),
+            Self::Terracotta => look("terracotta").color(0.55, 0.23, 0.12).rough(0.7),
+            Self::PaintedVase => look("painted vase").rough(0.4).texture(Texture::Vase),
+            Self::Produce => look("produce").rough(0.6),
+            Self::Flame => look("flame").color(0.2, 0.05, 0.01).emissive([1.0, 0.38, 0.06], 1.6),
+            Self::Charcoal => look("embers").color(0.02, 0.02, 0.02).emissive([0.8, 0.12, 0.01], 1.0),
+            Self::Hills => look("hills").unlit(),
+            Self::Sky => look("sky").texture(Texture::Sky).unlit(),
+            Self::Plumage => look("plumage").double_sided(),
         }
     }
 }

@@ -129,7 +129,6 @@ pub fn planter() -> Model {
 /// A draped figure on a plinth, made of one smooth patch with folds, a head and arms.
 pub fn statue() -> Model {
     let mut model = Model::default();
-    let stone = model.part(Material::MarbleBlocks);
     let plinth = [
         (0.12, -0.05),
         (0.12, 0.2),
@@ -141,34 +140,55 @@ pub fn statue() -> Model {
         (0.12, 1.5),
         (-0.58, 1.5),
     ];
-    stone.moulding(Vec2::splat(0.58), &plinth.map(Vec2::from));
+    model.part(Material::MarbleBlocks).moulding(Vec2::splat(0.58), &plinth.map(Vec2::from));
     let marble = model.part(Material::Marble);
-    let base = 1.5;
-    // Half widths across and along the body at heights from the hem to the neck.
-    const BODY: [(f32, f32, f32); 12] = [
-        (0.00, 0.36, 0.33),
-        (0.10, 0.34, 0.30),
-        (0.45, 0.29, 0.26),
-        (0.80, 0.29, 0.25),
-        (1.02, 0.31, 0.26),
-        (1.25, 0.235, 0.19),
-        (1.42, 0.26, 0.215),
-        (1.60, 0.31, 0.225),
-        (1.72, 0.33, 0.18),
-        (1.80, 0.24, 0.13),
-        (1.85, 0.10, 0.095),
-        (2.00, 0.075, 0.08),
-    ];
-    let profile = |height: f32| {
-        let index = BODY.iter().rposition(|knot| knot.0 <= height).unwrap_or(0).min(BODY.len() - 2);
-        let knot = |offset: isize| BODY[(index as isize + offset).clamp(0, BODY.len() as isize - 1) as usize];
-        let (p0, p1, p2, p3) = (knot(-1), knot(0), knot(1), knot(2));
-        let t = (height - p1.0) / (p2.0 - p1.0);
-        let spline = |a: f32, b: f32, c: f32, d: f32| {
-            b + 0.5 * t * ((c - a) + t * ((2.0 * a - 5.0 * b + 4.0 * c - d) + t * (3.0 * (b - c) + d - a)))
-        };
-        Vec2::new(spline(p0.1, p1.1, p2.1, p3.1), spline(p0.2, p1.2, p2.2, p3.2))
+    drapery(marble);
+    head(marble);
+    arms(marble);
+    // A staff in the raised hand, a bowl in the other.
+    let bronze = model.part(Material::Bronze);
+    bronze.tube(
+        &[Vec3::new(0.46, PLINTH + 0.0, 0.46), Vec3::new(0.46, PLINTH + 2.55, 0.42)],
+        &[0.022, 0.02],
+        8,
+    );
+    bronze.ellipsoid(Vec3::new(0.46, PLINTH + 2.62, 0.42), Vec3::new(0.05, 0.13, 0.05), 10);
+    model
+}
+
+/// Height of the plinth of the statue.
+const PLINTH: f32 = 1.5;
+
+/// Half widths across and along the body at heights from the hem to the neck.
+const BODY: [(f32, f32, f32); 12] = [
+    (0.00, 0.36, 0.33),
+    (0.10, 0.34, 0.30),
+    (0.45, 0.29, 0.26),
+    (0.80, 0.29, 0.25),
+    (1.02, 0.31, 0.26),
+    (1.25, 0.235, 0.19),
+    (1.42, 0.26, 0.215),
+    (1.60, 0.31, 0.225),
+    (1.72, 0.33, 0.18),
+    (1.80, 0.24, 0.13),
+    (1.85, 0.10, 0.095),
+    (2.00, 0.075, 0.08),
+];
+
+/// Half widths of the body at a height: a Catmull-Rom curve through those of [`BODY`].
+fn profile(height: f32) -> Vec2 {
+    let index = BODY.iter().rposition(|knot| knot.0 <= height).unwrap_or(0).min(BODY.len() - 2);
+    let knot = |offset: isize| BODY[(index as isize + offset).clamp(0, BODY.len() as isize - 1) as usize];
+    let (p0, p1, p2, p3) = (knot(-1), knot(0), knot(1), knot(2));
+    let t = (height - p1.0) / (p2.0 - p1.0);
+    let spline = |a: f32, b: f32, c: f32, d: f32| {
+        b + 0.5 * t * ((c - a) + t * ((2.0 * a - 5.0 * b + 4.0 * c - d) + t * (3.0 * (b - c) + d - a)))
     };
+    Vec2::new(spline(p0.1, p1.1, p2.1, p3.1), spline(p0.2, p1.2, p2.2, p3.2))
+}
+
+/// The body under its clothes.
+fn drapery(marble: &mut Mesh) {
     marble.patch(78, 54, Vec2::new(2.0, 2.2), |u, v| {
         let (angle, height) = (u * TAU, v * 2.0);
         let half = profile(height);
@@ -181,14 +201,22 @@ pub fn statue() -> Model {
         let fold = 1.0 + falling * 2.2 + arcs * 2.0;
         // The weight rests on one leg.
         let sway = 0.05 * (height * 1.7).sin();
-        Vec3::new(angle.sin() * half.x * fold + sway, base + height, angle.cos() * half.y * fold)
+        Vec3::new(angle.sin() * half.x * fold + sway, PLINTH + height, angle.cos() * half.y * fold)
     });
+}
+
+/// The head with its hair.
+fn head(marble: &mut Mesh) {
     let sway = 0.05 * (2.0_f32 * 1.7).sin();
-    marble.ellipsoid(Vec3::new(sway, base + 2.12, 0.02), Vec3::new(0.115, 0.155, 0.135), 24);
-    marble.ellipsoid(Vec3::new(sway, base + 2.17, -0.06), Vec3::new(0.135, 0.13, 0.14), 20);
-    marble.ellipsoid(Vec3::new(sway, base + 2.15, -0.2), Vec3::new(0.07, 0.07, 0.08), 14);
+    marble.ellipsoid(Vec3::new(sway, PLINTH + 2.12, 0.02), Vec3::new(0.115, 0.155, 0.135), 24);
+    marble.ellipsoid(Vec3::new(sway, PLINTH + 2.17, -0.06), Vec3::new(0.135, 0.13, 0.14), 20);
+    marble.ellipsoid(Vec3::new(sway, PLINTH + 2.15, -0.2), Vec3::new(0.07, 0.07, 0.08), 14);
+}
+
+/// The arms with their hands, one of them raised.
+fn arms(marble: &mut Mesh) {
     let mut limb = |path: &[(f32, f32, f32)], radii: &[f32]| {
-        let path: Vec<Vec3> = path.iter().map(|&(x, y, z)| Vec3::new(x, base + y, z)).collect();
+        let path: Vec<Vec3> = path.iter().map(|&(x, y, z)| Vec3::new(x, PLINTH + y, z)).collect();
         marble.tube(&path, radii, 12);
         if let (Some(&end), Some(&radius)) = (path.last(), radii.last()) {
             marble.ellipsoid(end, Vec3::splat(radius * 1.35), 12);
@@ -215,11 +243,6 @@ pub fn statue() -> Model {
         ],
         &[0.11, 0.10, 0.08, 0.065, 0.05],
     );
-    // A staff in the raised hand, a bowl in the other.
-    let bronze = model.part(Material::Bronze);
-    bronze.tube(&[Vec3::new(0.46, base + 0.0, 0.46), Vec3::new(0.46, base + 2.55, 0.42)], &[0.022, 0.02], 8);
-    bronze.ellipsoid(Vec3::new(0.46, base + 2.62, 0.42), Vec3::new(0.05, 0.13, 0.05), 10);
-    model
 }
 
 /// An arched gate with a cornice and battlements; it stands about the origin and faces z.
@@ -273,7 +296,7 @@ fn battlements(mesh: &mut Mesh, from: f32, to: f32, y: f32, z: f32) {
 /// are placed apart; see [`portico_columns`].
 pub fn portico(length: f32) -> Model {
     let mut model = Model::default();
-    let (depth, height) = (4.0, 4.0);
+    let depth = PORTICO.0;
     let half = length / 2.0;
     let steps = [(0.35, -0.1), (0.35, 0.2), (0.0, 0.2), (0.0, 0.4), (-0.5, 0.4)];
     let mut base = Mesh::default();
@@ -283,7 +306,17 @@ pub fn portico(length: f32) -> Model {
             .map(|(x, z)| Vec3::new(half * x, 0.4, (depth / 2.0 + 0.2) * z)),
     );
     model.part(Material::MarbleBlocks).append(&base, Mat4::IDENTITY);
-    let back = -depth / 2.0;
+    painted_wall(&mut model, length);
+    lean_to(&mut model, length);
+    model
+}
+
+/// Depth of a portico, and height of its columns.
+const PORTICO: (f32, f32) = (4.0, 4.0);
+
+/// The back wall of a portico with its painted panels.
+fn painted_wall(model: &mut Model, length: f32) {
+    let (half, back) = (length / 2.0, -PORTICO.0 / 2.0);
     model.part(Material::PlasterWhite).cuboid(
         Vec3::new(-half, 0.3, back - 0.4),
         Vec3::new(half, 5.9, back - 0.02),
@@ -308,6 +341,12 @@ pub fn portico(length: f32) -> Model {
         Vec3::new(half - 0.3, 1.78, back + 0.02),
         Faces::All,
     );
+}
+
+/// The entablature of a portico, the roof behind it, and the walls that close its ends.
+fn lean_to(model: &mut Model, length: f32) {
+    let (depth, height) = PORTICO;
+    let (half, back) = (length / 2.0, -depth / 2.0);
     let front = depth / 2.0 - 0.3;
     let marble = model.part(Material::Marble);
     marble.cuboid(Vec3::new(-half, 0.4 + height, front - 0.3), Vec3::new(half, 4.9, front + 0.3), Faces::All);
@@ -331,7 +370,6 @@ pub fn portico(length: f32) -> Model {
             Mat4::from_translation(Vec3::new(x0.min(x1), 0.0, back + 0.45)) * Mat4::from_rotation_y(PI / 2.0);
         model.part(Material::PlasterWhite).append(&end, turn);
     }
-    model
 }
 
 /// Where the columns of a portico stand, in its own coordinates.
