@@ -54,24 +54,6 @@ pub fn setup(spec: &'static NodeSpec, wired: bool) -> Setup {
     }
 }
 
-/// The nodes that generated tests look at: all, or those named in `ISOPHOTE_NODES` (ids with commas
-/// between), for whoever works on a few and does not want to wait for the others.
-///
-/// # Panics
-/// When a name is not a node's.
-pub fn nodes() -> Vec<&'static NodeSpec> {
-    let Ok(names) = std::env::var("ISOPHOTE_NODES") else {
-        return isophote::registry::nodes().to_vec();
-    };
-    let find = |id: &str| isophote::registry::find(id).unwrap_or_else(|e| panic!("ISOPHOTE_NODES: {e}"));
-    names.split(',').map(|id| find(id.trim())).collect()
-}
-
-/// True when `ISOPHOTE_NODES` leaves nodes out.
-pub fn only_some() -> bool {
-    nodes().len() < isophote::registry::nodes().len()
-}
-
 /// The first node that makes `kind` from colour alone.
 fn producer(kind: ImageKind) -> &'static NodeSpec {
     let able = |n: &&&'static NodeSpec| {

@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 struct Watch {
     asked: AtomicU32,
     stop_after: u32,
-    told: Mutex<Vec<f32>>,
+    reported: Mutex<Vec<f32>>,
     batches: AtomicU32,
 }
 
@@ -29,7 +29,7 @@ unsafe extern "C" fn ask(user: *mut c_void) -> u32 {
 
 unsafe extern "C" fn tell(user: *mut c_void, done: f32) {
     // SAFETY: as above.
-    unsafe { &*user.cast::<Watch>() }.told.lock().unwrap().push(done);
+    unsafe { &*user.cast::<Watch>() }.reported.lock().unwrap().push(done);
 }
 
 /// The jobs in reverse on threads of the test's own.
@@ -62,7 +62,7 @@ fn control(watch: &Watch) -> IsophoteControl {
 }
 
 #[test]
-fn a_run_reports_progress_and_stops_when_told() {
+fn a_run_reports_progress_and_stops_when_asked() {
     let library = Loaded::new();
     let mut run = Run::new(&library, "gaussian");
     let data = picture();
@@ -70,8 +70,8 @@ fn a_run_reports_progress_and_stops_when_told() {
     let patient = Watch { stop_after: u32::MAX, ..Watch::default() };
     run.control = Some(control(&patient));
     assert_eq!(run.result(&color(floats(&data))), expected);
-    let told = patient.told.lock().unwrap();
-    assert!(told.is_sorted() && told.last() == Some(&1.0), "{told:?}");
+    let reported = patient.reported.lock().unwrap();
+    assert!(reported.is_sorted() && reported.last() == Some(&1.0), "{reported:?}");
     // Stopped at any question at all, the target is as it was.
     for stop_after in 0..patient.asked.load(Ordering::Relaxed) {
         let watch = Watch { stop_after, ..Watch::default() };

@@ -168,7 +168,7 @@ fn bad_calls_are_answered() {
     }
 }
 
-/// Allocations that are alive once threads that were told to end have ended.
+/// Allocations that are alive once threads that end have ended.
 fn allocations_at_rest() -> i64 {
     let (mut last, mut same) = (allocations::alive(), 0);
     while same < 5 {

@@ -90,12 +90,12 @@ pub struct Inner {
     pub(super) suites: OnceLock<Vec<Suite>>,
 }
 
-/// What was done against the standard where no host could be told from it.
+/// What was done against the standard where nothing says of which host.
 static NOBODYS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
 thread_local! {
-    /// The host whose plugin this thread last called. Some functions of the standard are not told which
-    /// host is meant.
+    /// The host whose plugin this thread last called. Some functions of the standard have no argument
+    /// for the host.
     static CURRENT: RefCell<Weak<Inner>> = const { RefCell::new(Weak::new()) };
 }
 

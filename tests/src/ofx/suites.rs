@@ -422,7 +422,7 @@ unsafe extern "C" fn multi_thread(
         fault("multiThread is entered from a thread that it started");
         return kOfxStatErrExists;
     }
-    // The functions of this suite are not told which host is meant.
+    // The functions of this suite have no argument for the host.
     let host = state::current();
     if let Some(host) = &host {
         host.runs.fetch_add(1, Ordering::SeqCst);
