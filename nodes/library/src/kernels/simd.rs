@@ -1,4 +1,15 @@
-//! How pixels, rows, lines and tiles are read and written fast by the CPU twins.
+//! How pixels, rows, lines and tiles are read and written fast by the CPU twins. None of this has a
+//! counterpart in a shader.
+//!
+//! Which one a kernel wants follows from what it reads for a pixel:
+//!
+//! * the pixel alone, or single others: [`pixels`];
+//! * its eight neighbours: [`neighbours`];
+//! * rows and columns around it: [`line_buffer`], or [`moment_buffer`] with squares of the colours;
+//! * a row or a column, with symmetric weights: [`window_sum`];
+//! * a straight line through it: [`line_taps`];
+//! * a curved line through it: [`tile_copy`];
+//! * the pixel of a coarser pyramid level: [`upsampling`].
 
 pub mod line_buffer;
 pub mod line_taps;

@@ -9,12 +9,11 @@
 //! 4 radius + 2 multiply-adds for each of its three values.
 
 pub use crate::kernels::shaders::carried_tensor::Params;
-use crate::kernels::simd::line_buffer::{Rows, WIDE_STRIP, strips_of};
-use crate::kernels::simd::pixels::put_pixels4;
+use crate::kernels::simd::line_buffer::{LineBuffer, WIDE_STRIP, strips_of};
+use crate::kernels::simd::pixels::{eight, premultiply, read, write};
 use crate::kernels::simd::window_sum::{gaussian_radius, gaussian_table};
 use crate::kernels::smoothing::gaussian_blur;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 /// Entries of the table of weights, the centre included.
@@ -66,7 +65,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 /// Rows of one strip on their way through the pass.
 #[derive(Default)]
 struct Strip {
-    colors: Rows,
+    colors: LineBuffer,
     /// Whether the rows in `colors` are opaque.
     opaque: [bool; 3],
     /// The next row that `colors` takes in.
@@ -141,14 +140,14 @@ impl Strip {
         let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
         while self.next <= y + 1 {
             let mut least = one;
-            self.colors.load4(
+            self.colors.load_mapped(
                 simd,
                 &pass.inputs[0],
                 self.next,
                 #[inline(always)]
-                |[r, g, b, a]| {
-                    least = least.min(a);
-                    [r * a, g * a, b * a, a]
+                |pixels| {
+                    least = least.min(pixels[3]);
+                    premultiply(pixels)
                 },
             );
             self.opaque[self.next.rem_euclid(3) as usize] = least.simd_ge(one).all_true();
@@ -209,9 +208,9 @@ impl Strip {
             if !valid.all_true() {
                 let x = x0 + i as i32;
                 let [e, f, g, _] = if x >= held.x0 && x + 8 <= held.x1 {
-                    load4(simd, &row[4 * (x - held.x0) as usize..][..32])
+                    read(simd, &row[4 * (x - held.x0) as usize..][..32])
                 } else {
-                    read4(simd, earlier.padded_row(y, x, (x + 8).min(x1), &mut self.scratch))
+                    read(simd, earlier.padded_row(y, x, (x + 8).min(x1), &mut self.scratch))
                 };
                 tensor = [valid.select(tensor[0], e), valid.select(tensor[1], f), valid.select(tensor[2], g)];
             }
@@ -267,24 +266,7 @@ impl Strip {
                 tensor[c] = sum;
             }
             let end = target.len().min(32 * i + 32);
-            put_pixels4(tensor, &mut target[32 * i..end]);
+            write(tensor, &mut target[32 * i..end]);
         }
     }
-}
-
-/// Up to eight tensors, padded with zeros.
-#[inline(always)]
-fn read4<S: Simd>(simd: S, values: &[f32]) -> [f32x8<S>; 4] {
-    if values.len() == 32 {
-        return load4(simd, values);
-    }
-    let mut padded = [0.0; 32];
-    padded[..values.len()].copy_from_slice(values);
-    load4(simd, &padded)
-}
-
-/// Eight values from index `at` on.
-#[inline(always)]
-fn eight<S: Simd>(simd: S, values: &[f32], at: usize) -> f32x8<S> {
-    f32x8::from_slice(simd, &values[at..at + 8])
 }

@@ -12,10 +12,10 @@
 
 pub use crate::kernels::shaders::directed_shock::Params;
 use crate::kernels::shared::tensor::axis;
-use crate::kernels::simd::pixels::{BLOCK, Block, fetch4, offsets, write4};
+use crate::kernels::simd::pixels::{BLOCK, Block, fetch4, offsets, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance};
-use luma_taps::{Line, LumaLines, STRIP};
+use luma_taps::{Line, LumaTaps, STRIP};
 
 #[path = "directed_shock/flow_log.rs"]
 mod flow_log;
@@ -84,7 +84,7 @@ fn strips<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
     let (window, radius) = (band.window, steps(params));
     let [color, tensors, smooth] = [0, 1, 2].map(|i| &pass.inputs[i]);
     let derivative = [params.sigma, params.reach];
-    let (mut smoothed, mut plain) = (LumaLines::default(), LumaLines::default());
+    let (mut smoothed, mut plain) = (LumaTaps::default(), LumaTaps::default());
     let same = std::ptr::eq(color.data(), smooth.data());
     for x0 in (window.x0..window.x1).step_by(STRIP as usize) {
         let strip = Rect { x0, x1: (x0 + STRIP).min(window.x1), ..window };
@@ -100,7 +100,7 @@ fn strips<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
             for i in (0..end - start).step_by(BLOCK) {
                 let block = Block { x: x0 + i as i32, y, len: BLOCK.min(end - start - i) };
                 let target = &mut row[4 * i..4 * (i + block.len)];
-                let [e, f, g, _] = block.read4(simd, tensors);
+                let [e, f, g, _] = block.read(simd, tensors);
                 let (_, n) = axis((e - g) * 0.5, f);
                 let line = smoothed.line(simd, block.x, y, n);
                 let z = if smoothed.is_opaque() {
@@ -110,7 +110,7 @@ fn strips<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                 };
                 let active = z.abs().simd_gt(f32x8::splat(simd, params.threshold));
                 if !active.any_true() {
-                    write4(block.read4(simd, color), target);
+                    write::<S, 4>(block.read(simd, color), target);
                     continue;
                 }
                 let (lumas, line) = if shared {
@@ -130,7 +130,7 @@ fn strips<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                         extreme::<_, false, 0>(simd, pass, params, radius, lumas, &line, block, active, z)
                     }
                 };
-                write4(colors, target);
+                write(colors, target);
             }
         }
     }
@@ -153,7 +153,7 @@ fn extreme<S: Simd, const OPAQUE: bool, const ROWS: usize>(
     pass: &CpuPass<'_>,
     params: &Params,
     radius: i32,
-    lumas: &LumaLines,
+    lumas: &LumaTaps,
     line: &Line<S>,
     block: Block,
     active: mask32x8<S>,

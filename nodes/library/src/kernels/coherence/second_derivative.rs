@@ -6,7 +6,6 @@
 
 use crate::kernels::shared::tensor::axis;
 use crate::kernels::simd::neighbours::{Neighbours, each};
-use crate::kernels::simd::pixels::Block;
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -29,8 +28,7 @@ pub fn of_color(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId) -> Ima
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     dispatch!(pass.level, simd => each(simd, &pass.inputs[0], band, #[inline(always)] |around: Neighbours<'_, _>| {
-        let block = Block { x: around.x, y: around.y, len: around.len };
-        let [e, f, g, _] = block.read4(simd, &pass.inputs[1]);
+        let [e, f, g, _] = around.block.read(simd, &pass.inputs[1]);
         let (_, [x, y]) = axis((e - g) * 0.5, f);
         let mut result = [f32x8::splat(simd, 0.0); 4];
         for (c, result) in result.iter_mut().take(3).enumerate() {

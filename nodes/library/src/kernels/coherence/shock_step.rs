@@ -8,7 +8,6 @@
 
 pub use crate::kernels::shaders::shock_step::Params;
 use crate::kernels::simd::neighbours::{Neighbours, each};
-use crate::kernels::simd::pixels::Block;
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -36,8 +35,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     dispatch!(pass.level, simd => each(simd, &pass.inputs[0], band, #[inline(always)] |around: Neighbours<'_, _>| {
         let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        let block = Block { x: around.x, y: around.y, len: around.len };
-        let detector = block.read4(simd, &pass.inputs[1]);
+        let detector: [f32x8<_>; 4] = around.block.read(simd, &pass.inputs[1]);
         let mut result = [zero, zero, zero, around.centre(3)];
         for c in 0..3 {
             let speed = (detector[c] * -params.steepness).max(-one).min(one);

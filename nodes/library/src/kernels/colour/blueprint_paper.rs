@@ -6,7 +6,7 @@
 
 pub use crate::kernels::shaders::blueprint_paper::Params;
 use crate::kernels::shared::value_noise::noise;
-use crate::kernels::simd::pixels::{for_blocks, write4};
+use crate::kernels::simd::pixels::{for_blocks, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -75,7 +75,7 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             let grain = noise(simd, qx * 0.4, qy * 0.4, 0) * 0.45
                 + noise(simd, qx * 0.13, qy * 0.13, 1013) * 0.3
                 + noise(simd, qx * 0.037, qy * 0.037, 2027) * 0.25;
-            let [l, alpha] = block.read2(simd, lightness);
+            let [l, alpha] = block.read(simd, lightness);
             let tone = (l / alpha.max(1e-6) * 0.01).max(0.0).min(1.0);
             let fill = alpha.max(0.0).min(1.0) * params.fill;
             let shade = ((grain - 0.5) * params.texture_amount + 1.0) * (one - fill * 0.5 * (one - tone));
@@ -86,10 +86,11 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
                 let strong = ruled(x, y, 5.0 * params.spacing, 1.5 * params.scale) * 0.32;
                 rule = fine.max(strong) * params.line[3];
             }
-            let ink = (one - block.read1(simd, edges).max(0.0).min(1.0)) * params.line[3];
+            let [edge] = block.read(simd, edges);
+            let ink = (one - edge.max(0.0).min(1.0)) * params.line[3];
             let drawn = Drawn { shade, light, rule, ink };
             let [r, g, b] = [drawn.over(params, 0), drawn.over(params, 1), drawn.over(params, 2)];
-            write4([r, g, b, if params.cover != 0 { one } else { alpha }], target);
+            write([r, g, b, if params.cover != 0 { one } else { alpha }], target);
         },
     );
 }

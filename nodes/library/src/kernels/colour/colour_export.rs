@@ -5,7 +5,7 @@
 use crate::colour_space::ColourSpace;
 pub use crate::kernels::shaders::colour_export::Params;
 use crate::kernels::shared::colour::{LINEAR_TO_ACESCG, srgb_decode, transform};
-use crate::kernels::simd::pixels::map_pixels4;
+use crate::kernels::simd::pixels::{map_pixels, premultiply};
 use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -28,7 +28,7 @@ pub fn export(plan: &mut PlanBuilder, image: ImageId, space: ColourSpace, premul
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, #[inline(always)] |[r, g, b, a]| {
+    dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |[r, g, b, a]| {
         let mut rgb = [r, g, b];
         if params.space != ColourSpace::Srgb as u32 {
             rgb = srgb_decode(rgb);
@@ -37,7 +37,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
             rgb = transform(&LINEAR_TO_ACESCG, rgb);
         }
         if params.premultiplied != 0 {
-            rgb = [rgb[0] * a, rgb[1] * a, rgb[2] * a];
+            return premultiply([rgb[0], rgb[1], rgb[2], a]);
         }
         [rgb[0], rgb[1], rgb[2], a]
     }));

@@ -8,7 +8,7 @@ use crate::colour_space::ColourSpace;
 pub use crate::kernels::shaders::colour_import::Params;
 use crate::kernels::shared::colour::{ACESCG_TO_LINEAR, srgb_encode, transform};
 use crate::kernels::shared::host_colour::plain;
-use crate::kernels::simd::pixels::map_pixels4;
+use crate::kernels::simd::pixels::map_pixels;
 use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -39,7 +39,7 @@ pub fn imported(plan: &PlanBuilder, color: ImageId) -> Option<(ImageId, Params)>
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, #[inline(always)] |pixels| {
+    dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |pixels| {
         let [r, g, b, a] = plain(pixels, params.premultiplied != 0);
         let mut rgb = [r, g, b];
         if params.space == ColourSpace::AcesCg as u32 {

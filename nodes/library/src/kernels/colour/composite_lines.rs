@@ -3,7 +3,7 @@
 //! Cost: eight multiply-adds per pixel.
 
 pub use crate::kernels::shaders::composite_lines::Params;
-use crate::kernels::simd::pixels::{for_blocks, write4};
+use crate::kernels::simd::pixels::{for_blocks, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -29,10 +29,11 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let (source, edges) = (&pass.inputs[0], &pass.inputs[1]);
     dispatch!(pass.level, simd => for_blocks::<4>(band, #[inline(always)] |block, target| {
-        let v = block.read4(simd, source);
-        let ink = (f32x8::splat(simd, 1.0) - block.read1(simd, edges).max(0.0).min(1.0)) * params.line[3];
-        let [r, g, b] = [over(v[0], ink, &params, 0), over(v[1], ink, &params, 1), over(v[2], ink, &params, 2)];
-        write4([r, g, b, v[3]], target);
+        let [r, g, b, a] = block.read(simd, source);
+        let [edge] = block.read(simd, edges);
+        let ink = (f32x8::splat(simd, 1.0) - edge.max(0.0).min(1.0)) * params.line[3];
+        let [r, g, b] = [over(r, ink, &params, 0), over(g, ink, &params, 1), over(b, ink, &params, 2)];
+        write([r, g, b, a], target);
     }));
 }
 

@@ -7,7 +7,7 @@
 
 pub use crate::kernels::shaders::ink_sheet::Params;
 use crate::kernels::shared::value_noise::noise;
-use crate::kernels::simd::pixels::{for_blocks, write4};
+use crate::kernels::simd::pixels::{for_blocks, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -106,12 +106,13 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
                     + noise(simd, gx * 2.13, gy * 2.13, 1013) * 0.25
                     + noise(simd, gx * 0.31, gy * 0.31, 2027) * 0.3,
             );
-            let [r, g, b, a] = block.read4(simd, source);
+            let [r, g, b, a] = block.read(simd, source);
             let alpha = a.max(zero).min(one);
 
-            let [stroke, ..] = block.read4(simd, strokes);
+            let [stroke, ..]: [f32x8<S>; 4] = block.read(simd, strokes);
             let stroke = stroke.max(zero).min(one);
-            let u = block.read1(simd, response) + (stroke * 2.0 - 1.0) * params.carving;
+            let [plain] = block.read(simd, response);
+            let u = plain + (stroke * 2.0 - 1.0) * params.carving;
             let below = -((u - params.epsilon) * params.phi).max(-20.0).tanh();
             let lines = u.simd_ge(params.epsilon).select(zero, below);
 
@@ -146,7 +147,7 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
                 *value = mix(sheet, line, ink);
             }
             let [r, g, b] = laid;
-            write4([r, g, b, if params.cover != 0 { one } else { a }], target);
+            write([r, g, b, if params.cover != 0 { one } else { a }], target);
         },
     );
 }

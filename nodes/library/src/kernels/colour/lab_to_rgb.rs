@@ -4,7 +4,7 @@
 
 pub use crate::kernels::shaders::lab_to_rgb::Params;
 use crate::kernels::shared::colour::{lab_to_linear, srgb_encode};
-use crate::kernels::simd::pixels::map_pixels4;
+use crate::kernels::simd::pixels::map_pixels;
 use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -27,7 +27,7 @@ pub fn to_rgb(plan: &mut PlanBuilder, image: ImageId, chroma: f32) -> ImageId {
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, #[inline(always)] |[l, a, b, alpha]| {
+    dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |[l, a, b, alpha]| {
         let [r, g, b] = srgb_encode(lab_to_linear([l, a * params.chroma, b * params.chroma]));
         [r, g, b, alpha]
     }));

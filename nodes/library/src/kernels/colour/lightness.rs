@@ -11,9 +11,8 @@ use crate::kernels::colour::colour_import;
 pub use crate::kernels::shaders::lightness::Params;
 use crate::kernels::shared::colour::{ACESCG_TO_LINEAR, LUMINANCE, lab_curve, srgb_decode, transform};
 use crate::kernels::shared::host_colour::plain;
-use crate::kernels::simd::pixels::{map_pixels, write2};
+use crate::kernels::simd::pixels::map_pairs;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
-use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 const WORKING: u32 = 0;
@@ -50,15 +49,13 @@ pub fn of_lab(plan: &mut PlanBuilder, lab: ImageId) -> ImageId {
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels::<4, 2>(pass, band, #[inline(always)] |source, target| {
-        let (mut v, mut w) = (load4(simd, &source[..32]), load4(simd, &source[32..]));
+    dispatch!(pass.level, simd => map_pairs(simd, pass, band, #[inline(always)] |[mut v, mut w]: [[f32x8<_>; 4]; 2]| {
         if params.source_space != LAB {
             // Two blocks side by side: their operations need not wait for each other.
             (v, w) = (luminance(&params, v), luminance(&params, w));
             (v[0], w[0]) = (lab_curve(v[0]) * 116.0 - 16.0, lab_curve(w[0]) * 116.0 - 16.0);
         }
-        write2([v[0] * v[3], v[3]], &mut target[..16]);
-        write2([w[0] * w[3], w[3]], &mut target[16..]);
+        [[v[0] * v[3], v[3]], [w[0] * w[3], w[3]]]
     }));
 }
 

@@ -5,9 +5,9 @@
 //! Cost: 25 multiply-adds.
 
 pub use crate::kernels::shaders::paint_relief::Params;
-use crate::kernels::simd::line_buffer::{Rows, strips};
-use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use crate::kernels::simd::line_buffer::{LineBuffer, strips};
+use crate::kernels::simd::pixels::{Block, eight, write};
+use isophote_engine::fearless_simd::{Simd, dispatch, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(paint_relief {
@@ -44,39 +44,26 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 #[inline(always)]
 fn relief<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let window = band.window;
-    let mut rows = Rows::default();
+    let mut rows = LineBuffer::default();
     for (x0, x1) in strips(window.x0, window.x1) {
         rows.start(x0, x1, 1, 4);
         for y in window.y0 - 1..=window.y0 {
-            rows.load4(
-                simd,
-                &pass.inputs[1],
-                y,
-                #[inline(always)]
-                |v| v,
-            );
+            rows.load(simd, &pass.inputs[1], y);
         }
         for y in window.y0..window.y1 {
-            rows.load4(
-                simd,
-                &pass.inputs[1],
-                y + 1,
-                #[inline(always)]
-                |v| v,
-            );
+            rows.load(simd, &pass.inputs[1], y + 1);
             let (above, centre, below) = (rows.row(y - 1, 0), rows.row(y, 0), rows.row(y + 1, 0));
             let target =
                 &mut band.row_mut(0, y)[4 * (x0 - window.x0) as usize..4 * (x1 - window.x0) as usize];
             for (i, target) in target.chunks_mut(32).enumerate() {
                 let at = 8 * i + 1;
-                let of = |row: &[f32], at: usize| f32x8::from_slice(simd, &row[at..at + 8]);
-                let dx = (of(centre, at + 1) - of(centre, at - 1)) * 0.5;
-                let dy = (of(below, at) - of(above, at)) * 0.5;
-                let lift =
-                    (of(centre, at) - 0.5) * params.bristle - (dx * params.light[0] + dy * params.light[1]);
-                let [l, a, b, alpha] = get_pixels4(simd, &pass.inputs[0], x0 + 8 * i as i32, y, x1 - 1);
+                let dx = (eight(simd, centre, at + 1) - eight(simd, centre, at - 1)) * 0.5;
+                let dy = (eight(simd, below, at) - eight(simd, above, at)) * 0.5;
+                let lift = (eight(simd, centre, at) - 0.5) * params.bristle
+                    - (dx * params.light[0] + dy * params.light[1]);
+                let [l, a, b, alpha] = Block::until(x1, x0 + 8 * i as i32, y).read(simd, &pass.inputs[0]);
                 let share = (l.max(0.0) + 16.0) / 116.0;
-                put_pixels4([l + share * lift, a, b, alpha], target);
+                write([l + share * lift, a, b, alpha], target);
             }
         }
     }

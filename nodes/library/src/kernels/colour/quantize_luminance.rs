@@ -4,7 +4,7 @@
 //! Cost: one to five reads, a tanh and a square root per pixel.
 
 pub use crate::kernels::shaders::quantize_luminance::Params;
-use crate::kernels::simd::pixels::{Block, for_blocks, write4};
+use crate::kernels::simd::pixels::{Block, for_blocks, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
@@ -66,7 +66,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let view = &pass.inputs[0];
     dispatch!(pass.level, simd => for_blocks::<4>(band, #[inline(always)] |block, target| {
-        let [l, a, b, alpha] = block.read4(simd, view);
+        let [l, a, b, alpha] = block.read(simd, view);
         let mut phi = f32x8::splat(simd, params.phi);
         if params.adaptive != 0 {
             let (right, left) =
@@ -81,7 +81,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         let middle = ((l * params.inverse_width).floor() + 0.5) * params.width;
         let x = (phi * (l - middle)).max(-20.0).min(20.0);
         let lightness = middle + x.tanh() * (0.5 * params.width);
-        write4([lightness, a, b, alpha], target);
+        write([lightness, a, b, alpha], target);
     }));
 }
 
@@ -91,7 +91,7 @@ fn neighbours<S: Simd>(simd: S, view: &View<'_>, block: &Block, dx: i32, dy: i32
     let (x, y) = (block.x + dx, block.y + dy);
     let inside = x >= 0 && x + block.len as i32 <= view.full()[0];
     let [l, alpha] = if inside {
-        let [l, _, _, alpha] = Block { x, y, len: block.len }.read4(simd, view);
+        let [l, _, _, alpha] = Block { x, y, len: block.len }.read(simd, view);
         [l, alpha]
     } else {
         let (mut lightness, mut coverage) = ([0.0; 8], [0.0; 8]);

@@ -5,7 +5,7 @@
 
 pub use crate::kernels::shaders::rgb_to_lab::Params;
 use crate::kernels::shared::colour::{linear_to_lab, srgb_decode};
-use crate::kernels::simd::pixels::map_pixels4;
+use crate::kernels::simd::pixels::map_pixels;
 use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -27,7 +27,7 @@ pub fn to_lab(plan: &mut PlanBuilder, image: ImageId, chroma: f32) -> ImageId {
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, #[inline(always)] |[r, g, b, alpha]| {
+    dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |[r, g, b, alpha]| {
         let [l, a, b] = linear_to_lab(srgb_decode([r, g, b]));
         [l, a * params.chroma, b * params.chroma, alpha]
     }));

@@ -4,7 +4,7 @@
 //! Cost: ten multiply-adds per pixel.
 
 pub use crate::kernels::shaders::tone_curve::Params;
-use crate::kernels::simd::pixels::map_pixels4;
+use crate::kernels::simd::pixels::map_pixels;
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -22,7 +22,7 @@ pub fn tones(plan: &mut PlanBuilder, lab: ImageId, darks: f32, lights: f32) -> I
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, #[inline(always)] |[l, a, b, alpha]| {
+    dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |[l, a, b, alpha]| {
         let t = (l * 0.01).max(0.0).min(1.0);
         let rest = f32x8::splat(simd, 1.0) - t;
         let lift = t * rest * 90.0 * (rest * params.darks + t * params.lights);

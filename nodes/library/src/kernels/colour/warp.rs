@@ -6,8 +6,8 @@
 pub use crate::kernels::shaders::warp::Params;
 use crate::kernels::shared::coverage::Covered;
 use crate::kernels::shared::sampling::sample_linear4;
-use crate::kernels::shared::stream::centres;
 use crate::kernels::simd::neighbours::{Neighbours, each};
+use crate::kernels::simd::pixels::unpremultiply;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
@@ -51,8 +51,6 @@ fn moved<S: Simd>(simd: S, params: &Params, source: &View<'_>, around: &Neighbou
     let y = (around.excess(0, 1, 0) - around.excess(0, -1, 0)) * factor;
     let length = (x * x + y * y).sqrt();
     let share = f32x8::splat(simd, params.limit) / length.max(f32x8::splat(simd, params.limit.max(1e-6)));
-    let [cx, cy] = centres(simd, around.x, around.y, around.x + around.len as i32 - 1);
-    let [r, g, b, alpha] = sample_linear4(simd, source, x * share + cx, y * share + cy);
-    let (zero, seen) = (f32x8::splat(simd, 0.0), alpha.simd_gt(f32x8::splat(simd, 1e-6)));
-    [seen.select(r / alpha, zero), seen.select(g / alpha, zero), seen.select(b / alpha, zero), alpha]
+    let [cx, cy] = around.block.centres(simd);
+    unpremultiply(sample_linear4(simd, source, x * share + cx, y * share + cy))
 }

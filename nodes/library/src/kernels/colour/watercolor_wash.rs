@@ -6,7 +6,7 @@
 
 pub use crate::kernels::shaders::watercolor_wash::Params;
 use crate::kernels::shared::value_noise::noise;
-use crate::kernels::simd::pixels::{for_blocks, write4};
+use crate::kernels::simd::pixels::{for_blocks, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -69,8 +69,8 @@ fn washed<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                 noise(simd, x * 0.017, y * 0.017, 11) * 0.6 + noise(simd, x * 0.043, y * 0.043, 503) * 0.4;
             let (gx, gy) = (x * params.grain_frequency, y * params.grain_frequency);
             let grain = noise(simd, gx, gy, 1013) * 0.6 + noise(simd, gx * 2.3, gy * 2.3, 2027) * 0.4;
-            let v = block.read4(simd, &pass.inputs[0]);
-            let around = block.read4(simd, &pass.inputs[1]);
+            let v: [f32x8<S>; 4] = block.read(simd, &pass.inputs[0]);
+            let around: [f32x8<S>; 4] = block.read(simd, &pass.inputs[1]);
             let excess = luma(&around) - luma(&v);
             let gathered = (excess.max(0.0) + (-excess).max(0.0) * 0.25) * params.edges;
             let density = gathered + (cloud * 2.0 - 1.0) * params.clouds + (grain * 2.0 - 1.0) * params.grain;
@@ -78,7 +78,7 @@ fn washed<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                 let thin = f32x8::splat(simd, 1.0) - (f32x8::splat(simd, 1.0) - c) * params.pigment;
                 thin - density * (thin - thin * thin).max(0.0)
             };
-            write4([painted(v[0]), painted(v[1]), painted(v[2]), v[3]], target);
+            write([painted(v[0]), painted(v[1]), painted(v[2]), v[3]], target);
         },
     );
 }

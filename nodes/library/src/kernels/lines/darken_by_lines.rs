@@ -3,7 +3,7 @@
 //!
 //! Cost: a multiplication per pixel.
 
-use crate::kernels::simd::pixels::{for_blocks, write2};
+use crate::kernels::simd::pixels::{for_blocks, write};
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -21,9 +21,10 @@ pub fn darken(plan: &mut PlanBuilder, lightness: ImageId, edges: ImageId) -> Ima
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let (lightness, edges) = (&pass.inputs[0], &pass.inputs[1]);
     dispatch!(pass.level, simd => for_blocks::<2>(band, #[inline(always)] |block, target| {
-        let [l, alpha] = block.read2(simd, lightness);
+        let [l, alpha] = block.read(simd, lightness);
         let one = f32x8::splat(simd, 1.0);
-        let ink = one - block.read1(simd, edges).max(0.0).min(1.0);
-        write2([l * (one - ink), alpha], target);
+        let [edge] = block.read(simd, edges);
+        let ink = one - edge.max(0.0).min(1.0);
+        write([l * (one - ink), alpha], target);
     }));
 }

@@ -10,10 +10,9 @@ pub use crate::kernels::shaders::dog_columns::Params;
 use crate::kernels::shared::edge_threshold::{
     LEAST_COVERAGE, Xdog, dog_response, edge_threshold, edge_uncovered,
 };
-use crate::kernels::simd::pixels::{BLOCK, write1};
+use crate::kernels::simd::pixels::{BLOCK, read, write};
 use crate::kernels::simd::window_sum::{RUN, flat, sum};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, f32x16, prelude::*};
-use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(dog_columns {
@@ -88,8 +87,8 @@ fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
             let mut at = 0;
             while at < target.len() {
                 let len = BLOCK.min(target.len() - at);
-                let pixels = load4(simd, &sums[4 * at..4 * (at + BLOCK)]);
-                write1(edge(simd, params, uncovered, pixels), &mut target[at..at + len]);
+                let pixels = read(simd, &sums[4 * at..4 * (at + BLOCK)]);
+                write([edge(simd, params, uncovered, pixels)], &mut target[at..at + len]);
                 at += BLOCK;
             }
         }

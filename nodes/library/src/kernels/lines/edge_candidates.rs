@@ -5,8 +5,8 @@
 //! Cost: eight neighbours and about 40 operations per pixel.
 
 pub use crate::kernels::shaders::edge_candidates::Params;
-use crate::kernels::simd::line_buffer::{Rows, strips};
-use crate::kernels::simd::pixels::{BLOCK, write1};
+use crate::kernels::simd::line_buffer::{LineBuffer, strips};
+use crate::kernels::simd::pixels::{BLOCK, eight, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, mask32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -54,14 +54,14 @@ type Around<'a> = [&'a [f32]; 3];
 #[inline(always)]
 fn candidates<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let window = band.window;
-    let mut rows = Rows::default();
+    let mut rows = LineBuffer::default();
     for (x0, x1) in strips(window.x0, window.x1) {
         rows.start(x0, x1, 1, 4);
         for y in [window.y0 - 1, window.y0] {
-            rows.load4(simd, &pass.inputs[0], y, std::convert::identity);
+            rows.load_mapped(simd, &pass.inputs[0], y, std::convert::identity);
         }
         for y in window.y0..window.y1 {
-            rows.load4(simd, &pass.inputs[0], y + 1, std::convert::identity);
+            rows.load_mapped(simd, &pass.inputs[0], y + 1, std::convert::identity);
             let heights = [rows.row(y - 1, 2), rows.row(y, 2), rows.row(y + 1, 2)];
             let laplacians = [rows.row(y - 1, 3), rows.row(y, 3), rows.row(y + 1, 3)];
             let (gx, gy) = (rows.row(y, 0), rows.row(y, 1));
@@ -74,7 +74,7 @@ fn candidates<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut 
                 if params.method == Method::Magnitude as u32 {
                     let t = (height - params.low) / (params.high - params.low).max(1e-3);
                     let t = t.max(0.0).min(1.0);
-                    write1(one - t * t * (t * -2.0 + 3.0), pixels);
+                    write([one - t * t * (t * -2.0 + 3.0)], pixels);
                     continue;
                 }
                 let found = if params.method == Method::Maximum as u32 {
@@ -88,7 +88,7 @@ fn candidates<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut 
                 };
                 let found = found & height.simd_gt(params.low);
                 let class = height.simd_gt(params.high).select(one + one, one);
-                write1(found.select(class, zero), pixels);
+                write([found.select(class, zero)], pixels);
             }
         }
     }
@@ -98,7 +98,7 @@ fn candidates<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut 
 #[inline(always)]
 fn near<S: Simd>(simd: S, rows: &Around<'_>, at: usize, dx: i32, dy: i32) -> f32x8<S> {
     let start = (at as i32 + 1 + dx) as usize;
-    f32x8::from_slice(simd, &rows[(1 + dy) as usize][start..start + 8])
+    eight(simd, rows[(1 + dy) as usize], start)
 }
 
 /// True where `height` is a maximum along the gradient. Of two equal neighbours, as both sides of a sharp

@@ -7,8 +7,8 @@
 //! Cost: 24 multiply-adds and a square root per pixel.
 
 pub use crate::kernels::shaders::edge_gradient::Params;
-use crate::kernels::simd::line_buffer::{Rows, strips};
-use crate::kernels::simd::pixels::put_pixels4;
+use crate::kernels::simd::line_buffer::{LineBuffer, strips};
+use crate::kernels::simd::pixels::write;
 use crate::kernels::simd::window_sum::{gaussian_radius, gaussian_table};
 use crate::kernels::smoothing::gaussian_blur;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
@@ -44,14 +44,14 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 #[inline(always)]
 fn derivatives<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let window = band.window;
-    let mut rows = Rows::default();
+    let mut rows = LineBuffer::default();
     for (x0, x1) in strips(window.x0, window.x1) {
         rows.start(x0, x1, 1, 4);
         for y in [window.y0 - 1, window.y0] {
-            rows.load4(simd, &pass.inputs[0], y, covered);
+            rows.load_mapped(simd, &pass.inputs[0], y, covered);
         }
         for y in window.y0..window.y1 {
-            rows.load4(simd, &pass.inputs[0], y + 1, covered);
+            rows.load_mapped(simd, &pass.inputs[0], y + 1, covered);
             let light = [rows.row(y - 1, 0), rows.row(y, 0), rows.row(y + 1, 0)];
             let cover = [rows.row(y - 1, 3), rows.row(y, 3), rows.row(y + 1, 3)];
             let start = 4 * (x0 - window.x0) as usize;
@@ -76,7 +76,7 @@ fn derivatives<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut
                 let gy = ((s - n) * params.centre + ((sw - nw) + (se - ne)) * params.side) * 0.5;
                 let height = (gx * gx + gy * gy).sqrt() * params.scale * alpha;
                 let laplacian = ((n + s) + (e + w)) * 0.666_666_7 + ((nw + ne) + (sw + se)) * 0.166_666_67;
-                put_pixels4([gx, gy, height, laplacian], pixels);
+                write([gx, gy, height, laplacian], pixels);
             }
         }
     }

@@ -8,9 +8,8 @@
 pub use crate::kernels::shaders::flow_dog_cabral_leedom::Params;
 use crate::kernels::shared::edge_threshold::{LEAST_COVERAGE, Xdog, edge_threshold, edge_uncovered};
 use crate::kernels::shared::pixel_line::{PixelLine, error_function, most_steps};
-use crate::kernels::shared::stream::centres;
 use crate::kernels::shared::tensor::tangent;
-use crate::kernels::simd::pixels::{fetch1, for_blocks, offsets, write1};
+use crate::kernels::simd::pixels::{fetch1, for_blocks, offsets, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -53,18 +52,17 @@ fn smooth<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
     let limit = radius(params.sigma);
     let steps = most_steps(limit);
     let inverse = std::f32::consts::FRAC_1_SQRT_2 / params.sigma.max(1e-3);
-    let last = band.window.x1 - 1;
     for_blocks::<1>(
         band,
         #[inline(always)]
         |block, target| {
             let zero = f32x8::splat(simd, 0.0);
-            let [difference, f] = block.read2(simd, field);
+            let [difference, f] = block.read(simd, field);
             let [tx, ty] = tangent(difference, f, zero);
-            let [x, y] = centres(simd, block.x, block.y, last);
+            let [x, y] = block.centres(simd);
             // A line of no length is the pixel itself.
             let own = if limit <= 0.0 { 1.0 } else { 0.0 };
-            let [mut sum, mut norm] = block.read2(simd, response);
+            let [mut sum, mut norm] = block.read(simd, response);
             sum *= own;
             norm *= own;
             for side in [-1.0, 1.0] {
@@ -91,7 +89,7 @@ fn smooth<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
             let covered = norm.simd_gt(LEAST_COVERAGE);
             let u = sum / covered.select(norm, zero + 1.0);
             let edge = edge_threshold(u, params.threshold, params.epsilon, params.phi);
-            write1(covered.select(edge, zero + edge_uncovered(params.threshold)), target);
+            write([covered.select(edge, zero + edge_uncovered(params.threshold))], target);
         },
     );
 }

@@ -8,8 +8,8 @@
 pub use crate::kernels::shaders::flow_dog_gradient::Params;
 use crate::kernels::shared::edge_threshold::{LEAST_COVERAGE, Xdog, dog_response};
 use crate::kernels::shared::tensor::tangent;
-use crate::kernels::simd::line_taps::{ColourLines, strips};
-use crate::kernels::simd::pixels::{BLOCK, Block, write2};
+use crate::kernels::simd::line_taps::{LineTaps, strips};
+use crate::kernels::simd::pixels::{BLOCK, Block, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -152,7 +152,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 #[inline(always)]
 fn gradient<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let (radius, left) = (params.halfwidth as i32, band.window.x0);
-    let mut lightness = ColourLines::default();
+    let mut lightness = LineTaps::default();
     for strip in strips(band, radius) {
         lightness.load2(simd, &pass.inputs[0], strip, radius);
         for y in strip.y0..strip.y1 {
@@ -160,7 +160,7 @@ fn gradient<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ba
             let mut x = strip.x0;
             while x < strip.x1 {
                 let block = Block { x, y, len: BLOCK.min((strip.x1 - x) as usize) };
-                let orientation = block.read2(simd, &pass.inputs[1]);
+                let orientation = block.read(simd, &pass.inputs[1]);
                 let line = Across::new(simd, &block, orientation);
                 let response = if lightness.is_opaque() {
                     differences::<S, true>(simd, &lightness, params, &block, &line)
@@ -168,7 +168,7 @@ fn gradient<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ba
                     differences::<S, false>(simd, &lightness, params, &block, &line)
                 };
                 let at = 2 * (x - strip.x0) as usize;
-                write2(response, &mut target[at..at + 2 * block.len]);
+                write(response, &mut target[at..at + 2 * block.len]);
                 x += BLOCK as i32;
             }
         }
@@ -179,7 +179,7 @@ fn gradient<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ba
 #[inline(always)]
 fn differences<S: Simd, const OPAQUE: bool>(
     simd: S,
-    lightness: &ColourLines,
+    lightness: &LineTaps,
     params: &Params,
     block: &Block,
     line: &Across<S>,

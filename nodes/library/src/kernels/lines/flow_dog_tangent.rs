@@ -7,9 +7,9 @@
 pub use crate::kernels::shaders::flow_dog_tangent::Params;
 use crate::kernels::shared::edge_threshold::{LEAST_COVERAGE, Xdog, edge_threshold, edge_uncovered};
 use crate::kernels::shared::sampling::sample_linear2;
-use crate::kernels::shared::stream::{Integrator, NearField, Stream, StreamField, centres, holds};
+use crate::kernels::shared::stream::{Integrator, NearField, Stream, StreamField, holds};
 use crate::kernels::shared::tensor::tangent;
-use crate::kernels::simd::pixels::{BLOCK, Block, for_blocks_in_tiles, write1};
+use crate::kernels::simd::pixels::{BLOCK, Block, for_blocks_in_tiles, write};
 use crate::kernels::simd::tile_copy::{Frame, Place, Surroundings, TWO};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, mask32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
@@ -75,7 +75,7 @@ fn smooth<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
     if !Frame::suits(reach) {
         let field = StreamField { tensors: *tensors, step: 1.0, integrator };
         for_blocks_in_tiles::<1>(band, |block, target| {
-            write1(line(params, far(simd, response, &field, &weights, &block)), target);
+            write([line(params, far(simd, response, &field, &weights, &block))], target);
         });
         return;
     }
@@ -100,7 +100,7 @@ fn smooth<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                 ];
                 let sums = sums(simd, [response, tensors], &responses, &near, edges, &weights, &blocks);
                 for (sum, target) in sums.into_iter().zip(target.chunks_mut(BLOCK)) {
-                    write1(line(params, sum), target);
+                    write([line(params, sum)], target);
                 }
             }
         }
@@ -126,7 +126,7 @@ fn sums<S: Simd>(
     let ([a, b], [c, d]) = (begun(simd, tensors, &blocks[0]), begun(simd, tensors, &blocks[1]));
     let mut lines = [a, b, c, d];
     let mut active = [mask32x8::splat(simd, true); 4];
-    let mut sums = [blocks[0].read2(simd, response), blocks[1].read2(simd, response)];
+    let mut sums = [blocks[0].read(simd, response), blocks[1].read(simd, response)];
     let mut places = [Place::new(field.frame, lines[0].x, lines[0].y); 4];
     for weight in weights {
         field.advance(simd, &mut lines, &places, [one; 4]);
@@ -148,8 +148,8 @@ fn sums<S: Simd>(
 /// Both sides of the lines through a block.
 #[inline(always)]
 fn begun<S: Simd>(simd: S, tensors: &View<'_>, block: &Block) -> [Stream<S>; 2] {
-    let [difference, f] = block.read2(simd, tensors);
-    let [x, y] = centres(simd, block.x, block.y, block.x + block.len as i32 - 1);
+    let [difference, f] = block.read(simd, tensors);
+    let [x, y] = block.centres(simd);
     Stream::both_sides(x, y, tangent(difference, f, f32x8::splat(simd, 0.0)))
 }
 
@@ -165,7 +165,7 @@ fn far<S: Simd>(
     let zero = f32x8::splat(simd, 0.0);
     let mut lines = begun(simd, &field.tensors, block);
     let mut active = [mask32x8::splat(simd, true); 2];
-    let [mut sum, mut norm] = block.read2(simd, response);
+    let [mut sum, mut norm] = block.read(simd, response);
     for weight in weights {
         field.advance(simd, &mut lines, active);
         for side in 0..2 {

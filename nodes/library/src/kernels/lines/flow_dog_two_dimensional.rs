@@ -12,9 +12,9 @@ use crate::kernels::shared::edge_threshold::{
 };
 use crate::kernels::shared::pixel_line::{PixelLine, error_function, most_steps};
 use crate::kernels::shared::sampling::sample_linear2;
-use crate::kernels::shared::stream::{Integrator, Stream, StreamField, centres};
+use crate::kernels::shared::stream::{Integrator, Stream, StreamField};
 use crate::kernels::shared::tensor::tangent;
-use crate::kernels::simd::pixels::{for_blocks, write1};
+use crate::kernels::simd::pixels::{for_blocks, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
@@ -102,15 +102,14 @@ fn both_ways<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut B
     let falloff = -0.721_347_52 / (params.sigma * params.sigma).max(1e-6);
     let inverse = std::f32::consts::FRAC_1_SQRT_2 / params.sigma.max(1e-3);
     let by_pixels = params.stepping == Stepping::CabralLeedom.number();
-    let last = band.window.x1 - 1;
     for_blocks::<1>(
         band,
         #[inline(always)]
         |block, target| {
             let zero = f32x8::splat(simd, 0.0);
-            let [difference, f] = block.read2(simd, field);
+            let [difference, f] = block.read(simd, field);
             let [tx, ty] = tangent(difference, f, zero);
-            let [x, y] = centres(simd, block.x, block.y, last);
+            let [x, y] = block.centres(simd);
             let mut sum = [zero; 2];
             if !by_pixels || limit <= 0.0 {
                 around.add(simd, &mut sum, zero + 1.0, [x, y], [tx, ty]);
@@ -153,7 +152,7 @@ fn both_ways<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut B
             let covered = norm.simd_gt(LEAST_COVERAGE);
             let u = sum / covered.select(norm, zero + 1.0);
             let edge = edge_threshold(u, params.threshold, params.epsilon, params.phi);
-            write1(covered.select(edge, zero + edge_uncovered(params.threshold)), target);
+            write([covered.select(edge, zero + edge_uncovered(params.threshold))], target);
         },
     );
 }

@@ -12,7 +12,7 @@
 
 use crate::kernels::lines::flow_dog_gradient::Across;
 pub use crate::kernels::shaders::guide_lines::Params;
-use crate::kernels::simd::pixels::{fetch1, fetch4, for_blocks, offsets, write2};
+use crate::kernels::simd::pixels::{fetch1, fetch4, for_blocks, offsets, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
@@ -90,7 +90,7 @@ fn breaks<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
         band,
         #[inline(always)]
         |block, target| {
-            let orientation = block.read2(simd, field);
+            let orientation = block.read(simd, field);
             let line = Across::new(simd, &block, orientation);
             let first = -params.steps;
             let start = line.nearest(first);
@@ -138,8 +138,8 @@ fn breaks<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
             for (narrow, wide) in narrow.iter().zip(&wide) {
                 ridge = ridge.max(*narrow / narrow_weights - *wide / wide_weights);
             }
-            let [u, alpha] = block.read2(simd, response);
-            write2([u - ridge * params.amount * alpha, alpha], target);
+            let [u, alpha] = block.read(simd, response);
+            write([u - ridge * params.amount * alpha, alpha], target);
         },
     );
 }

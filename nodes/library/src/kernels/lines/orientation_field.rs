@@ -4,7 +4,7 @@
 //!
 //! Cost: a subtraction and two multiplications per pixel.
 
-use crate::kernels::simd::pixels::{for_blocks, write2};
+use crate::kernels::simd::pixels::{for_blocks, write};
 use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -25,8 +25,8 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         band,
         #[inline(always)]
         |block, target| {
-            let [e, f, g, _] = block.read4(simd, view);
-            write2([e - g, f], target);
+            let [e, f, g, _] = block.read(simd, view);
+            write([e - g, f], target);
         },
     ));
 }

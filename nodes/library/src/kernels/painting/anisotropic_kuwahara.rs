@@ -14,10 +14,10 @@ pub use crate::kernels::shaders::anisotropic_kuwahara::Params;
 use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Polynomial, Response, Sector};
 use crate::kernels::shared::tensor::{anisotropy, tangent};
 use crate::kernels::simd::line_buffer::strips;
-use crate::kernels::simd::moment_buffer::{CHANNELS, Planes};
-use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
+use crate::kernels::simd::moment_buffer::{CHANNELS, MomentBuffer};
+use crate::kernels::simd::pixels::{Block, eight};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 use std::f32::consts::FRAC_1_SQRT_2;
 
 crate::kernel!(anisotropic_kuwahara {
@@ -107,7 +107,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 #[inline(always)]
 fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let reach = reach(params.radius, params.elongation);
-    let mut planes = Planes::default();
+    let mut planes = MomentBuffer::default();
     let mut taps = vec![Tap([[0.0; 8]; 20]); BATCH + 2 * reach as usize];
     let (color, window) = (&pass.inputs[0], band.window);
     for (x0, x1) in strips(window.x0, window.x1) {
@@ -119,8 +119,9 @@ fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
             planes.load(simd, color, y + reach);
             let opaque = planes.is_opaque();
             for x in (x0..x1).step_by(8) {
-                let ellipses = Ellipses::new(simd, &pass.inputs[1], params, x, y, x1 - 1);
-                let original = get_pixels4(simd, color, x, y, x1 - 1);
+                let block = Block::until(x1, x, y);
+                let ellipses = Ellipses::new(simd, params, block.read(simd, &pass.inputs[1]));
+                let original = block.read(simd, color);
                 let place = Place { planes: &planes, x, y };
                 let (colour, deviation) = match (opaque, params.sectors == 8) {
                     (true, true) => {
@@ -136,9 +137,8 @@ fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                         filtered::<S, false, false>(simd, place, &ellipses, params, &mut taps, original)
                     }
                 };
-                let (first, last) = ((x - window.x0) as usize, (x1.min(x + 8) - window.x0) as usize);
-                put_pixels4(colour, &mut band.row_mut(0, y)[4 * first..4 * last]);
-                band.row_mut(1, y)[first..last].copy_from_slice(&deviation.to_array()[..last - first]);
+                block.write(colour, band, 0);
+                block.write([deviation], band, 1);
             }
         }
     }
@@ -147,7 +147,7 @@ fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
 /// Eight pixels of a row and the rows around them.
 #[derive(Clone, Copy)]
 struct Place<'a> {
-    planes: &'a Planes,
+    planes: &'a MomentBuffer,
     x: i32,
     y: i32,
 }
@@ -167,8 +167,7 @@ struct Ellipses<S: Simd> {
 
 impl<S: Simd> Ellipses<S> {
     #[inline(always)]
-    fn new(simd: S, tensors: &View<'_>, params: &Params, x: i32, y: i32, last: i32) -> Self {
-        let [e, f, g, _] = get_pixels4(simd, tensors, x, y, last);
+    fn new(simd: S, params: &Params, [e, f, g, _]: [f32x8<S>; 4]) -> Self {
         let [tx, ty] = tangent(e, f, g);
         let stretch = anisotropy(e, f, g) * params.elongation + 1.0;
         let long = f32x8::splat(simd, 1.0) / (stretch * params.radius);
@@ -270,7 +269,7 @@ fn gather<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
     let at = planes.column(x);
     let mut centre = [zero; 5];
     for (centre, plane) in centre.iter_mut().zip(planes.row(y)) {
-        *centre = f32x8::from_slice(simd, &plane[at..at + 8]) * (share + share);
+        *centre = eight(simd, plane, at) * (share + share);
     }
     let mut out = Gathered { both: [centre; 4], apart: [[zero; 5]; 4], weights: [share; 4] };
     let mut collected = 0;
@@ -362,7 +361,7 @@ fn weights<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
             }
         }
         for channel in 0..if OPAQUE { 4 } else { 5 } {
-            let p = f32x8::from_slice(simd, &below[channel][n..n + 8]);
+            let p = eight(simd, below[channel], n);
             let q = f32x8::from_slice(simd, &above[channel][last - n..last - n + 8]);
             (p + q).store_slice(&mut tap.0[SUM + channel]);
             (p - q).store_slice(&mut tap.0[DIFFERENCE + channel]);

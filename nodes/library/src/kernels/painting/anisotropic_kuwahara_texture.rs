@@ -15,8 +15,8 @@ use crate::kernels::shared::sampled_sectors::{Table, sample, table};
 use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Response, Sector};
 use crate::kernels::shared::tensor::scalar::{anisotropy, tangent};
 use crate::kernels::simd::line_buffer::strips;
-use crate::kernels::simd::moment_buffer::{CHANNELS, Planes};
-use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
+use crate::kernels::simd::moment_buffer::{CHANNELS, MomentBuffer};
+use crate::kernels::simd::pixels::Block;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 use std::f32::consts::FRAC_1_SQRT_2;
@@ -71,7 +71,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 fn filter<S: Simd, const N: usize>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let reach = reach(params.radius, params.elongation);
     let response = Response { threshold: params.threshold, q: params.q, floor: params.deviation_floor };
-    let mut planes = Planes::default();
+    let mut planes = MomentBuffer::default();
     let (color, window) = (&pass.inputs[0], band.window);
     let zero = f32x8::splat(simd, 0.0);
     for (x0, x1) in strips(window.x0, window.x1) {
@@ -82,9 +82,9 @@ fn filter<S: Simd, const N: usize>(simd: S, pass: &CpuPass<'_>, params: &Params,
         for y in window.y0..window.y1 {
             planes.load(simd, color, y + reach);
             for x in (x0..x1).step_by(8) {
-                let last = x1.min(x + 8);
+                let block = Block::until(x1, x, y);
                 let mut gathered: Gathered = [[[0.0; 8]; 8]; CHANNELS + 1];
-                for (lane, x) in (x..last).enumerate() {
+                for (lane, x) in (x..x + block.len as i32).enumerate() {
                     let tensor = pass.inputs[1].pixel4(x, y);
                     gather::<S, N>(simd, &planes, params, tensor, [x, y], lane, &mut gathered);
                 }
@@ -96,11 +96,9 @@ fn filter<S: Simd, const N: usize>(simd: S, pass: &CpuPass<'_>, params: &Params,
                     }
                     *sector = Sector::new(sums, f32x8::from_slice(simd, &gathered[CHANNELS][k]));
                 }
-                let original = get_pixels4(simd, color, x, y, x1 - 1);
-                let (colour, deviation) = response.of(&sectors, original);
-                let (first, last) = ((x - window.x0) as usize, (last - window.x0) as usize);
-                put_pixels4(colour, &mut band.row_mut(0, y)[4 * first..4 * last]);
-                band.row_mut(1, y)[first..last].copy_from_slice(&deviation.to_array()[..last - first]);
+                let (colour, deviation) = response.of(&sectors, block.read(simd, color));
+                block.write(colour, band, 0);
+                block.write([deviation], band, 1);
             }
         }
     }
@@ -109,7 +107,7 @@ fn filter<S: Simd, const N: usize>(simd: S, pass: &CpuPass<'_>, params: &Params,
 #[inline(always)]
 fn gather<S: Simd, const N: usize>(
     simd: S,
-    planes: &Planes,
+    planes: &MomentBuffer,
     params: &Params,
     [e, f, g, _]: [f32; 4],
     [x, y]: [i32; 2],

@@ -15,8 +15,8 @@ pub use crate::kernels::shaders::generalized_kuwahara::Params;
 use crate::kernels::shared::sampled_sectors::{sample, table};
 use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Response, Sector};
 use crate::kernels::simd::line_buffer::strips;
-use crate::kernels::simd::moment_buffer::{CHANNELS, Planes};
-use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
+use crate::kernels::simd::moment_buffer::{CHANNELS, MomentBuffer};
+use crate::kernels::simd::pixels::{Block, eight, read, write};
 use block_convolution::{Convolution, Mask, block_side};
 use isophote_engine::fearless_simd::{Level, Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
@@ -130,7 +130,7 @@ fn spatial<S: Simd, const N: usize>(
     band: &mut Band<'_>,
 ) {
     let (window, reach, response) = (band.window, params.reach, params.response());
-    let mut planes = Planes::default();
+    let mut planes = MomentBuffer::default();
     for (x0, x1) in strips(window.x0, window.x1) {
         planes.start(x0, x1, reach, 2 * reach + 1);
         for y in window.y0 - reach..window.y0 + reach {
@@ -158,10 +158,9 @@ fn spatial<S: Simd, const N: usize>(
                     if x >= x1 {
                         break;
                     }
-                    let original = get_pixels4(simd, &pass.inputs[0], x, y, x1 - 1);
-                    let (colour, _) = response.of(sectors, original);
-                    let (first, last) = ((x - window.x0) as usize, (x1.min(x + 8) - window.x0) as usize);
-                    put_pixels4(colour, &mut band.row_mut(0, y)[4 * first..4 * last]);
+                    let block = Block::until(x1, x, y);
+                    let (colour, _) = response.of(sectors, block.read(simd, &pass.inputs[0]));
+                    block.write(colour, band, 0);
                 }
             }
         }
@@ -197,7 +196,7 @@ fn sector<S: Simd, const OPAQUE: bool>(
     [Sector::new(sums[0], total), Sector::new(sums[1], total)]
 }
 
-/// Sums of all sectors over the pixels that one block yields: per sector the channels of [`Planes`],
+/// Sums of all sectors over the pixels that one block yields: per sector the channels of [`MomentBuffer`],
 /// rows `stride` apart.
 struct Sums {
     values: Vec<f32>,
@@ -322,7 +321,7 @@ fn respond<S: Simd, const N: usize>(
                 let mut values = [zero; CHANNELS];
                 for (channel, value) in values.iter_mut().enumerate() {
                     let start = (k * CHANNELS + channel) * plane + at;
-                    *value = f32x8::from_slice(simd, &sums.values[start..start + 8]);
+                    *value = eight(simd, &sums.values, start);
                 }
                 sectors[k] = Sector::new(values, f32x8::splat(simd, totals[k]));
             }
@@ -331,9 +330,9 @@ fn respond<S: Simd, const N: usize>(
             let source = pass.inputs[0].offset(first, y);
             let (skip, len) = (4 * (first - x) as usize, 4 * (last - first) as usize);
             pixels[skip..skip + len].copy_from_slice(&pass.inputs[0].data()[source..source + len]);
-            let original = isophote_engine::math::load4(simd, &pixels);
+            let original = read(simd, &pixels);
             let (colour, _) = response.of(&sectors, original);
-            isophote_engine::math::store4(colour, &mut pixels);
+            write(colour, &mut pixels);
             let target = 4 * (first - window.x0) as usize;
             band.row_mut(0, y)[target..target + len].copy_from_slice(&pixels[skip..skip + len]);
         }

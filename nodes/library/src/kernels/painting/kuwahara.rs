@@ -10,9 +10,8 @@
 
 use crate::kernels::painting::kuwahara_rows::{self, Side};
 pub use crate::kernels::shaders::kuwahara::Params;
-use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
+use crate::kernels::simd::pixels::{Block, read, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::kernel!(kuwahara {
@@ -138,8 +137,8 @@ fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
             let columns = (x0 - window.x0) as usize..(strip.x1 - window.x0) as usize;
             let row = &mut band.row_mut(0, y)[4 * columns.start..4 * columns.end];
             for (i, target) in row.chunks_mut(32).enumerate() {
-                let original = get_pixels4(simd, &pass.inputs[3], x0 + 8 * i as i32, y, strip.x1 - 1);
-                put_pixels4(chosen(simd, params, sums, len / 10, 8 * i, original), target);
+                let original = Block::until(strip.x1, x0 + 8 * i as i32, y).read(simd, &pass.inputs[3]);
+                write(chosen(simd, params, sums, len / 10, 8 * i, original), target);
             }
         }
     }
@@ -204,7 +203,7 @@ fn chosen<S: Simd>(
     let mut mean_squares = [zero; 4];
     let mut least = f32x8::splat(simd, 3e38);
     for (k, (sums, square)) in regions.into_iter().enumerate() {
-        let [r, g, b, a]: [f32x8<S>; 4] = load4(simd, &sums[..32]);
+        let [r, g, b, a] = read(simd, &sums[..32]);
         let seen = a.simd_gt(f32x8::splat(simd, SEEN));
         let n = seen.select(one / a, zero);
         let mean = [r * n, g * n, b * n];

@@ -9,8 +9,8 @@
 
 pub use crate::kernels::shaders::kuwahara_rows::Params;
 use crate::kernels::simd::line_buffer::strips;
-use crate::kernels::simd::moment_buffer::{CHANNELS, Planes};
-use crate::kernels::simd::pixels::{put_pixels4, write2};
+use crate::kernels::simd::moment_buffer::{CHANNELS, MomentBuffer};
+use crate::kernels::simd::pixels::write;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -103,7 +103,7 @@ fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
     let count = params.count as i32;
     let reach = params.first.abs().max(params.first + count - 1);
     let window = band.window;
-    let mut planes = Planes::default();
+    let mut planes = MomentBuffer::default();
     let mut doubled = Vec::new();
     let mut sums: [[Vec<f32>; 2]; CHANNELS] = Default::default();
     let flat = params.flat_weights != 0;
@@ -132,7 +132,7 @@ fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
                     for (pixel, channel) in pixels.iter_mut().zip([0, 1, 2, 4]) {
                         *pixel = f32x8::from_slice(simd, &sums[channel][sum][at + 8 * i..at + 8 * i + 8]);
                     }
-                    put_pixels4(pixels, target);
+                    write(pixels, target);
                 }
             }
             let row = &mut band.row_mut(2, y)[2 * columns.start..2 * columns.end];
@@ -141,7 +141,7 @@ fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
                 for (value, (sum, at)) in pair.iter_mut().zip(places) {
                     *value = f32x8::from_slice(simd, &sums[3][sum][at + 8 * i..at + 8 * i + 8]);
                 }
-                write2(pair, target);
+                write(pair, target);
             }
         }
     }

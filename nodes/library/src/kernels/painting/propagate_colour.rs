@@ -4,10 +4,9 @@
 //! Cost: 4 interpolations on five channels and 20 operations.
 
 pub use crate::kernels::shaders::propagate_colour::Params;
-use crate::kernels::simd::pixels::{for_blocks, put_pixels4};
+use crate::kernels::simd::pixels::{eight, for_blocks, read, write};
 use crate::kernels::simd::upsampling::Upsampling;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(propagate_colour {
@@ -51,9 +50,9 @@ fn merge<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             deviations.extend_from_slice(spreads.row::<1>(&pass.inputs[2], block.y, columns, false));
         }
         let at = (block.x - columns[0]) as usize;
-        let [r, g, b, a] = block.read4(simd, &pass.inputs[0]);
-        let below: [f32x8<S>; 4] = load4(simd, &filtered[4 * at..4 * at + 32]);
-        let deviation = f32x8::from_slice(simd, &deviations[at..at + 8]);
+        let [r, g, b, a] = block.read(simd, &pass.inputs[0]);
+        let below: [f32x8<S>; 4] = read(simd, &filtered[4 * at..4 * at + 32]);
+        let deviation = eight(simd, &deviations, at);
         let beta = (deviation * params.gain - params.threshold).max(zero).min(one);
         let beta = below[3].simd_lt(least).select(one, beta);
         let n = one / below[3].max(least);
@@ -62,6 +61,6 @@ fn merge<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             let below = below * n;
             *out = (*out - below).mul_add(beta, below);
         }
-        put_pixels4(out, target);
+        write(out, target);
     });
 }

@@ -5,10 +5,9 @@
 
 pub use crate::kernels::shaders::propagate_tensor::Params;
 use crate::kernels::shared::tensor::anisotropy;
-use crate::kernels::simd::pixels::{for_blocks, put_pixels4};
+use crate::kernels::simd::pixels::{for_blocks, read, write};
 use crate::kernels::simd::upsampling::Upsampling;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(propagate_tensor {
@@ -45,14 +44,14 @@ fn merge<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             coarse.extend_from_slice(upsampling.row::<4>(&pass.inputs[1], block.y, columns, false));
         }
         let at = 4 * (block.x - columns[0]) as usize;
-        let mut own = block.read4(simd, &pass.inputs[0]);
-        let below: [f32x8<S>; 4] = load4(simd, &coarse[at..at + 32]);
+        let mut own: [f32x8<S>; 4] = block.read(simd, &pass.inputs[0]);
+        let below: [f32x8<S>; 4] = read(simd, &coarse[at..at + 32]);
         let a = anisotropy(own[0], own[1], own[2]).max(floor);
         let b = anisotropy(below[0], below[1], below[2]).max(floor);
         let share = b / (a + b);
         for (own, below) in own.iter_mut().zip(below) {
             *own = (below - *own).mul_add(share, *own);
         }
-        put_pixels4(own, target);
+        write(own, target);
     });
 }

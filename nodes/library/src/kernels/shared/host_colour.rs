@@ -1,6 +1,7 @@
 //! The host's pixels in its own space, finite and not premultiplied. Twin of
 //! `shaders/shared/host_colour.wgsl`.
 
+use crate::kernels::simd::pixels::unpremultiply;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::pixels::LARGEST_HALF;
 
@@ -8,12 +9,11 @@ use isophote_engine::pixels::LARGEST_HALF;
 #[inline(always)]
 pub fn plain<S: Simd>([r, g, b, a]: [f32x8<S>; 4], premultiplied: bool) -> [f32x8<S>; 4] {
     let (zero, one) = (f32x8::splat(r.simd, 0.0), f32x8::splat(r.simd, 1.0));
-    let (mut r, mut g, mut b) = (finite(r), finite(g), finite(b));
+    let (r, g, b) = (finite(r), finite(g), finite(b));
     let a = finite(a).min(one).max(zero);
     // Where all is opaque the division by 1 can be left out.
     if premultiplied && !a.simd_ge(one).all_true() {
-        let covered = a.simd_gt(1e-6);
-        (r, g, b) = (covered.select(r / a, zero), covered.select(g / a, zero), covered.select(b / a, zero));
+        return unpremultiply([r, g, b, a]);
     }
     [r, g, b, a]
 }

@@ -326,14 +326,6 @@ impl NearField<'_> {
     }
 }
 
-/// Centres of the eight pixels from column `x` of row `y` on. Columns past `last`, the last one to be
-/// computed, repeat it, so that a short block reads nothing that was not promised.
-#[inline(always)]
-pub fn centres<S: Simd>(simd: S, x: i32, y: i32, last: i32) -> [f32x8<S>; 2] {
-    let columns = f32x8::from_fn(simd, |lane| (x + lane as i32).min(last) as f32 + 0.5);
-    [columns, f32x8::splat(simd, y as f32 + 0.5)]
-}
-
 /// Angle of a cosine in 0..=1, error below 7e-5 (Abramowitz and Stegun 4.4.45).
 #[inline(always)]
 pub fn acos<S: Simd>(cosine: f32x8<S>) -> f32x8<S> {
@@ -347,6 +339,7 @@ pub fn acos<S: Simd>(cosine: f32x8<S>) -> f32x8<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernels::simd::pixels::Block;
     use isophote_engine::Image;
     use isophote_engine::fearless_simd::{Level, dispatch};
 
@@ -419,7 +412,7 @@ mod tests {
             integrator: Integrator::Midpoint,
         };
         dispatch!(Level::new(), simd => {
-            let at = centres(simd, 40, 9, 90);
+            let at = Block { x: 40, y: 9, len: 8 }.centres(simd);
             let mut line = [Stream::begin(at[0], at[1], field.tangent(simd, at[0], at[1]))];
             let active = line[0].x.simd_lt(f32x8::splat(simd, 44.0));
             for _ in 0..3 {

@@ -1,7 +1,7 @@
 //! Rings of rows for kernels that look at a small neighbourhood: each row is clamped to the edge,
 //! mapped once and kept channel by channel, ready for vectors that start at any column.
 
-use crate::kernels::simd::pixels::row_pixels4;
+use crate::kernels::simd::pixels::{eight, read};
 use isophote_engine::View;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 
@@ -15,7 +15,7 @@ pub const WIDE_STRIP: i32 = 960;
 
 /// Rows y - radius ..= y + radius of a strip of columns, by channel.
 #[derive(Debug, Default)]
-pub struct Rows {
+pub struct LineBuffer {
     first: i32,
     columns: usize,
     len: usize,
@@ -25,7 +25,7 @@ pub struct Rows {
     scratch: Vec<f32>,
 }
 
-impl Rows {
+impl LineBuffer {
     /// Prepares for columns `x0..x1` with `radius` pixels on every side.
     pub fn start(&mut self, x0: i32, x1: i32, radius: i32, channels: usize) {
         self.first = x0 - radius;
@@ -57,7 +57,19 @@ impl Rows {
 
     /// Takes in row `y` of a four-channel image, which replaces the oldest.
     #[inline(always)]
-    pub fn load4<S: Simd>(
+    pub fn load<S: Simd>(&mut self, simd: S, view: &View<'_>, y: i32) {
+        self.load_mapped(
+            simd,
+            view,
+            y,
+            #[inline(always)]
+            |pixels| pixels,
+        );
+    }
+
+    /// As [`LineBuffer::load`], after `map`.
+    #[inline(always)]
+    pub fn load_mapped<S: Simd>(
         &mut self,
         simd: S,
         view: &View<'_>,
@@ -71,7 +83,7 @@ impl Rows {
         // A plain loop: adapters of iterators stay calls in code for wide vectors.
         for i in 0..source.len().div_ceil(32) {
             let rest = &source[32 * i..];
-            let values = map(row_pixels4(simd, rest, 0));
+            let values = map(read(simd, rest));
             for channel in 0..4 {
                 values[channel].store_slice(&mut target[channel * self.len + 8 * i..][..8]);
             }
@@ -98,7 +110,7 @@ impl Rows {
 pub fn pixels<S: Simd>(simd: S, channels: &[&[f32]; 4], at: usize) -> [f32x8<S>; 4] {
     let mut values = [f32x8::splat(simd, 0.0); 4];
     for c in 0..4 {
-        values[c] = f32x8::from_slice(simd, &channels[c][at..at + 8]);
+        values[c] = eight(simd, channels[c], at);
     }
     values
 }

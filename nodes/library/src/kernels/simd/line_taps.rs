@@ -32,7 +32,7 @@ const FAR: f32 = 1e6;
 
 /// Colours around a strip, by themselves or times coverage, and coverage.
 #[derive(Debug, Default)]
-pub struct ColourLines {
+pub struct LineTaps {
     x0: i32,
     y0: i32,
     width: usize,
@@ -171,7 +171,7 @@ pub fn strips(band: &Band<'_>, radius: i32) -> impl Iterator<Item = Rect> + use<
     })
 }
 
-impl ColourLines {
+impl LineTaps {
     /// Prepares for the pixels of `strip` and lines that reach `radius` pixels to either side.
     ///
     /// Pixels that the view does not hold are never taps with any weight; they repeat the last ones.
@@ -209,7 +209,7 @@ impl ColourLines {
         self.opaque = opaque;
     }
 
-    /// As [`ColourLines::load`] from an image of two channels, which are a value times coverage, and coverage.
+    /// As [`LineTaps::load`] from an image of two channels, which are a value times coverage, and coverage.
     #[inline(always)]
     pub fn load2<S: Simd>(&mut self, simd: S, view: &View<'_>, strip: Rect, radius: i32) {
         let rows = self.start(strip, radius);
@@ -349,7 +349,7 @@ impl ColourLines {
         taps
     }
 
-    /// As [`ColourLines::for_rows`], from row `first` on.
+    /// As [`LineTaps::for_rows`], from row `first` on.
     #[inline(always)]
     fn rows_from<S: Simd, const N: usize>(
         &self,
@@ -417,7 +417,7 @@ mod tests {
         let slopes = [0.9, -0.7, 0.1, 0.33, -0.02, 0.5, -1.0, 0.8];
         dispatch!(Level::new(), simd => {
             let view = View::new(&image, [48, 40]);
-            let mut colours = ColourLines::default();
+            let mut colours = LineTaps::default();
             colours.load(simd, &view, strip, 6, false);
             let taps = |slopes: [f32; 8]| {
                 let (slope, steps) = (f32x8::simd_from(simd, slopes), f32x8::splat(simd, 6.0));

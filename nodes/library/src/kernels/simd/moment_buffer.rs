@@ -1,16 +1,16 @@
 //! Rings of rows for the Kuwahara filters: colours times coverage, their squares and the coverage,
 //! channel by channel, ready for vectors that start at any column.
 
+use crate::kernels::simd::pixels::read;
 use isophote_engine::View;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
-use isophote_engine::math::load4;
 
 /// Channels of a row: a r, a g, a b, a (r^2 + g^2 + b^2), a.
 pub const CHANNELS: usize = 5;
 
 /// Rows of a strip of columns, clamped to the picture's edge.
 #[derive(Debug, Default)]
-pub struct Planes {
+pub struct MomentBuffer {
     first: i32,
     columns: usize,
     len: usize,
@@ -21,7 +21,7 @@ pub struct Planes {
     scratch: Vec<f32>,
 }
 
-impl Planes {
+impl MomentBuffer {
     /// Prepares for `rows` rows of columns `x0..x1` with `reach` pixels on both sides.
     pub fn start(&mut self, x0: i32, x1: i32, reach: i32, rows: i32) {
         self.first = x0 - reach;
@@ -75,14 +75,7 @@ impl Planes {
         let one = f32x8::splat(simd, 1.0);
         let mut least = one;
         for (i, block) in source.chunks(32).enumerate() {
-            let [r, g, b, a]: [f32x8<S>; 4] = if block.len() == 32 {
-                load4(simd, block)
-            } else {
-                // The padding is never used, and must not make an opaque row look otherwise.
-                let mut padded = [1.0; 32];
-                padded[..block.len()].copy_from_slice(block);
-                load4(simd, &padded)
-            };
+            let [r, g, b, a] = read(simd, block);
             least = least.min(a);
             let square = b.mul_add(b, g.mul_add(g, r * r));
             let values = [r * a, g * a, b * a, square * a, a];

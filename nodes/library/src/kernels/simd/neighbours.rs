@@ -1,7 +1,7 @@
 //! The eight neighbours of eight pixels, for kernels of small support.
 
-use crate::kernels::simd::line_buffer::{Rows, strips};
-use crate::kernels::simd::pixels::put_pixels4;
+use crate::kernels::simd::line_buffer::{LineBuffer, strips};
+use crate::kernels::simd::pixels::{Block, write};
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, View};
 
@@ -9,13 +9,9 @@ use isophote_engine::{Band, View};
 #[derive(Clone, Copy)]
 pub struct Neighbours<'a, S: Simd> {
     simd: S,
-    /// Column of the first pixel.
-    pub x: i32,
-    /// Row.
-    pub y: i32,
-    /// Pixels, 1..=8.
-    pub len: usize,
-    rows: &'a Rows,
+    /// The pixels.
+    pub block: Block,
+    rows: &'a LineBuffer,
     at: usize,
 }
 
@@ -36,7 +32,7 @@ impl<S: Simd> Neighbours<'_, S> {
     #[inline(always)]
     fn value(&self, dx: i32, dy: i32, channel: usize) -> f32x8<S> {
         let at = (self.at as i32 + dx) as usize;
-        f32x8::from_slice(self.simd, &self.rows.row(self.y + dy, channel)[at..at + 8])
+        f32x8::from_slice(self.simd, &self.rows.row(self.block.y + dy, channel)[at..at + 8])
     }
 }
 
@@ -49,32 +45,20 @@ pub fn each<S: Simd>(
     mut f: impl FnMut(Neighbours<'_, S>) -> [f32x8<S>; 4],
 ) {
     let window = band.window;
-    let mut rows = Rows::default();
+    let mut rows = LineBuffer::default();
     for (x0, x1) in strips(window.x0, window.x1) {
         rows.start(x0, x1, 1, 4);
         for y in window.y0 - 1..window.y0 + 1 {
-            rows.load4(
-                simd,
-                view,
-                y,
-                #[inline(always)]
-                |v| v,
-            );
+            rows.load(simd, view, y);
         }
         for y in window.y0..window.y1 {
-            rows.load4(
-                simd,
-                view,
-                y + 1,
-                #[inline(always)]
-                |v| v,
-            );
+            rows.load(simd, view, y + 1);
             let start = 4 * (x0 - window.x0) as usize;
             let target = &mut band.row_mut(0, y)[start..start + 4 * (x1 - x0) as usize];
             for (i, pixels) in target.chunks_mut(32).enumerate() {
-                let x = x0 + 8 * i as i32;
-                let around = Neighbours { simd, x, y, len: pixels.len() / 4, rows: &rows, at: 1 + 8 * i };
-                put_pixels4(f(around), pixels);
+                let block = Block::until(x1, x0 + 8 * i as i32, y);
+                let around = Neighbours { simd, block, rows: &rows, at: 1 + 8 * i };
+                write(f(around), pixels);
             }
         }
     }

@@ -1,7 +1,8 @@
-//! Blocks of eight neighbouring pixels: reading, writing and fetching them from anywhere.
+//! Reading and writing pixels: blocks of eight neighbouring ones, one vector per channel.
 //!
-//! A block at the end of a row goes through the same arithmetic as a full one, its missing lanes
-//! filled, so that no pixel depends on where its tile ends.
+//! A block at the end of a row goes through the same arithmetic as a full one, its missing lanes filled
+//! with its last pixel, so that no pixel depends on where its tile ends. The number of channels, `N`, is
+//! 1, 2 or 4 everywhere.
 
 use isophote_engine::fearless_simd::{Simd, f32x4, f32x8, i32x8, prelude::*};
 use isophote_engine::math::{load4, store4, transposed};
@@ -22,6 +23,14 @@ pub struct Block {
 }
 
 impl Block {
+    /// The block that starts at (`x`, `y`) and ends before column `end` at the latest; beyond it, the last
+    /// pixel before it.
+    #[inline(always)]
+    pub fn until(end: i32, x: i32, y: i32) -> Self {
+        let x = x.min(end - 1);
+        Self { x, y, len: BLOCK.min((end - x) as usize) }
+    }
+
     /// Columns of the pixels; lanes past the end repeat the last one, so that they are safe to fetch.
     #[inline(always)]
     pub fn columns<S: Simd>(&self, simd: S) -> i32x8<S> {
@@ -29,37 +38,92 @@ impl Block {
         lanes.min(i32x8::splat(simd, self.len as i32 - 1)) + i32x8::splat(simd, self.x)
     }
 
-    /// `N` values a pixel, copied to `short` where the block is; lanes past the end are as they were there.
+    /// Centres of the pixels, x and y; lanes past the end repeat the last one.
     #[inline(always)]
-    fn values<'v, const N: usize>(&self, view: &View<'v>, short: &'v mut [f32; 4 * BLOCK]) -> &'v [f32] {
+    pub fn centres<S: Simd>(&self, simd: S) -> [f32x8<S>; 2] {
+        let columns: f32x8<S> = self.columns(simd).to_float();
+        [columns + 0.5, f32x8::splat(simd, self.y as f32 + 0.5)]
+    }
+
+    /// The pixels of an image of `N` channels.
+    #[inline(always)]
+    pub fn read<S: Simd, const N: usize>(&self, simd: S, view: &View<'_>) -> [f32x8<S>; N] {
         let at = view.offset(self.x, self.y);
-        if self.len == BLOCK {
-            return &view.data()[at..at + N * BLOCK];
+        read(simd, &view.data()[at..at + N * self.len])
+    }
+
+    /// Writes the pixels to output `output`, of `N` channels.
+    #[inline(always)]
+    pub fn write<S: Simd, const N: usize>(&self, pixels: [f32x8<S>; N], band: &mut Band<'_>, output: usize) {
+        let at = N * (self.x - band.window.x0) as usize;
+        write(pixels, &mut band.row_mut(output, self.y)[at..at + N * self.len]);
+    }
+}
+
+/// Eight pixels from the start of `values`, which holds at least one; past its end they repeat the last one.
+#[inline(always)]
+pub fn read<S: Simd, const N: usize>(simd: S, values: &[f32]) -> [f32x8<S>; N] {
+    if values.len() >= N * BLOCK {
+        return channels(simd, values);
+    }
+    let (mut block, last) = ([0.0; 4 * BLOCK], values.len() - N);
+    for lane in 0..BLOCK {
+        let at = (N * lane).min(last);
+        block[N * lane..N * lane + N].copy_from_slice(&values[at..at + N]);
+    }
+    channels(simd, &block)
+}
+
+/// One vector per channel of the first eight pixels of `values`.
+#[inline(always)]
+fn channels<S: Simd, const N: usize>(simd: S, values: &[f32]) -> [f32x8<S>; N] {
+    const { assert!(N == 1 || N == 2 || N == 4) }
+    let mut out = [f32x8::splat(simd, 0.0); N];
+    if N == 4 {
+        let pixels: [f32x8<S>; 4] = load4(simd, &values[..4 * BLOCK]);
+        // A plain loop: array functions stay calls in code for wide vectors.
+        for c in 0..N {
+            out[c] = pixels[c];
         }
-        short[..N * self.len].copy_from_slice(&view.data()[at..at + N * self.len]);
-        &short[..N * BLOCK]
+    } else if N == 2 {
+        let (low, high) = (eight(simd, values, 0), eight(simd, values, BLOCK));
+        (out[0], out[N - 1]) = low.deinterleave(high);
+    } else {
+        out[0] = eight(simd, values, 0);
     }
+    out
+}
 
-    /// The pixels of a one-channel image.
-    #[inline(always)]
-    pub fn read1<S: Simd>(&self, simd: S, view: &View<'_>) -> f32x8<S> {
-        let mut short = [0.0; 4 * BLOCK];
-        f32x8::from_slice(simd, self.values::<1>(view, &mut short))
+/// Eight values from index `at` on.
+#[inline(always)]
+pub fn eight<S: Simd>(simd: S, values: &[f32], at: usize) -> f32x8<S> {
+    f32x8::from_slice(simd, &values[at..at + 8])
+}
+
+/// Writes eight pixels to the start of `target`, or as many as it has room for.
+#[inline(always)]
+pub fn write<S: Simd, const N: usize>(pixels: [f32x8<S>; N], target: &mut [f32]) {
+    if target.len() >= N * BLOCK {
+        store(pixels, target);
+    } else {
+        let mut block = [0.0; 4 * BLOCK];
+        store(pixels, &mut block);
+        target.copy_from_slice(&block[..target.len()]);
     }
+}
 
-    /// The pixels of a two-channel image.
-    #[inline(always)]
-    pub fn read2<S: Simd>(&self, simd: S, view: &View<'_>) -> [f32x8<S>; 2] {
-        let mut short = [0.0; 4 * BLOCK];
-        let v = self.values::<2>(view, &mut short);
-        f32x8::from_slice(simd, &v[..8]).deinterleave(f32x8::from_slice(simd, &v[8..])).into()
-    }
-
-    /// The pixels of a four-channel image.
-    #[inline(always)]
-    pub fn read4<S: Simd>(&self, simd: S, view: &View<'_>) -> [f32x8<S>; 4] {
-        let mut short = [0.0; 4 * BLOCK];
-        load4(simd, self.values::<4>(view, &mut short))
+/// Writes eight pixels to the start of `target`.
+#[inline(always)]
+fn store<S: Simd, const N: usize>(pixels: [f32x8<S>; N], target: &mut [f32]) {
+    const { assert!(N == 1 || N == 2 || N == 4) }
+    if N == 4 {
+        store4([pixels[0], pixels[1 % N], pixels[2 % N], pixels[3 % N]], &mut target[..4 * BLOCK]);
+    } else if N == 2 {
+        let (low, high) = pixels[0].interleave(pixels[N - 1]);
+        low.store_slice(&mut target[..8]);
+        high.store_slice(&mut target[8..16]);
+    } else {
+        pixels[0].store_slice(&mut target[..8]);
     }
 }
 
@@ -72,8 +136,9 @@ pub fn for_blocks<const N: usize>(band: &mut Band<'_>, mut f: impl FnMut(Block, 
         let row = band.row_mut(0, y);
         let mut x = window.x0;
         while x < window.x1 {
-            let (at, len) = ((x - window.x0) as usize, BLOCK.min((window.x1 - x) as usize));
-            f(Block { x, y, len }, &mut row[N * at..N * (at + len)]);
+            let block = Block::until(window.x1, x, y);
+            let at = (x - window.x0) as usize;
+            f(block, &mut row[N * at..N * (at + block.len)]);
             x += BLOCK as i32;
         }
     }
@@ -94,8 +159,9 @@ pub fn for_blocks_in_tiles<const N: usize>(band: &mut Band<'_>, mut f: impl FnMu
             let row = band.row_mut(0, y);
             let mut x = start;
             while x < end {
-                let (at, len) = ((x - window.x0) as usize, BLOCK.min((end - x) as usize));
-                f(Block { x, y, len }, &mut row[N * at..N * (at + len)]);
+                let block = Block::until(end, x, y);
+                let at = (x - window.x0) as usize;
+                f(block, &mut row[N * at..N * (at + block.len)]);
                 x += BLOCK as i32;
             }
         }
@@ -103,42 +169,76 @@ pub fn for_blocks_in_tiles<const N: usize>(band: &mut Band<'_>, mut f: impl FnMu
     }
 }
 
-/// Writes one value a pixel.
+/// Runs `f` on all pixels of a pass that computes each from the same pixel of its one input: from `I`
+/// channels to `O`.
 #[inline(always)]
-pub fn write1<S: Simd>(v: f32x8<S>, target: &mut [f32]) {
-    if target.len() == BLOCK {
-        v.store_slice(target);
-    } else {
-        target.copy_from_slice(&v.to_array()[..target.len()]);
+pub fn map_pixels<S: Simd, const I: usize, const O: usize>(
+    simd: S,
+    pass: &CpuPass<'_>,
+    band: &mut Band<'_>,
+    mut f: impl FnMut([f32x8<S>; I]) -> [f32x8<S>; O],
+) {
+    map_pairs(
+        simd,
+        pass,
+        band,
+        #[inline(always)]
+        |[a, b]| [f(a), f(b)],
+    );
+}
+
+/// [`map_pixels`] on two blocks at a time, whose operations need not wait for each other.
+#[inline(always)]
+pub fn map_pairs<S: Simd, const I: usize, const O: usize>(
+    simd: S,
+    pass: &CpuPass<'_>,
+    band: &mut Band<'_>,
+    mut f: impl FnMut([[f32x8<S>; I]; 2]) -> [[f32x8<S>; O]; 2],
+) {
+    const PAIR: usize = 2 * BLOCK;
+    let window = band.window;
+    let view = &pass.inputs[0];
+    let width = window.width() as usize;
+    for y in window.y0..window.y1 {
+        let at = view.offset(window.x0, y);
+        let target = &mut band.row_mut(0, y)[..O * width];
+        let source = &view.data()[at..at + I * width];
+        let mut x = 0;
+        while x < width {
+            let (source, target) = (&source[I * x..], &mut target[O * x..]);
+            if x + PAIR <= width {
+                let [a, b] = f([channels(simd, source), channels(simd, &source[I * BLOCK..])]);
+                store(a, target);
+                store(b, &mut target[O * BLOCK..]);
+            } else {
+                // Where there is no second block, the last pixel stands for it.
+                let second = (I * BLOCK).min(source.len() - I);
+                let [a, b] = f([read(simd, source), read(simd, &source[second..])]);
+                let end = target.len().min(O * BLOCK);
+                let (first, rest) = target.split_at_mut(end);
+                write(a, first);
+                write(b, rest);
+            }
+            x += PAIR;
+        }
     }
 }
 
-/// Writes two values a pixel.
+/// Colours times their alpha.
 #[inline(always)]
-pub fn write2<S: Simd>([a, b]: [f32x8<S>; 2], target: &mut [f32]) {
-    let (low, high) = a.interleave(b);
-    if target.len() == 2 * BLOCK {
-        low.store_slice(&mut target[..8]);
-        high.store_slice(&mut target[8..]);
-    } else {
-        let mut block = [0.0; 2 * BLOCK];
-        low.store_slice(&mut block[..8]);
-        high.store_slice(&mut block[8..]);
-        target.copy_from_slice(&block[..target.len()]);
-    }
+pub fn premultiply<S: Simd>([r, g, b, a]: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
+    [r * a, g * a, b * a, a]
 }
 
-/// Writes four values a pixel.
+/// Colours without the alpha that they are multiplied by; black where nothing is covered.
 #[inline(always)]
-pub fn write4<S: Simd>(v: [f32x8<S>; 4], target: &mut [f32]) {
-    if target.len() == 4 * BLOCK {
-        store4(v, target);
-    } else {
-        let mut block = [0.0; 4 * BLOCK];
-        store4(v, &mut block);
-        target.copy_from_slice(&block[..target.len()]);
-    }
+pub fn unpremultiply<S: Simd>([r, g, b, a]: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
+    let (zero, seen) = (f32x8::splat(a.simd, 0.0), a.simd_gt(f32x8::splat(a.simd, LEAST_COVERAGE)));
+    [seen.select(r / a, zero), seen.select(g / a, zero), seen.select(b / a, zero), a]
 }
+
+/// Coverage up to which a pixel counts as empty.
+pub const LEAST_COVERAGE: f32 = 1e-6;
 
 /// Where eight pixels begin in the data of `view`; positions are clamped to the picture and must then
 /// lie in the window.
@@ -169,118 +269,6 @@ pub fn fetch4<S: Simd>(simd: S, view: &View<'_>, at: i32x8<S>) -> [f32x8<S>; 4] 
     transposed(pixels)
 }
 
-/// Pixels that [`map_pixels`] gives at a time.
-pub const PAIR: usize = 16;
-
-/// Runs `f` on [`PAIR`] pixels at a time: a pass from each pixel of input 0, of `I` channels, to the same
-/// pixel of output 0, of `O`.
-#[inline(always)]
-pub fn map_pixels<const I: usize, const O: usize>(
-    pass: &CpuPass<'_>,
-    band: &mut Band<'_>,
-    mut f: impl FnMut(&[f32], &mut [f32]),
-) {
-    let window = band.window;
-    let view = &pass.inputs[0];
-    let width = window.width() as usize;
-    for y in window.y0..window.y1 {
-        let at = view.offset(window.x0, y);
-        let target = &mut band.row_mut(0, y)[..O * width];
-        let source = &view.data()[at..at + I * width];
-        let mut x = 0;
-        while x + PAIR <= width {
-            f(&source[I * x..I * (x + PAIR)], &mut target[O * x..O * (x + PAIR)]);
-            x += PAIR;
-        }
-        if x < width {
-            // The last pixels of a row go through the same arithmetic, padded with zeros.
-            let (mut from, mut to) = ([0.0; 4 * PAIR], [0.0; 4 * PAIR]);
-            from[..I * (width - x)].copy_from_slice(&source[I * x..]);
-            f(&from[..I * PAIR], &mut to[..O * PAIR]);
-            target[O * x..].copy_from_slice(&to[..O * (width - x)]);
-        }
-    }
-}
-
-/// Runs `f` on eight four-channel pixels at a time, one vector per channel, over a whole band; a pass
-/// from each pixel to the same pixel.
-#[inline(always)]
-pub fn map_pixels4<S: Simd>(
-    simd: S,
-    pass: &CpuPass<'_>,
-    band: &mut Band<'_>,
-    mut f: impl FnMut([f32x8<S>; 4]) -> [f32x8<S>; 4],
-) {
-    map_pixels::<4, 4>(
-        pass,
-        band,
-        #[inline(always)]
-        |source, target| {
-            store4(f(load4(simd, &source[..32])), &mut target[..32]);
-            store4(f(load4(simd, &source[32..])), &mut target[32..]);
-        },
-    );
-}
-
-/// Eight four-channel pixels of row `y` from column `x` on; columns past `last` repeat it.
-#[inline(always)]
-pub fn get_pixels4<S: Simd>(simd: S, view: &View<'_>, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
-    let data = view.data();
-    if x + 7 <= last {
-        let at = view.offset(x, y);
-        return load4(simd, &data[at..at + 32]);
-    }
-    let mut block = [0.0; 32];
-    for (lane, pixel) in block.chunks_exact_mut(4).enumerate() {
-        pixel.copy_from_slice(&view.pixel4((x + lane as i32).min(last), y));
-    }
-    load4(simd, &block)
-}
-
-/// Eight four-channel pixels of `row` from its pixel `i` on; past its end they repeat the last one.
-#[inline(always)]
-pub fn row_pixels4<S: Simd>(simd: S, row: &[f32], i: usize) -> [f32x8<S>; 4] {
-    let rest = &row[4 * i..];
-    if let Some(full) = rest.get(..32) {
-        return load4(simd, full);
-    }
-    let mut block = [0.0; 32];
-    for (lane, pixel) in block.chunks_exact_mut(4).enumerate() {
-        let at = (4 * lane).min(rest.len() - 4);
-        pixel.copy_from_slice(&rest[at..at + 4]);
-    }
-    load4(simd, &block)
-}
-
-/// Eight two-channel pixels of row `y` from column `x` on; columns past `last` repeat it.
-#[inline(always)]
-pub fn get_pixels2<S: Simd>(simd: S, view: &View<'_>, x: i32, y: i32, last: i32) -> [f32x8<S>; 2] {
-    let data = view.data();
-    let mut block = [0.0; 16];
-    if x + 7 <= last {
-        let at = view.offset(x, y);
-        block.copy_from_slice(&data[at..at + 16]);
-    } else {
-        for lane in 0..8 {
-            let at = view.offset((x + lane as i32).min(last), y);
-            block[2 * lane..2 * lane + 2].copy_from_slice(&data[at..at + 2]);
-        }
-    }
-    f32x8::from_slice(simd, &block[..8]).deinterleave(f32x8::from_slice(simd, &block[8..])).into()
-}
-
-/// Writes eight four-channel pixels to the start of `row`, or as many as it still has.
-#[inline(always)]
-pub fn put_pixels4<S: Simd>(values: [f32x8<S>; 4], row: &mut [f32]) {
-    if let Some(full) = row.get_mut(..32) {
-        store4(values, full);
-    } else {
-        let mut block = [0.0; 32];
-        store4(values, &mut block);
-        row.copy_from_slice(&block[..row.len()]);
-    }
-}
-
 /// The pixels at two offsets, one in each half of a vector.
 #[inline(always)]
 pub fn load_pixels<S: Simd>(simd: S, low: &[f32], high: &[f32]) -> f32x8<S> {
@@ -293,4 +281,72 @@ pub fn load_pixel<S: Simd>(simd: S, data: &[f32], at: i32) -> f32x4<S> {
     // Through u32 one comparison is enough to check the range.
     let at = at as u32 as usize;
     f32x4::from_slice(simd, &data[at..at + 4])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isophote_engine::fearless_simd::{Level, dispatch};
+    use isophote_engine::{Image, Rect};
+
+    fn image(width: u32, height: u32, channels: u32) -> Image {
+        let values = (0..width * height * channels).map(|i| (i * 7 % 103) as f32 + 1.0).collect();
+        Image::from_vec(width, height, channels, values).unwrap()
+    }
+
+    /// Copies a picture block by block.
+    fn copied<const N: usize>(source: &Image) -> Vec<f32> {
+        let [w, h] = [source.width(), source.height()];
+        let (view, mut values) = (View::new(source, [w as i32, h as i32]), vec![0.0; source.data().len()]);
+        let outputs = vec![values.as_mut_slice()];
+        let mut band = Band { window: Rect::of_size(w, h), full: [w as i32, h as i32], outputs };
+        dispatch!(Level::new(), simd => for_blocks::<N>(&mut band, |block, target| {
+            let pixels: [f32x8<_>; N] = block.read(simd, &view);
+            let columns = block.columns(simd);
+            for lane in block.len..BLOCK {
+                assert_eq!(columns[lane], block.x + block.len as i32 - 1);
+                for channel in pixels {
+                    assert_eq!(channel[lane], channel[block.len - 1], "missing lanes repeat the last pixel");
+                }
+            }
+            write(pixels, target);
+        }));
+        values
+    }
+
+    #[test]
+    fn what_is_read_is_written_whatever_the_width() {
+        for width in 1..=19 {
+            assert_eq!(copied::<1>(&image(width, 3, 1)), image(width, 3, 1).data());
+            assert_eq!(copied::<2>(&image(width, 3, 2)), image(width, 3, 2).data());
+            assert_eq!(copied::<4>(&image(width, 3, 4)), image(width, 3, 4).data());
+        }
+    }
+
+    #[test]
+    fn every_pixel_is_mapped_whatever_the_width() {
+        for width in 1..=35 {
+            let source = image(width, 2, 4);
+            let size = [width as i32, 2];
+            let views = [View::new(&source, size)];
+            let pass = CpuPass { params: &[], inputs: &views, level: Level::new() };
+            let mut values = vec![0.0; 4 * width as usize];
+            let outputs = vec![values.as_mut_slice()];
+            let mut band = Band { window: Rect::of_size(width, 2), full: size, outputs };
+            dispatch!(pass.level, simd => map_pixels(simd, &pass, &mut band, |[r, g, b, a]| [r + g, b - a]));
+            let want = source.data().chunks_exact(4).flat_map(|p| [p[0] + p[1], p[2] - p[3]]);
+            assert_eq!(values, want.collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn what_is_not_covered_is_black() {
+        dispatch!(Level::new(), simd => {
+            let pixel = [0.5, -2.0, 8.0].map(|v| f32x8::splat(simd, v));
+            let with = |alpha: f32| [pixel[0], pixel[1], pixel[2], f32x8::splat(simd, alpha)];
+            let back = unpremultiply(premultiply(with(0.25)));
+            assert_eq!(back.map(|v| v[3]), [0.5, -2.0, 8.0, 0.25]);
+            assert_eq!(unpremultiply(with(0.0)).map(|v| v[0]), [0.0; 4]);
+        });
+    }
 }

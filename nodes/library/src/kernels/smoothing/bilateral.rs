@@ -8,8 +8,8 @@
 //! through workgroup memory, about radius^2 / 16 + radius / 2 + 1 loads a pixel.
 
 pub use crate::kernels::shaders::bilateral::Params;
-use crate::kernels::simd::line_buffer::Rows;
-use crate::kernels::simd::pixels::put_pixels4;
+use crate::kernels::simd::line_buffer::{LineBuffer, pixels};
+use crate::kernels::simd::pixels::{BLOCK, Block, eight};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -119,32 +119,19 @@ fn filtered<S: Simd, const OPAQUE: bool>(simd: S, pass: &CpuPass<'_>, params: &P
     let [rx, ry] = params.extent;
     let radius = rx.max(ry);
     let chords = chords(params);
-    let mut rows = Rows::default();
+    let mut rows = LineBuffer::default();
     for x0 in (window.x0..window.x1).step_by(STRIP) {
         let x1 = (x0 + STRIP as i32).min(window.x1);
         rows.start(x0, x1, radius, 4);
         for y in window.y0 - ry..window.y0 + ry {
-            rows.load4(
-                simd,
-                view,
-                y,
-                #[inline(always)]
-                |v| v,
-            );
+            rows.load(simd, view, y);
         }
         for y in window.y0..window.y1 {
-            rows.load4(
-                simd,
-                view,
-                y + ry,
-                #[inline(always)]
-                |v| v,
-            );
-            for x in (x0..x1).step_by(8) {
+            rows.load(simd, view, y + ry);
+            for x in (x0..x1).step_by(BLOCK) {
                 let at = (x - x0 + radius) as usize;
-                let values = block::<S, OPAQUE>(simd, &rows, &chords, params.range, y, at);
-                let end = 4 * (x1.min(x + 8) - window.x0) as usize;
-                put_pixels4(values, &mut band.row_mut(0, y)[4 * (x - window.x0) as usize..end]);
+                let values = filtered_block::<S, OPAQUE>(simd, &rows, &chords, params.range, y, at);
+                Block::until(x1, x, y).write(values, band, 0);
             }
         }
     }
@@ -152,9 +139,9 @@ fn filtered<S: Simd, const OPAQUE: bool>(simd: S, pass: &CpuPass<'_>, params: &P
 
 /// Eight pixels of row `y`, whose values begin `at` in the rows held.
 #[inline(always)]
-fn block<S: Simd, const OPAQUE: bool>(
+fn filtered_block<S: Simd, const OPAQUE: bool>(
     simd: S,
-    rows: &Rows,
+    rows: &LineBuffer,
     chords: &[Chord],
     range: f32,
     y: i32,
@@ -162,12 +149,7 @@ fn block<S: Simd, const OPAQUE: bool>(
 ) -> [f32x8<S>; 4] {
     let zero = f32x8::splat(simd, 0.0);
     let range = f32x8::splat(simd, range);
-    let [r, g, b, alpha] = [
-        f32x8::from_slice(simd, &rows.row(y, 0)[at..at + 8]),
-        f32x8::from_slice(simd, &rows.row(y, 1)[at..at + 8]),
-        f32x8::from_slice(simd, &rows.row(y, 2)[at..at + 8]),
-        f32x8::from_slice(simd, &rows.row(y, 3)[at..at + 8]),
-    ];
+    let [r, g, b, alpha] = pixels(simd, &rows.channels(y), at);
     let (mut sum_r, mut sum_g, mut sum_b, mut norm) = (zero, zero, zero, zero);
     // Indices, since iterators over several rows at once are not compiled for wide vectors.
     for chord in chords {
@@ -179,13 +161,13 @@ fn block<S: Simd, const OPAQUE: bool>(
         let alphas = &rows.row(y, 3)[from..from + len];
         let domain = &chord.domain[..len - 7];
         for k in 0..domain.len() {
-            let dr = f32x8::from_slice(simd, &reds[k..k + 8]) - r;
-            let dg = f32x8::from_slice(simd, &greens[k..k + 8]) - g;
-            let db = f32x8::from_slice(simd, &blues[k..k + 8]) - b;
+            let dr = eight(simd, reds, k) - r;
+            let dg = eight(simd, greens, k) - g;
+            let db = eight(simd, blues, k) - b;
             let distance2 = db.mul_add(db, dg.mul_add(dg, dr * dr));
             let mut weight = exp2(distance2.mul_add(range, f32x8::splat(simd, domain[k])));
             if !OPAQUE {
-                weight *= f32x8::from_slice(simd, &alphas[k..k + 8]);
+                weight *= eight(simd, alphas, k);
             }
             sum_r = weight.mul_add(dr, sum_r);
             sum_g = weight.mul_add(dg, sum_g);

@@ -7,9 +7,9 @@
 pub use crate::kernels::shaders::cabral_leedom::Params;
 use crate::kernels::shared::coverage::Covered;
 use crate::kernels::shared::pixel_line::{PixelLine, error_function, most_steps};
-use crate::kernels::shared::stream::{acos, centres};
+use crate::kernels::shared::stream::acos;
 use crate::kernels::shared::tensor::{anisotropy, tangent};
-use crate::kernels::simd::pixels::{Block, fetch4, for_blocks, offsets, write4};
+use crate::kernels::simd::pixels::{Block, fetch4, for_blocks, offsets, unpremultiply, write};
 use crate::kernels::smoothing::line_integral_convolution::{Adapt, Options, least_turn};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
@@ -56,11 +56,10 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let covered = Covered::new(&pass.inputs[0], band, radius(params.sigma) as i32 + 1);
     let source = covered.view(&pass.inputs[0]);
-    let last = band.window.x1 - 1;
     dispatch!(pass.level, simd => for_blocks::<4>(
         band,
         #[inline(always)]
-        |block, target| write4(convolved(simd, &params, &source, &pass.inputs[1], &block, last), target),
+        |block, target| write(convolved(simd, &params, &source, &pass.inputs[1], &block), target),
     ));
 }
 
@@ -71,10 +70,9 @@ fn convolved<S: Simd>(
     source: &View<'_>,
     tensors: &View<'_>,
     block: &Block,
-    last: i32,
 ) -> [f32x8<S>; 4] {
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-    let [e, f, g, _] = block.read4(simd, tensors);
+    let [e, f, g, _] = block.read(simd, tensors);
     let mut sigma = zero + params.sigma;
     if params.adapt == Adapt::Anisotropy as u32 {
         let a = anisotropy(e, f, g) + 1.0;
@@ -86,10 +84,10 @@ fn convolved<S: Simd>(
     let inverse = f32x8::splat(simd, std::f32::consts::FRAC_1_SQRT_2) / sigma.max(1e-3);
     let [tx, ty] = tangent(e, f, g);
 
-    let [x, y] = centres(simd, block.x, block.y, last);
+    let [x, y] = block.centres(simd);
     // A line of no length is the pixel itself.
     let mut norm = limit.simd_le(zero).select(one, zero);
-    let mut sum = block.read4(simd, source);
+    let mut sum: [f32x8<S>; 4] = block.read(simd, source);
     for value in &mut sum {
         *value *= norm;
     }
@@ -123,8 +121,6 @@ fn convolved<S: Simd>(
             active = line.cross(tensors, h, active);
         }
     }
-    let [r, g, b, alpha] = sum;
-    let seen = alpha.simd_gt(f32x8::splat(simd, 1e-6));
-    let norm = norm.max(1e-6);
-    [seen.select(r / alpha, zero), seen.select(g / alpha, zero), seen.select(b / alpha, zero), alpha / norm]
+    let [r, g, b, alpha] = unpremultiply(sum);
+    [r, g, b, alpha / norm.max(1e-6)]
 }

@@ -6,8 +6,8 @@
 //! Cost: 70 operations. The shader reads through workgroup memory, 5 loads a pixel.
 
 pub use crate::kernels::shaders::diffusion_step::Params;
-use crate::kernels::simd::line_buffer::{Rows, strips};
-use crate::kernels::simd::pixels::put_pixels4;
+use crate::kernels::simd::line_buffer::{LineBuffer, strips};
+use crate::kernels::simd::pixels::{eight, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -35,46 +35,22 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 #[inline(always)]
 fn diffused<S: Simd>(simd: S, pass: &CpuPass<'_>, time_step: f32, band: &mut Band<'_>) {
     let window = band.window;
-    let (mut colors, mut weights) = (Rows::default(), Rows::default());
+    let (mut colors, mut weights) = (LineBuffer::default(), LineBuffer::default());
     for (x0, x1) in strips(window.x0, window.x1) {
         colors.start(x0, x1, 1, 4);
         weights.start(x0, x1, 1, 4);
         for y in window.y0 - 1..=window.y0 {
-            colors.load4(
-                simd,
-                &pass.inputs[0],
-                y,
-                #[inline(always)]
-                |v| v,
-            );
-            weights.load4(
-                simd,
-                &pass.inputs[1],
-                y,
-                #[inline(always)]
-                |v| v,
-            );
+            colors.load(simd, &pass.inputs[0], y);
+            weights.load(simd, &pass.inputs[1], y);
         }
         for y in window.y0..window.y1 {
-            colors.load4(
-                simd,
-                &pass.inputs[0],
-                y + 1,
-                #[inline(always)]
-                |v| v,
-            );
-            weights.load4(
-                simd,
-                &pass.inputs[1],
-                y + 1,
-                #[inline(always)]
-                |v| v,
-            );
+            colors.load(simd, &pass.inputs[0], y + 1);
+            weights.load(simd, &pass.inputs[1], y + 1);
             let around = Around { colors: &colors, weights: &weights, y };
             let target =
                 &mut band.row_mut(0, y)[4 * (x0 - window.x0) as usize..4 * (x1 - window.x0) as usize];
             for (i, target) in target.chunks_mut(32).enumerate() {
-                put_pixels4(around.moved(simd, 8 * i + 1, time_step), target);
+                write(around.moved(simd, 8 * i + 1, time_step), target);
             }
         }
     }
@@ -82,8 +58,8 @@ fn diffused<S: Simd>(simd: S, pass: &CpuPass<'_>, time_step: f32, band: &mut Ban
 
 /// The rows around one row.
 struct Around<'a> {
-    colors: &'a Rows,
-    weights: &'a Rows,
+    colors: &'a LineBuffer,
+    weights: &'a LineBuffer,
     y: i32,
 }
 
@@ -91,13 +67,13 @@ impl Around<'_> {
     #[inline(always)]
     fn moved<S: Simd>(&self, simd: S, at: usize, time_step: f32) -> [f32x8<S>; 4] {
         let origin = self.pixels(simd, 0, at);
-        let alpha = f32x8::from_slice(simd, &self.colors.row(self.y, 3)[at..at + 8]);
+        let alpha = eight(simd, self.colors.row(self.y, 3), at);
         let mut sum = [f32x8::splat(simd, 0.0); 3];
         for (channel, (dx, dy)) in [(1, 0), (0, 1), (1, 1), (1, -1)].into_iter().enumerate() {
-            let own = f32x8::from_slice(simd, &self.weights.row(self.y, channel)[at..at + 8]);
+            let own = eight(simd, self.weights.row(self.y, channel), at);
             for (dy, at) in [(-dy, at - dx), (dy, at + dx)] {
-                let other = f32x8::from_slice(simd, &self.weights.row(self.y + dy, channel)[at..at + 8]);
-                let covered = f32x8::from_slice(simd, &self.colors.row(self.y + dy, 3)[at..at + 8]);
+                let other = eight(simd, self.weights.row(self.y + dy, channel), at);
+                let covered = eight(simd, self.colors.row(self.y + dy, 3), at);
                 let weight = (own + other) * 0.5 * covered;
                 let v = self.pixels(simd, dy, at);
                 for c in 0..3 {
@@ -117,9 +93,9 @@ impl Around<'_> {
     #[inline(always)]
     fn pixels<S: Simd>(&self, simd: S, dy: i32, at: usize) -> [f32x8<S>; 3] {
         [
-            f32x8::from_slice(simd, &self.colors.row(self.y + dy, 0)[at..at + 8]),
-            f32x8::from_slice(simd, &self.colors.row(self.y + dy, 1)[at..at + 8]),
-            f32x8::from_slice(simd, &self.colors.row(self.y + dy, 2)[at..at + 8]),
+            eight(simd, self.colors.row(self.y + dy, 0), at),
+            eight(simd, self.colors.row(self.y + dy, 1), at),
+            eight(simd, self.colors.row(self.y + dy, 2), at),
         ]
     }
 }

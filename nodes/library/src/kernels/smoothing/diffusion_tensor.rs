@@ -10,7 +10,7 @@
 
 pub use crate::kernels::shaders::diffusion_tensor::Params;
 use crate::kernels::shared::tensor::{Eigen, eigen};
-use crate::kernels::simd::pixels::map_pixels4;
+use crate::kernels::simd::pixels::map_pixels;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -45,7 +45,7 @@ pub fn weights(plan: &mut PlanBuilder, tensors: ImageId, scheme: Scheme, contras
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(simd, pass, band, #[inline(always)] |tensor| of(simd, tensor, &params)));
+    dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |tensor| of(simd, tensor, &params)));
 }
 
 #[inline(always)]

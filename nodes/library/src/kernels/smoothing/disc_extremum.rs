@@ -9,6 +9,7 @@
 //! at every pixel of the disc, through workgroup memory: about radius^2 / 16 + radius / 2 + 1 loads.
 
 pub use crate::kernels::shaders::disc_extremum::Params;
+use crate::kernels::simd::pixels::eight;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -80,8 +81,8 @@ fn raise<S: Simd>(simd: S, target: &mut [f32], values: &[f32]) {
     let (target, values) = (&mut target[..len], &values[..len]);
     let mut i = 0;
     while i + 8 <= len {
-        let v = f32x8::from_slice(simd, &values[i..i + 8]);
-        v.max(f32x8::from_slice(simd, &target[i..i + 8])).store_slice(&mut target[i..i + 8]);
+        let v = eight(simd, values, i);
+        v.max(eight(simd, target, i)).store_slice(&mut target[i..i + 8]);
         i += 8;
     }
     while i < len {
@@ -98,7 +99,7 @@ fn double<S: Simd>(simd: S, row: &mut [f32], length: usize) {
     let mut i = 0;
     while i + 8 <= len {
         let v = f32x8::from_slice(simd, &row[i + ahead..i + ahead + 8]);
-        v.max(f32x8::from_slice(simd, &row[i..i + 8])).store_slice(&mut row[i..i + 8]);
+        v.max(eight(simd, row, i)).store_slice(&mut row[i..i + 8]);
         i += 8;
     }
     while i < len {
@@ -195,7 +196,7 @@ fn signed<S: Simd>(simd: S, source: &[f32], sign: f32, target: &mut [f32]) {
     let (source, target) = (&source[..len], &mut target[..len]);
     let mut i = 0;
     while i + 8 <= len {
-        (f32x8::from_slice(simd, &source[i..i + 8]) * sign).store_slice(&mut target[i..i + 8]);
+        (eight(simd, source, i) * sign).store_slice(&mut target[i..i + 8]);
         i += 8;
     }
     while i < len {

@@ -13,9 +13,9 @@ use crate::kernels::lines::orientation_field;
 pub use crate::kernels::shaders::flow_bilateral::Params;
 use crate::kernels::shared::coverage::Covered;
 use crate::kernels::shared::sampling::sample_linear4;
-use crate::kernels::shared::stream::{Integrator, Stream, StreamField, centres, holds};
+use crate::kernels::shared::stream::{Integrator, Stream, StreamField, holds};
 use crate::kernels::shared::tensor::tangent;
-use crate::kernels::simd::pixels::{for_blocks_in_tiles, get_pixels2, get_pixels4, load_pixel, put_pixels4};
+use crate::kernels::simd::pixels::{Block, for_blocks_in_tiles, load_pixel, write};
 use crate::kernels::smoothing::oriented_bilateral::Sampling;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::math::{Elementary, channels};
@@ -90,7 +90,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     };
     let last = band.window.x1 - 1;
     dispatch!(pass.level, simd => for_blocks_in_tiles::<4>(band, #[inline(always)] |block, target| {
-        put_pixels4(filter.block(simd, block.x, block.y, last), target);
+        write(filter.block(simd, block.x, block.y, last), target);
     }));
 }
 
@@ -118,14 +118,14 @@ impl Filter<'_> {
     fn block<S: Simd>(&self, simd: S, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
         let params = &self.params;
         let zero = f32x8::splat(simd, 0.0);
-        let [difference, f] = get_pixels2(simd, &self.field.tensors, x, y, last);
-        let colour = get_pixels4(simd, &self.origins, x, y, last);
+        let [difference, f] = Block::until(last + 1, x, y).read(simd, &self.field.tensors);
+        let colour = Block::until(last + 1, x, y).read(simd, &self.origins);
         let range = -0.721_347_52 / (params.sigma_r * params.sigma_r).max(1e-6);
         let domain = f32x8::splat(simd, -0.721_347_52 / (params.sigma_d * params.sigma_d).max(1e-6));
         let origin = Origin { colour, range };
         let at_crossings = params.centres != 0;
 
-        let [px, py] = centres(simd, x, y, last);
+        let [px, py] = Block::until(last + 1, x, y).centres(simd);
         let alpha = colour[3];
         let first = [colour[0] * alpha, colour[1] * alpha, colour[2] * alpha, alpha];
         let mut sum = if at_crossings { [zero; 4] } else { first };

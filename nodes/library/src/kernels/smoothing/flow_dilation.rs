@@ -9,9 +9,9 @@
 pub use crate::kernels::shaders::flow_dilation::Params;
 use crate::kernels::shared::coverage::Covered;
 use crate::kernels::shared::sampling::sample_linear4;
-use crate::kernels::shared::stream::{Integrator, Stream, StreamField, centres};
+use crate::kernels::shared::stream::{Integrator, Stream, StreamField};
 use crate::kernels::shared::tensor::{anisotropy, tangent};
-use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
+use crate::kernels::simd::pixels::{Block, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
@@ -64,8 +64,8 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         for y in window.y0..window.y1 {
             for x in (window.x0..window.x1).step_by(8) {
                 let last = window.x1 - 1;
-                let own = get_pixels4(simd, &pass.inputs[0], x, y, last);
-                let at = brightest(simd, &params, &field, &pass.inputs[2], centres(simd, x, y, last));
+                let own: [f32x8<_>; 4] = Block::until(last + 1, x, y).read(simd, &pass.inputs[0]);
+                let at = brightest(simd, &params, &field, &pass.inputs[2], Block::until(last + 1, x, y).centres(simd));
                 let [r, g, b, alpha] = sample_linear4(simd, &source, at[0], at[1]);
                 let seen = alpha.simd_ge(f32x8::splat(simd, 0.5));
                 let values = [
@@ -74,7 +74,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
                     seen.select(b / alpha, own[2]),
                     own[3],
                 ];
-                put_pixels4(values, &mut band.row_mut(0, y)[4 * (x - window.x0) as usize..]);
+                write(values, &mut band.row_mut(0, y)[4 * (x - window.x0) as usize..]);
             }
         }
     });

@@ -9,10 +9,10 @@ pub use crate::kernels::shaders::line_integral_convolution::Params;
 use crate::kernels::shared::coverage::{Covered, full_or};
 use crate::kernels::shared::sampling::sample_linear4;
 use crate::kernels::shared::stream::{
-    FEW_STEPS, Integrator, NearField, Stream, StreamField, acos, centres, few_steps, holds, stretched,
+    FEW_STEPS, Integrator, NearField, Stream, StreamField, acos, few_steps, holds, stretched,
 };
 use crate::kernels::shared::tensor::{anisotropy, tangent};
-use crate::kernels::simd::pixels::{BLOCK, for_blocks_in_tiles, get_pixels4, put_pixels4};
+use crate::kernels::simd::pixels::{BLOCK, Block, for_blocks_in_tiles, write};
 use crate::kernels::simd::tile_copy::{FOUR, Frame, Place, Surroundings, TWO};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
 use isophote_engine::math::{Elementary, load4};
@@ -250,12 +250,13 @@ impl Lines<'_> {
                 let (sums, norms) = self.follow(simd, &near, lines, edges, colors, taps);
                 for (i, target) in target.chunks_mut(4 * BLOCK).enumerate() {
                     let mut sum = load4(simd, &sums[i]);
-                    let [r, g, b, alpha] = get_pixels4(simd, &self.source, x + (i * BLOCK) as i32, y, last);
+                    let [r, g, b, alpha] =
+                        Block::until(last + 1, x + (i * BLOCK) as i32, y).read(simd, &self.source);
                     let centre = [r * alpha, g * alpha, b * alpha, alpha];
                     for c in 0..4 {
                         sum[c] += centre[c];
                     }
-                    put_pixels4(mean(sum, norms[i]), target);
+                    write(mean(sum, norms[i]), target);
                 }
             }
         }
@@ -368,8 +369,8 @@ impl Lines<'_> {
     /// Both sides of the lines through a block.
     #[inline(always)]
     fn begun<S: Simd>(&self, simd: S, x: i32, y: i32, last: i32) -> (Reach<S>, [Stream<S>; 2]) {
-        let [e, f, g, _] = get_pixels4(simd, &self.tensors, x, y, last);
-        let [px, py] = centres(simd, x, y, last);
+        let [e, f, g, _] = Block::until(last + 1, x, y).read(simd, &self.tensors);
+        let [px, py] = Block::until(last + 1, x, y).centres(simd);
         (self.reach(e, f, g), Stream::both_sides(px, py, tangent(e, f, g)))
     }
 
@@ -378,7 +379,7 @@ impl Lines<'_> {
     fn fill_far<S: Simd>(&self, simd: S, covered: View<'_>, band: &mut Band<'_>) {
         let last = band.window.x1 - 1;
         for_blocks_in_tiles::<4>(band, |block, target| {
-            put_pixels4(self.far(simd, &covered, block.x, block.y, last), target)
+            write(self.far(simd, &covered, block.x, block.y, last), target)
         });
     }
 
@@ -392,7 +393,7 @@ impl Lines<'_> {
             integrator: Integrator::of(params.integrator),
         };
         let (reach, mut lines) = self.begun(simd, x, y, last);
-        let mut sum = get_pixels4(simd, covered, x, y, last);
+        let mut sum: [f32x8<S>; 4] = Block::until(last + 1, x, y).read(simd, covered);
         let mut norm = f32x8::splat(simd, 1.0);
         let mut u = [zero; 2];
         let mut active = [reach.step.simd_le(reach.limit()); 2];

@@ -11,8 +11,8 @@
 
 pub use crate::kernels::shaders::mean_curvature_flow::Params;
 use crate::kernels::shared::tensor::tangent;
-use crate::kernels::simd::line_buffer::{Rows, pixels, strips};
-use crate::kernels::simd::pixels::{get_pixels4, put_pixels4};
+use crate::kernels::simd::line_buffer::{LineBuffer, pixels, strips};
+use crate::kernels::simd::pixels::{Block, eight, premultiply, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -73,7 +73,7 @@ impl Magnitudes {
     }
 
     #[inline(always)]
-    fn compute<S: Simd>(&mut self, simd: S, rows: &Rows, y: i32) {
+    fn compute<S: Simd>(&mut self, simd: S, rows: &LineBuffer, y: i32) {
         let target = &mut self.data[y.rem_euclid(3) as usize * self.len..][..self.len];
         let around = Around::new(rows, y);
         // The last block overlaps the one before it: the row need not be a multiple of eight.
@@ -109,7 +109,7 @@ struct Around<'a> {
 
 impl<'a> Around<'a> {
     #[inline(always)]
-    fn new(rows: &'a Rows, y: i32) -> Self {
+    fn new(rows: &'a LineBuffer, y: i32) -> Self {
         Self { above: rows.channels(y - 1), centre: rows.channels(y), below: rows.channels(y + 1) }
     }
 
@@ -139,20 +139,20 @@ fn moved<S: Simd, const CONSTRAINED: bool>(
 ) {
     let window = band.window;
     let view = &pass.inputs[0];
-    let mut rows = Rows::default();
+    let mut rows = LineBuffer::default();
     let mut magnitudes = Magnitudes::default();
     for (x0, x1) in strips(window.x0, window.x1) {
         rows.start(x0, x1, 2, 4);
         magnitudes.len = rows.stride();
         magnitudes.data.resize(3 * magnitudes.len, 0.0);
         for y in window.y0 - 2..=window.y0 {
-            rows.load4(simd, view, y, premultiplied::<S>);
+            rows.load_mapped(simd, view, y, premultiply);
         }
         magnitudes.compute(simd, &rows, window.y0 - 1);
-        rows.load4(simd, view, window.y0 + 1, premultiplied::<S>);
+        rows.load_mapped(simd, view, window.y0 + 1, premultiply);
         magnitudes.compute(simd, &rows, window.y0);
         for y in window.y0..window.y1 {
-            rows.load4(simd, view, y + 2, premultiplied::<S>);
+            rows.load_mapped(simd, view, y + 2, premultiply);
             magnitudes.compute(simd, &rows, y + 1);
             let around = Around::new(&rows, y);
             let own = [magnitudes.row(y - 1), magnitudes.row(y), magnitudes.row(y + 1)];
@@ -160,23 +160,18 @@ fn moved<S: Simd, const CONSTRAINED: bool>(
                 &mut band.row_mut(0, y)[4 * (x0 - window.x0) as usize..4 * (x1 - window.x0) as usize];
             for (i, target) in target.chunks_mut(32).enumerate() {
                 let at = 8 * i + 2;
-                let x = x0 + 8 * i as i32;
+                let place = Block::until(x1, x0 + 8 * i as i32, y);
                 let speed = if CONSTRAINED {
-                    let tensor = get_pixels4(simd, &pass.inputs[1], x, y, x1 - 1);
+                    let tensor = place.read(simd, &pass.inputs[1]);
                     aligned(&tensor, &around.gradient(simd, at), params)
                 } else {
                     f32x8::splat(simd, params.time_step)
                 };
-                let origin = get_pixels4(simd, view, x, y, x1 - 1);
-                put_pixels4(block(simd, &around, &own, &origin, speed, at), target);
+                let origin = place.read(simd, view);
+                write(block(simd, &around, &own, &origin, speed, at), target);
             }
         }
     }
-}
-
-#[inline(always)]
-fn premultiplied<S: Simd>([r, g, b, a]: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
-    [r * a, g * a, b * a, a]
 }
 
 /// The time step, slowed down where isophotes do not follow the tangents (6.2).
@@ -199,11 +194,11 @@ fn block<S: Simd>(
     at: usize,
 ) -> [f32x8<S>; 4] {
     let one = f32x8::splat(simd, 1.0);
-    let own = f32x8::from_slice(simd, &magnitudes[1][at..at + 8]);
+    let own = eight(simd, magnitudes[1], at);
     let left = own + f32x8::from_slice(simd, &magnitudes[1][at - 1..at + 7]);
     let right = own + f32x8::from_slice(simd, &magnitudes[1][at + 1..at + 9]);
-    let above = own + f32x8::from_slice(simd, &magnitudes[0][at..at + 8]);
-    let below = own + f32x8::from_slice(simd, &magnitudes[2][at..at + 8]);
+    let above = own + eight(simd, magnitudes[0], at);
+    let below = own + eight(simd, magnitudes[2], at);
     // One division for two quotients.
     let double = own + own;
     let across = double / (left * right);

@@ -9,8 +9,8 @@
 
 pub use crate::kernels::shaders::oriented_bilateral::Params;
 use crate::kernels::shared::tensor::{anisotropy, tangent};
-use crate::kernels::simd::line_taps::{ColourLines, Lines, STEPS, strips};
-use crate::kernels::simd::pixels::{put_pixels4, row_pixels4};
+use crate::kernels::simd::line_taps::{LineTaps, Lines, STEPS, strips};
+use crate::kernels::simd::pixels::{read, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance, View};
@@ -101,7 +101,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 #[inline(always)]
 fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let (radius, left) = (reach(params), band.window.x0);
-    let mut colours = ColourLines::default();
+    let mut colours = LineTaps::default();
     let zero = f32x8::splat(simd, 0.0);
     let mut block = Block { taps: [[[zero; 4]; 2]; STEPS], coverage: [[zero; 2]; STEPS] };
     for strip in strips(band, radius) {
@@ -130,7 +130,7 @@ fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                     OPAQUE => row.filtered::<S, OPAQUE>(simd, i, &mut block),
                     _ => row.filtered::<S, COVERED>(simd, i, &mut block),
                 };
-                put_pixels4(result, &mut target[4 * i..4 * count.min(i + 8)]);
+                write(result, &mut target[4 * i..4 * count.min(i + 8)]);
                 i += 8;
             }
         }
@@ -145,7 +145,7 @@ const MANUAL: u32 = 2;
 /// A row of a strip.
 struct Row<'a> {
     params: &'a Params,
-    colours: &'a ColourLines,
+    colours: &'a LineTaps,
     origins: &'a [f32],
     tensors: &'a [f32],
     strip: Rect,
@@ -173,7 +173,7 @@ impl Row<'_> {
     fn filtered<S: Simd, const MODE: u32>(&self, simd: S, i: usize, block: &mut Block<S>) -> [f32x8<S>; 4] {
         let params = self.params;
         let at = [self.strip.x0 + i as i32, self.y];
-        let [e, f, g, _] = row_pixels4(simd, self.tensors, i);
+        let [e, f, g, _] = read(simd, &self.tensors[4 * i..]);
         let [tx, ty] = tangent(e, f, g);
         let stretch = if params.elongation > 0.0 {
             anisotropy(e, f, g) * params.elongation + 1.0
@@ -193,7 +193,7 @@ impl Row<'_> {
             let [r, g, b] = self.colours.centres(simd, at);
             [r, g, b, f32x8::splat(simd, 1.0)]
         } else {
-            row_pixels4(simd, self.origins, i)
+            read(simd, &self.origins[4 * i..])
         };
         let weights = Weights {
             origin,

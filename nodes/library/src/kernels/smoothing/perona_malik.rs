@@ -8,8 +8,8 @@
 //! Cost: 60 operations (exponential: 100); memory takes longer.
 
 pub use crate::kernels::shaders::perona_malik::Params;
-use crate::kernels::simd::line_buffer::{Rows, WIDE_STRIP, pixels, strips_of};
-use crate::kernels::simd::pixels::put_pixels4;
+use crate::kernels::simd::line_buffer::{LineBuffer, WIDE_STRIP, pixels, strips_of};
+use crate::kernels::simd::pixels::write;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -69,26 +69,14 @@ fn diffused<S: Simd, const EXPONENTIAL: bool>(
 ) {
     let window = band.window;
     let view = &pass.inputs[0];
-    let mut rows = Rows::default();
+    let mut rows = LineBuffer::default();
     for (x0, x1) in strips_of(WIDE_STRIP, window.x0, window.x1) {
         rows.start(x0, x1, 1, 4);
         for y in window.y0 - 1..=window.y0 {
-            rows.load4(
-                simd,
-                view,
-                y,
-                #[inline(always)]
-                |v| v,
-            );
+            rows.load(simd, view, y);
         }
         for y in window.y0..window.y1 {
-            rows.load4(
-                simd,
-                view,
-                y + 1,
-                #[inline(always)]
-                |v| v,
-            );
+            rows.load(simd, view, y + 1);
             let (above, centre, below) = (rows.channels(y - 1), rows.channels(y), rows.channels(y + 1));
             let target =
                 &mut band.row_mut(0, y)[4 * (x0 - window.x0) as usize..4 * (x1 - window.x0) as usize];
@@ -101,7 +89,7 @@ fn diffused<S: Simd, const EXPONENTIAL: bool>(
                     pixels(simd, &above, at),
                     pixels(simd, &below, at),
                 ];
-                put_pixels4(block::<S, EXPONENTIAL>(simd, &origin, &neighbours, params), target);
+                write(block::<S, EXPONENTIAL>(simd, &origin, &neighbours, params), target);
             }
         }
     }

@@ -6,10 +6,9 @@
 pub use crate::kernels::shaders::wobble::Params;
 use crate::kernels::shared::coverage::Covered;
 use crate::kernels::shared::sampling::sample_linear4;
-use crate::kernels::shared::stream::centres;
 use crate::kernels::shared::value_noise::noise;
-use crate::kernels::simd::pixels::put_pixels4;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use crate::kernels::simd::pixels::{for_blocks, unpremultiply, write};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::kernel!(wobble {
@@ -44,22 +43,17 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 
 #[inline(always)]
 fn wavering<S: Simd>(simd: S, params: &Params, source: &View<'_>, band: &mut Band<'_>) {
-    let window = band.window;
-    let zero = f32x8::splat(simd, 0.0);
-    for y in window.y0..window.y1 {
-        for x in (window.x0..window.x1).step_by(8) {
-            let [cx, cy] = centres(simd, x, y, window.x1 - 1);
+    for_blocks::<4>(
+        band,
+        #[inline(always)]
+        |block, target| {
+            let [cx, cy] = block.centres(simd);
             let q =
                 [cx * params.inverse_scale * params.frequency, cy * params.inverse_scale * params.frequency];
             let (dx, dy) = (offset(simd, q, 3001, params.amount), offset(simd, q, 5003, params.amount));
-            let [r, g, b, alpha] = sample_linear4(simd, source, cx + dx, cy + dy);
-            let seen = alpha.simd_gt(f32x8::splat(simd, 1e-6));
-            let color =
-                [seen.select(r / alpha, zero), seen.select(g / alpha, zero), seen.select(b / alpha, zero)];
-            let [r, g, b] = color;
-            put_pixels4([r, g, b, alpha], &mut band.row_mut(0, y)[4 * (x - window.x0) as usize..]);
-        }
-    }
+            write(unpremultiply(sample_linear4(simd, source, cx + dx, cy + dy)), target);
+        },
+    );
 }
 
 #[inline(always)]

@@ -4,7 +4,7 @@
 //! Cost: one multiply-add a value.
 
 pub use crate::kernels::shaders::contrast::Params;
-use crate::kernels::simd::pixels::map_pixels4;
+use crate::kernels::simd::pixels::map_pixels;
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -26,7 +26,7 @@ pub fn stretch(plan: &mut PlanBuilder, color: ImageId, gain: f32) -> ImageId {
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(
+    dispatch!(pass.level, simd => map_pixels(
         simd,
         pass,
         band,

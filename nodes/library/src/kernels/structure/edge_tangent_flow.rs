@@ -14,8 +14,8 @@
 
 pub use crate::kernels::shaders::edge_tangent_flow::Params;
 use crate::kernels::shared::tensor::axis;
-use crate::kernels::simd::line_buffer::{Rows, strips};
-use crate::kernels::simd::pixels::put_pixels4;
+use crate::kernels::simd::line_buffer::{LineBuffer, strips};
+use crate::kernels::simd::pixels::{eight, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -113,26 +113,14 @@ fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
         (-reach_y..=reach_y).filter_map(|j| half(j).map(|i| (j, i, weight(j.abs())))).collect();
     let radius = reach_x.max(reach_y);
     let zero = f32x8::splat(simd, 0.0);
-    let mut held = Rows::default();
+    let mut held = LineBuffer::default();
     for (x0, x1) in strips(window.x0, window.x1) {
         held.start(x0, x1, radius, 4);
         for y in window.y0 - radius..window.y0 + radius {
-            held.load4(
-                simd,
-                view,
-                y,
-                #[inline(always)]
-                |v| v,
-            );
+            held.load(simd, view, y);
         }
         for y in window.y0..window.y1 {
-            held.load4(
-                simd,
-                view,
-                y + radius,
-                #[inline(always)]
-                |v| v,
-            );
+            held.load(simd, view, y + radius);
             let start = 4 * (x0 - window.x0) as usize;
             let target = &mut band.row_mut(0, y)[start..start + 4 * (x1 - x0) as usize];
             for (block, pixels) in target.chunks_mut(32).enumerate() {
@@ -147,10 +135,10 @@ fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
                     let m = &held.row(y + j, 3)[first..first + len];
                     for i in 0..=2 * half as usize {
                         let w = f32x8::splat(simd, wy * weight((i as i32 - half).abs()));
-                        let by_magnitude = f32x8::from_slice(simd, &m[i..i + 8]) * w;
-                        let e = f32x8::from_slice(simd, &e[i..i + 8]);
-                        let f = f32x8::from_slice(simd, &f[i..i + 8]);
-                        let g = f32x8::from_slice(simd, &g[i..i + 8]);
+                        let by_magnitude = eight(simd, m, i) * w;
+                        let e = eight(simd, e, i);
+                        let f = eight(simd, f, i);
+                        let g = eight(simd, g, i);
                         plain = [e.mul_add(w, plain[0]), f.mul_add(w, plain[1]), g.mul_add(w, plain[2])];
                         strong = [
                             e.mul_add(by_magnitude, strong[0]),
@@ -161,9 +149,9 @@ fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
                 }
                 let mut own = [zero; 4];
                 for (c, own) in own.iter_mut().enumerate() {
-                    *own = f32x8::from_slice(simd, &held.row(y, c)[centre..centre + 8]);
+                    *own = eight(simd, held.row(y, c), centre);
                 }
-                put_pixels4(turned(simd, params, own, plain, strong, inverse), pixels);
+                write(turned(simd, params, own, plain, strong, inverse), pixels);
             }
         }
     }

@@ -6,7 +6,7 @@
 
 pub use crate::kernels::shaders::flow_start::Params;
 use crate::kernels::shared::tensor::axis;
-use crate::kernels::simd::pixels::map_pixels4;
+use crate::kernels::simd::pixels::map_pixels;
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -31,7 +31,7 @@ pub fn start(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(
+    dispatch!(pass.level, simd => map_pixels(
         simd,
         pass,
         band,

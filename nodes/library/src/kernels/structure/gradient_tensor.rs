@@ -12,8 +12,8 @@
 
 pub use crate::kernels::shaders::gradient_tensor::Params;
 use crate::kernels::shared::outer_product::outer_product;
-use crate::kernels::simd::line_buffer::{Rows, WIDE_STRIP, strips_of};
-use crate::kernels::simd::pixels::put_pixels4;
+use crate::kernels::simd::line_buffer::{LineBuffer, WIDE_STRIP, strips_of};
+use crate::kernels::simd::pixels::{eight, premultiply, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -180,7 +180,7 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
     let flat = |table: &Table| std::array::from_fn(|i| table[i / 4][i % 4]);
     let weights = Weights { smoothing: flat(&params.smoothing), derivative: flat(&params.derivative) };
     let zero = f32x8::splat(simd, 0.0);
-    let mut rows = Rows::default();
+    let mut rows = LineBuffer::default();
     // Column sums of one row: smoothed and derived, four channels each.
     let mut columns: Vec<f32> = Vec::new();
     for (x0, x1) in strips_of(WIDE_STRIP, window.x0, window.x1) {
@@ -188,10 +188,10 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
         let len = rows.stride();
         columns.resize(8 * len, 0.0);
         for y in window.y0 - radius..window.y0 + radius {
-            rows.load4(simd, view, y, covered);
+            rows.load_mapped(simd, view, y, premultiply);
         }
         for y in window.y0..window.y1 {
-            rows.load4(simd, view, y + radius, covered);
+            rows.load_mapped(simd, view, y + radius, premultiply);
             for (channel, sums) in columns.chunks_exact_mut(2 * len).enumerate() {
                 sum_columns(simd, &rows, &weights, r, y, channel, sums);
             }
@@ -207,32 +207,21 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
                 // Loops, not closures given to arrays: those stay calls, and every operation in them one.
                 let (mut centre, mut gradients) = ([zero; 4], [[zero; 2]; 4]);
                 for c in 0..4 {
-                    centre[c] = f32x8::from_slice(simd, &centres[c][at..at + 8]);
+                    centre[c] = eight(simd, centres[c], at);
                     gradients[c] = gradient(simd, &weights, r, sums[c], at);
                 }
                 let (flags, scale, threshold) = (params.flags, params.scale, params.threshold);
-                put_pixels4(outer_product(simd, flags, scale, threshold, centre, gradients), pixels);
+                write(outer_product(simd, flags, scale, threshold, centre, gradients), pixels);
             }
         }
     }
-}
-
-/// Colour times coverage, and coverage.
-#[inline(always)]
-fn covered<S: Simd>([x, y, z, a]: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
-    [x * a, y * a, z * a, a]
-}
-
-#[inline(always)]
-fn block<S: Simd>(simd: S, row: &[f32], at: usize) -> f32x8<S> {
-    f32x8::from_slice(simd, &row[at..at + 8])
 }
 
 /// Smooths and derives along the columns: one channel of row `y`, first all smoothed, then all derived.
 #[inline(always)]
 fn sum_columns<S: Simd>(
     simd: S,
-    rows: &Rows,
+    rows: &LineBuffer,
     weights: &Weights,
     radius: usize,
     y: i32,
@@ -246,10 +235,10 @@ fn sum_columns<S: Simd>(
     }
     let blocks = smoothed.chunks_exact_mut(8).zip(derived.chunks_exact_mut(8));
     for (i, (smoothed, derived)) in blocks.enumerate() {
-        let mut s = block(simd, taps[radius], 8 * i) * weights.smoothing[0];
+        let mut s = eight(simd, taps[radius], 8 * i) * weights.smoothing[0];
         let mut d = f32x8::splat(simd, 0.0);
         for j in 1..=radius {
-            let (above, below) = (block(simd, taps[radius - j], 8 * i), block(simd, taps[radius + j], 8 * i));
+            let (above, below) = (eight(simd, taps[radius - j], 8 * i), eight(simd, taps[radius + j], 8 * i));
             s = (above + below).mul_add(f32x8::splat(simd, weights.smoothing[j]), s);
             d = (below - above).mul_add(f32x8::splat(simd, weights.derivative[j]), d);
         }
@@ -267,10 +256,10 @@ fn gradient<S: Simd>(
     [smoothed, derived]: [&[f32]; 2],
     at: usize,
 ) -> [f32x8<S>; 2] {
-    let (mut x, mut y) = (f32x8::splat(simd, 0.0), block(simd, derived, at) * weights.smoothing[0]);
+    let (mut x, mut y) = (f32x8::splat(simd, 0.0), eight(simd, derived, at) * weights.smoothing[0]);
     for i in 1..=radius {
-        let difference = block(simd, smoothed, at + i) - block(simd, smoothed, at - i);
-        let sum = block(simd, derived, at - i) + block(simd, derived, at + i);
+        let difference = eight(simd, smoothed, at + i) - eight(simd, smoothed, at - i);
+        let sum = eight(simd, derived, at - i) + eight(simd, derived, at + i);
         x = difference.mul_add(f32x8::splat(simd, weights.derivative[i]), x);
         y = sum.mul_add(f32x8::splat(simd, weights.smoothing[i]), y);
     }

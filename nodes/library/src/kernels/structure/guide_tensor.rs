@@ -10,11 +10,10 @@
 
 pub use crate::kernels::shaders::guide_tensor::Params;
 use crate::kernels::shared::outer_product::validity;
-use crate::kernels::simd::line_buffer::{Rows, strips};
-use crate::kernels::simd::pixels::put_pixels4;
+use crate::kernels::simd::line_buffer::{LineBuffer, strips};
+use crate::kernels::simd::pixels::{eight, read, write};
 use crate::kernels::structure::gradient_tensor::least_lambda1;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::math::load4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(guide_tensor {
@@ -110,7 +109,7 @@ fn neighbours<S: Simd>(simd: S, rows: &[&[f32]; 3], i: usize) -> Neighbours<S> {
     for y in 0..3 {
         let row = &rows[y][8 * i..8 * i + 10];
         for x in 0..3 {
-            all[y][x] = f32x8::from_slice(simd, &row[x..x + 8]);
+            all[y][x] = eight(simd, row, x);
         }
     }
     all
@@ -132,7 +131,7 @@ fn normals<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
         params,
         band,
         #[inline(always)]
-        |rows, y| rows.load4(simd, &pass.inputs[1], y, clean_normal),
+        |rows, y| rows.load_mapped(simd, &pass.inputs[1], y, clean_normal),
         #[inline(always)]
         |rows: &[[&[f32]; 3]; 4], i| {
             let around = neighbours(simd, &rows[3], i);
@@ -186,12 +185,12 @@ fn over_blocks<S: Simd, const CHANNELS: usize>(
     pass: &CpuPass<'_>,
     params: &Params,
     band: &mut Band<'_>,
-    load: impl Fn(&mut Rows, i32),
+    load: impl Fn(&mut LineBuffer, i32),
     guide: impl Fn(&[[&[f32]; 3]; CHANNELS], usize) -> [f32x8<S>; 3],
 ) {
     let window = band.window;
     let tensor = &pass.inputs[0];
-    let mut rows = Rows::default();
+    let mut rows = LineBuffer::default();
     for (x0, x1) in strips(window.x0, window.x1) {
         rows.start(x0, x1, 1, CHANNELS);
         load(&mut rows, window.y0 - 1);
@@ -206,16 +205,10 @@ fn over_blocks<S: Simd, const CHANNELS: usize>(
             let start = 4 * (x0 - window.x0) as usize;
             let target = &mut band.row_mut(0, y)[start..start + len];
             for (i, (source, target)) in source.chunks(32).zip(target.chunks_mut(32)).enumerate() {
-                let [e, f, g, _]: [f32x8<S>; 4] = if source.len() == 32 {
-                    load4(simd, source)
-                } else {
-                    let mut block = [0.0; 32];
-                    block[..source.len()].copy_from_slice(source);
-                    load4(simd, &block)
-                };
+                let [e, f, g, _] = read(simd, source);
                 let [x, y, z] = guide(&around, i);
                 let (e, f, g) = (e + x * params.weight, f + y * params.weight, g + z * params.weight);
-                put_pixels4([e, f, g, validity(simd, params.threshold, e, f, g)], target);
+                write([e, f, g, validity(simd, params.threshold, e, f, g)], target);
             }
         }
     }

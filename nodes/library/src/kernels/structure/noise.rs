@@ -8,8 +8,8 @@
 //! Cost: about 15 integer operations a grain.
 
 pub use crate::kernels::shaders::noise::Params;
+use crate::kernels::simd::pixels::write;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*, u32x8};
-use isophote_engine::math::store4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(noise {
@@ -89,13 +89,7 @@ fn rows<S: Simd>(simd: S, params: &Params, band: &mut Band<'_>) {
                 }
             }
             let value = sum / ((high_x - low_x) * (high_y - low_y));
-            if pixels.len() == 32 {
-                store4([value, value, value, one], pixels);
-            } else {
-                let mut block = [0.0; 32];
-                store4([value, value, value, one], &mut block);
-                pixels.copy_from_slice(&block[..pixels.len()]);
-            }
+            write([value, value, value, one], pixels);
         }
     }
 }

@@ -9,10 +9,10 @@
 
 pub use crate::kernels::shaders::oversampled_tensor::Params;
 use crate::kernels::shared::outer_product::outer_product;
-use crate::kernels::simd::line_buffer::{Rows, strips};
+use crate::kernels::simd::line_buffer::{LineBuffer, strips};
+use crate::kernels::simd::pixels::{eight, premultiply, write};
 use crate::kernels::structure::gradient_tensor::Measure;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::math::store4;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 /// Entries of a table.
@@ -110,7 +110,7 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
     let r = radius as usize;
     let phases = [Weights::new(params, false), Weights::new(params, true)];
     let zero = f32x8::splat(simd, 0.0);
-    let mut rows = Rows::default();
+    let mut rows = LineBuffer::default();
     // Column sums of one row: smoothed and derived, four channels each; and the row's tensors.
     let (mut columns, mut wide): (Vec<f32>, Vec<f32>) = (Vec::new(), Vec::new());
     for (x0, x1) in strips(window.x0 >> 1, (window.x1 + 1) >> 1) {
@@ -123,13 +123,7 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
         for y in window.y0..window.y1 {
             let row = y >> 1;
             while next <= row + radius {
-                rows.load4(
-                    simd,
-                    view,
-                    next,
-                    #[inline(always)]
-                    |[x, y, z, a]| [x * a, y * a, z * a, a],
-                );
+                rows.load_mapped(simd, view, next, premultiply);
                 next += 1;
             }
             for (channel, sums) in columns.chunks_exact_mut(2 * len).enumerate() {
@@ -140,7 +134,7 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
                 let at = r + 8 * i;
                 let mut centre = [zero; 4];
                 for c in 0..4 {
-                    centre[c] = f32x8::from_slice(simd, &centres[c][at..at + 8]);
+                    centre[c] = eight(simd, centres[c], at);
                 }
                 let mut both = [[zero; 4]; 2];
                 for phase in 0..2 {
@@ -157,8 +151,8 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
                     (low[c], high[c]) = both[0][c].interleave(both[1][c]);
                 }
                 let block = &mut wide[64 * i..64 * i + 64];
-                store4(low, &mut block[..32]);
-                store4(high, &mut block[32..]);
+                write(low, &mut block[..32]);
+                write(high, &mut block[32..]);
             }
             let (from, to) = ((2 * x0).max(window.x0), (2 * x1).min(window.x1));
             let at = |x: i32, first: i32| 4 * (x - first) as usize;
@@ -173,7 +167,7 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
 #[inline(always)]
 fn sum_columns<S: Simd>(
     simd: S,
-    rows: &Rows,
+    rows: &LineBuffer,
     weights: &Weights,
     radius: usize,
     y: i32,
@@ -211,7 +205,7 @@ fn gradient<S: Simd>(
     let (mut x, mut y) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 0.0));
     let last = at + 2 * radius + 8;
     let (smoothed, derived) = (&smoothed[at..last], &derived[at..last]);
-    let middle = f32x8::from_slice(simd, &smoothed[radius..radius + 8]);
+    let middle = eight(simd, smoothed, radius);
     for k in 0..=2 * radius {
         let (s, d) = (&smoothed[k..k + 8], &derived[k..k + 8]);
         let s = f32x8::from_slice(simd, s) - middle;

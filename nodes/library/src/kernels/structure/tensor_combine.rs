@@ -10,7 +10,7 @@
 pub use crate::kernels::shaders::tensor_combine::Params;
 use crate::kernels::shared::sampling::sample_linear4;
 use crate::kernels::shared::tensor::anisotropy;
-use crate::kernels::simd::pixels::{for_blocks, write4};
+use crate::kernels::simd::pixels::{for_blocks, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -44,7 +44,7 @@ fn weighted<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ba
         band,
         #[inline(always)]
         |block, target| {
-            let own = block.read4(simd, fine);
+            let own: [f32x8<S>; 4] = block.read(simd, fine);
             let x = (block.columns(simd).to_float::<f32x8<S>>() + 0.5) * 0.5;
             let other = sample_linear4(simd, coarse, x, c(0.5 * (block.y as f32 + 0.5)));
             let a = anisotropy(own[0], own[1], own[2]);
@@ -54,7 +54,7 @@ fn weighted<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ba
             for i in 0..4 {
                 result[i] = other[i] + (own[i] - other[i]) * alpha;
             }
-            write4(result, target);
+            write(result, target);
         },
     );
 }

@@ -14,7 +14,7 @@
 
 pub use crate::kernels::shaders::tensor_display::Params;
 use crate::kernels::shared::tensor;
-use crate::kernels::simd::pixels::map_pixels4;
+use crate::kernels::simd::pixels::map_pixels;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -91,7 +91,7 @@ pub fn color(plan: &mut PlanBuilder, tensor: ImageId, show: Show) -> ImageId {
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(
+    dispatch!(pass.level, simd => map_pixels(
         simd,
         pass,
         band,

@@ -7,7 +7,7 @@
 
 pub use crate::kernels::shaders::tensor_logarithm::Params;
 use crate::kernels::shared::tensor::{axis, eigen};
-use crate::kernels::simd::pixels::map_pixels4;
+use crate::kernels::simd::pixels::map_pixels;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -46,7 +46,7 @@ fn pass(plan: &mut PlanBuilder, image: ImageId, inverse: u32) -> ImageId {
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels4(
+    dispatch!(pass.level, simd => map_pixels(
         simd,
         pass,
         band,

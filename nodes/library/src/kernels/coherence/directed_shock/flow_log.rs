@@ -8,7 +8,7 @@
 //!
 //! Cost: 5 sigma steps, each one linear interpolation between sums of opposite pixels and about 20 operations.
 
-use super::luma_taps::{Line, LumaLines};
+use super::luma_taps::{Line, LumaTaps};
 use crate::kernels::simd::pixels::Block;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
@@ -27,7 +27,7 @@ pub fn radius(reach: f32) -> i32 {
 pub fn response<S: Simd, const OPAQUE: bool>(
     simd: S,
     [sigma, reach]: [f32; 2],
-    lumas: &LumaLines,
+    lumas: &LumaTaps,
     line: &Line<S>,
     block: Block,
 ) -> f32x8<S> {
@@ -54,7 +54,7 @@ pub fn response<S: Simd, const OPAQUE: bool>(
 
 /// What the taps of eight pixels are.
 struct Taps<'a, S: Simd> {
-    lumas: &'a LumaLines,
+    lumas: &'a LumaTaps,
     line: &'a Line<S>,
     /// Pixels from tap to tap.
     step: f32x8<S>,

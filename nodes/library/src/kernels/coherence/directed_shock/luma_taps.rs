@@ -6,8 +6,8 @@
 //! Where neighbouring lines run almost alike, as they do along an edge, their taps lie side by side on a
 //! few rows, and are read as whole vectors instead.
 
+use crate::kernels::simd::pixels::{eight, read};
 use isophote_engine::fearless_simd::{Simd, f32x8, f64x4, i32x8, mask32x8, prelude::*};
-use isophote_engine::math::load4;
 use isophote_engine::{Rect, View};
 
 /// Weights of the Rec. 709 luma.
@@ -18,7 +18,7 @@ pub const STRIP: i32 = 128;
 
 /// Luma, by itself or times coverage, and coverage, around a strip.
 #[derive(Debug, Default)]
-pub struct LumaLines {
+pub struct LumaTaps {
     x0: i32,
     y0: i32,
     width: usize,
@@ -63,7 +63,7 @@ pub struct Line<S: Simd> {
 pub const MOST_ROWS: usize = 3;
 
 impl<S: Simd> Line<S> {
-    /// How taps are best read: what [`LumaLines::pair`] wants to know beforehand. To find it out at every tap
+    /// How taps are best read: what [`LumaTaps::pair`] wants to know beforehand. To find it out at every tap
     /// would be a branch that nothing predicts.
     #[inline(always)]
     pub fn rows(&self) -> usize {
@@ -93,7 +93,7 @@ fn rows_apart(slopes: [f32; 2], radius: i32) -> usize {
     if apart <= MOST_ROWS { apart } else { 0 }
 }
 
-impl LumaLines {
+impl LumaTaps {
     /// Prepares for the pixels of `strip` and lines that reach `radius` pixels to either side.
     ///
     /// Pixels that the view does not hold are never taps with any weight; they repeat the last ones.
@@ -151,15 +151,14 @@ impl LumaLines {
             let source = view.padded_row(y, self.x0, self.x0 + width as i32, &mut self.scratch);
             let source = &source[..4 * width];
             for x in (0..width).step_by(8) {
-                value(load4(simd, &source[4 * x..4 * x + 32])).store_slice(&mut row[x..x + 8]);
+                value(read(simd, &source[4 * x..4 * x + 32])).store_slice(&mut row[x..x + 8]);
             }
         }
         for i in 0..self.rows {
             let (above, below) = rows[i * width..(i + 2) * width].split_at(width);
             let target = &mut pairs[2 * i * width..2 * (i + 1) * width];
             for x in (0..width).step_by(8) {
-                let (above, below) =
-                    (f32x8::from_slice(simd, &above[x..x + 8]), f32x8::from_slice(simd, &below[x..x + 8]));
+                let (above, below) = (eight(simd, above, x), eight(simd, below, x));
                 let (low, high) = above.interleave(below);
                 low.store_slice(&mut target[2 * x..2 * x + 8]);
                 high.store_slice(&mut target[2 * x + 8..2 * x + 16]);
@@ -176,14 +175,14 @@ impl LumaLines {
     #[inline(always)]
     pub fn centre<S: Simd>(&self, simd: S, x: i32, y: i32) -> f32x8<S> {
         let at = (y - self.y0) as usize * self.width + (x - self.x0) as usize;
-        f32x8::from_slice(simd, &self.data[at..at + 8])
+        eight(simd, &self.data, at)
     }
 
     /// Coverage of the eight pixels from (x, y) on; only where not all is opaque.
     #[inline(always)]
     pub fn coverage<S: Simd>(&self, simd: S, x: i32, y: i32) -> f32x8<S> {
         let at = self.coverage + (y - self.y0) as usize * self.width + (x - self.x0) as usize;
-        f32x8::from_slice(simd, &self.data[at..at + 8])
+        eight(simd, &self.data, at)
     }
 
     /// Lines through the eight pixels from (x, y) on in the directions `n`, unit vectors of either sign.
@@ -226,7 +225,7 @@ impl LumaLines {
         pair::<_, ROWS>(simd, &self.data, line, along, across, offset)
     }
 
-    /// Coverage of what [`LumaLines::pair`] gives; only where not all is opaque.
+    /// Coverage of what [`LumaTaps::pair`] gives; only where not all is opaque.
     #[inline(always)]
     pub fn pair_coverage<S: Simd, const ROWS: usize>(
         &self,
@@ -239,7 +238,7 @@ impl LumaLines {
         pair::<_, ROWS>(simd, &self.data[self.coverage..], line, along, across, offset)
     }
 
-    /// What [`LumaLines::pair`] gives with no offset, plus the pixels opposite to them, `along` > 0 steps
+    /// What [`LumaTaps::pair`] gives with no offset, plus the pixels opposite to them, `along` > 0 steps
     /// back.
     #[inline(always)]
     pub fn opposite_pairs<S: Simd, const ROWS: usize>(
@@ -252,7 +251,7 @@ impl LumaLines {
         opposite_pairs::<_, ROWS>(simd, &self.data, line, along, across)
     }
 
-    /// Coverage of what [`LumaLines::opposite_pairs`] gives; only where not all is opaque.
+    /// Coverage of what [`LumaTaps::opposite_pairs`] gives; only where not all is opaque.
     #[inline(always)]
     pub fn opposite_coverage<S: Simd, const ROWS: usize>(
         &self,
@@ -343,5 +342,5 @@ fn two(data: &[f32], at: i32) -> f64 {
 #[inline(always)]
 fn row<S: Simd>(simd: S, data: &[f32], at: i32) -> f32x8<S> {
     let at = at as u32 as usize;
-    f32x8::from_slice(simd, &data[at..at + 8])
+    eight(simd, data, at)
 }
