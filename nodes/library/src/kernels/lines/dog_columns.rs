@@ -7,9 +7,8 @@
 
 use crate::kernels::lines::dog_rows;
 pub use crate::kernels::shaders::dog_columns::Params;
-use crate::kernels::shared::edge_threshold::{
-    LEAST_COVERAGE, Xdog, dog_response, edge_threshold, edge_uncovered,
-};
+use crate::kernels::shared::coverage::LEAST_COVERAGE;
+use crate::kernels::shared::edge_threshold::{Xdog, dog_response, edge_threshold, edge_uncovered};
 use crate::kernels::simd::pixels::{BLOCK, read, write};
 use crate::kernels::simd::window_sum::{RUN, flat, sum};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, f32x16, prelude::*};

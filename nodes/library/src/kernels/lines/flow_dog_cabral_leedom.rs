@@ -6,7 +6,8 @@
 //! divisions and the error function, about 100 operations.
 
 pub use crate::kernels::shaders::flow_dog_cabral_leedom::Params;
-use crate::kernels::shared::edge_threshold::{LEAST_COVERAGE, Xdog, edge_threshold, edge_uncovered};
+use crate::kernels::shared::coverage::LEAST_COVERAGE;
+use crate::kernels::shared::edge_threshold::{Xdog, edge_threshold, edge_uncovered};
 use crate::kernels::shared::pixel_line::{PixelLine, error_function, most_steps};
 use crate::kernels::shared::tensor::tangent;
 use crate::kernels::simd::pixels::{fetch1, for_blocks, offsets, write};

@@ -6,7 +6,8 @@
 //! Cost: per step (about 3 k sigma_e of them) four reads of two values; four exponentials per pixel.
 
 pub use crate::kernels::shaders::flow_dog_gradient::Params;
-use crate::kernels::shared::edge_threshold::{LEAST_COVERAGE, Xdog, dog_response};
+use crate::kernels::shared::coverage::LEAST_COVERAGE;
+use crate::kernels::shared::edge_threshold::{Xdog, dog_response};
 use crate::kernels::shared::tensor::tangent;
 use crate::kernels::simd::line_taps::{LineTaps, strips};
 use crate::kernels::simd::pixels::{BLOCK, Block, write};

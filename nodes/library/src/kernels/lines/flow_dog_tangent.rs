@@ -5,7 +5,8 @@
 //! samples of orientation with their tangents, about 70 or 110 operations.
 
 pub use crate::kernels::shaders::flow_dog_tangent::Params;
-use crate::kernels::shared::edge_threshold::{LEAST_COVERAGE, Xdog, edge_threshold, edge_uncovered};
+use crate::kernels::shared::coverage::LEAST_COVERAGE;
+use crate::kernels::shared::edge_threshold::{Xdog, edge_threshold, edge_uncovered};
 use crate::kernels::shared::sampling::sample_linear2;
 use crate::kernels::shared::stream::{Integrator, NearField, Stream, StreamField, holds};
 use crate::kernels::shared::tensor::tangent;

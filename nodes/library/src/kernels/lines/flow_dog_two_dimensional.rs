@@ -7,9 +7,8 @@
 
 use crate::kernels::lines::flow_dog_gradient::halfwidth;
 pub use crate::kernels::shaders::flow_dog_two_dimensional::Params;
-use crate::kernels::shared::edge_threshold::{
-    LEAST_COVERAGE, Xdog, dog_response, edge_threshold, edge_uncovered,
-};
+use crate::kernels::shared::coverage::LEAST_COVERAGE;
+use crate::kernels::shared::edge_threshold::{Xdog, dog_response, edge_threshold, edge_uncovered};
 use crate::kernels::shared::pixel_line::{PixelLine, error_function, most_steps};
 use crate::kernels::shared::sampling::sample_linear2;
 use crate::kernels::shared::stream::{Integrator, Stream, StreamField};

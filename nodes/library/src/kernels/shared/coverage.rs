@@ -44,6 +44,9 @@ impl Covered {
     }
 }
 
+/// Coverage up to which a pixel counts as empty.
+pub const LEAST_COVERAGE: f32 = 1e-6;
+
 /// Greater mean coverages are rounding away from 1.
 pub const FULL: f32 = 0.999_998;
 

@@ -4,9 +4,6 @@
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 
-/// Coverage below which a pixel counts as empty.
-pub const LEAST_COVERAGE: f32 = 1e-6;
-
 crate::choice::choice! {
     /// How a response becomes an edge image.
     pub enum Threshold {

@@ -4,6 +4,7 @@
 //! with its last pixel, so that no pixel depends on where its tile ends. The number of channels, `N`, is
 //! 1, 2 or 4 everywhere.
 
+use crate::kernels::shared::coverage::LEAST_COVERAGE;
 use isophote_engine::fearless_simd::{Simd, f32x4, f32x8, i32x8, prelude::*};
 use isophote_engine::math::{load4, store4, transposed};
 use isophote_engine::{Band, CpuPass, View};
@@ -236,9 +237,6 @@ pub fn unpremultiply<S: Simd>([r, g, b, a]: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
     let (zero, seen) = (f32x8::splat(a.simd, 0.0), a.simd_gt(f32x8::splat(a.simd, LEAST_COVERAGE)));
     [seen.select(r / a, zero), seen.select(g / a, zero), seen.select(b / a, zero), a]
 }
-
-/// Coverage up to which a pixel counts as empty.
-pub const LEAST_COVERAGE: f32 = 1e-6;
 
 /// Where eight pixels begin in the data of `view`; positions are clamped to the picture and must then
 /// lie in the window.

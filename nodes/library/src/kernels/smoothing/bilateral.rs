@@ -8,6 +8,7 @@
 //! through workgroup memory, about radius^2 / 16 + radius / 2 + 1 loads a pixel.
 
 pub use crate::kernels::shaders::bilateral::Params;
+use crate::kernels::shared::coverage;
 use crate::kernels::simd::line_buffer::{LineBuffer, pixels};
 use crate::kernels::simd::pixels::{BLOCK, Block, eight};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
@@ -90,7 +91,7 @@ fn is_opaque(pass: &CpuPass<'_>, band: &Band<'_>, reach: i32) -> bool {
         ((band.window.y0 - reach).max(held.y0), (band.window.y1 - 1 + reach).min(held.y1 - 1));
     let start = view.offset(held.x0, first);
     let end = view.offset(held.x0, last) + view.stride();
-    view.data()[start..end].chunks_exact(4).all(|p| p[3] == 1.0)
+    coverage::is_opaque(&view.data()[start..end])
 }
 
 /// The taps of a window that lie on one row.

@@ -5,7 +5,7 @@
 //! radius / 4 + 3 loads a pixel.
 
 pub use crate::kernels::shaders::gaussian_blur::Params;
-use crate::kernels::shared::coverage::{FULL, is_opaque};
+use crate::kernels::shared::coverage::{FULL, LEAST_COVERAGE, is_opaque};
 use crate::kernels::simd::window_sum::{GAUSSIAN_TAPS, RUN, flat, gaussian_radius, gaussian_table, sum};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, f32x16, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -146,9 +146,6 @@ fn smoothed<'s, S: Simd>(
         }
     }
 }
-
-/// Coverage below which a pixel counts as empty.
-const LEAST_COVERAGE: f32 = 1e-6;
 
 /// Multiplies colours by their alpha, unless all of them are 1: says whether there was need to.
 fn premultiplied(source: &[f32], target: &mut Vec<f32>) -> bool {
