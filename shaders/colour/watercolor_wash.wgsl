@@ -10,7 +10,7 @@ struct Params {
     inverse_scale: f32,
     /// How much pigment there is: 1 leaves the colours alone.
     pigment: f32,
-    /// Density gained per unit of lightness by which the neighbourhood is lighter.
+    /// Density gained per unit of luma by which the blurred picture is lighter.
     edges: f32,
     /// Density gained and lost in clouds.
     clouds: f32,
@@ -22,7 +22,7 @@ struct Params {
 
 @group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var surroundings: texture_2d<f32>;
+@group(0) @binding(3) var blurred: texture_2d<f32>;
 @group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
 
 // Luma within the range of paper.
@@ -40,7 +40,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let cloud = 0.6 * value_noise(q * 0.017, 11u) + 0.4 * value_noise(q * 0.043, 503u);
     let g = q * params.grain_frequency;
     let grain = 0.6 * value_noise(g, 1013u) + 0.4 * value_noise(g * 2.3, 2027u);
-    let excess = luma(fetch(surroundings, 1u, pixel(id)).rgb) - luma(v.rgb);
+    let excess = luma(fetch(blurred, 1u, pixel(id)).rgb) - luma(v.rgb);
     let gathered = params.edges * (max(excess, 0.0) + 0.25 * max(-excess, 0.0));
     let density = gathered + params.clouds * (2.0 * cloud - 1.0) + params.grain * (2.0 * grain - 1.0);
     let thin = 1.0 - params.pigment * (1.0 - v.rgb);

@@ -1,8 +1,8 @@
 // Where the textures of a pass lie in the picture, and reading them by absolute position.
 //
 // A pass may run on a tile with its halo. Kernels therefore speak of absolute pixel positions, as
-// their CPU twins do; only the functions below know where a texture's texel (0, 0) lies. Whoever
-// lowers a plan fills the block, `Grid` in nodes/engine/src/program.rs is its layout.
+// their CPU twins do; only the functions below know where a texture's texel (0, 0) lies. The
+// code that lowers a plan fills the block, `Grid` in nodes/engine/src/program.rs is its layout.
 
 struct Grid {
     // Absolute position of texel (0, 0) of the outputs.

@@ -18,7 +18,7 @@ struct Params {
 @group(0) @binding(2) var gradient: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<r32float, write>;
 
-// Two values are told apart from this ratio on: what rounding decides would make ragged lines.
+// Values nearer to each other than this ratio count as equal: decided by rounding, lines would be ragged.
 const TIE: f32 = 1.0005;
 
 fn height(p: vec2i) -> f32 {

@@ -28,7 +28,7 @@ pub struct Wash {
     pub scale: f32,
     /// How much pigment there is: 1 leaves the colours alone, 0 only paper.
     pub pigment: f32,
-    /// Density gained per unit of luma that the surroundings are lighter.
+    /// Density gained per unit of luma by which the blurred picture is lighter.
     pub edges: f32,
     /// Density gained and lost in clouds.
     pub clouds: f32,
@@ -38,8 +38,8 @@ pub struct Wash {
     pub grain_size: f32,
 }
 
-/// Paints `color`; `surroundings` is the same, smoothed by the width of the dark borders.
-pub fn painted(plan: &mut PlanBuilder, color: ImageId, surroundings: ImageId, wash: &Wash) -> ImageId {
+/// Paints `color`; `blurred` is the same, smoothed by the width of the dark borders.
+pub fn painted(plan: &mut PlanBuilder, color: ImageId, blurred: ImageId, wash: &Wash) -> ImageId {
     let params = Params {
         inverse_scale: 1.0 / wash.scale,
         pigment: wash.pigment,
@@ -48,7 +48,7 @@ pub fn painted(plan: &mut PlanBuilder, color: ImageId, surroundings: ImageId, wa
         grain: wash.grain,
         grain_frequency: 1.0 / wash.grain_size.max(0.5),
     };
-    plan.pass(&KERNEL, &[color, surroundings], &params, Class::Colour, Support::Pixels(0))
+    plan.pass(&KERNEL, &[color, blurred], &params, Class::Colour, Support::Pixels(0))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {

@@ -33,7 +33,7 @@ crate::choice::choice! {
     }
 }
 
-/// Two values are told apart from this ratio on: what rounding decides would make ragged lines.
+/// Values nearer to each other than this ratio count as equal: decided by rounding, lines would be ragged.
 const TIE: f32 = 1.0005;
 
 /// The candidates of a gradient image (see `edge_gradient`); heights in units of L. For

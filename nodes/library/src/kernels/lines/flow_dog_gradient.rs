@@ -176,7 +176,7 @@ fn gradient<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ba
     }
 }
 
-/// The responses of a block, and its coverage; the compiler is told when all coverage is 1.
+/// The responses of a block, and its coverage, which is 1 everywhere when `OPAQUE`.
 #[inline(always)]
 fn differences<S: Simd, const OPAQUE: bool>(
     simd: S,

@@ -138,7 +138,7 @@ fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
             let row = &mut band.row_mut(0, y)[4 * columns.start..4 * columns.end];
             for (i, target) in row.chunks_mut(32).enumerate() {
                 let original = Block::until(strip.x1, x0 + 8 * i as i32, y).read(simd, &pass.inputs[3]);
-                write(chosen(simd, params, sums, len / 10, 8 * i, original), target);
+                write(mean_of_flattest(simd, params, sums, len / 10, 8 * i, original), target);
             }
         }
     }
@@ -176,7 +176,7 @@ fn blocks<S: Simd>(simd: S, strip: &Strip<'_>, params: &Params, [y0, y1]: [i32; 
 
 /// The mean of the subregions of least variance, for eight pixels from `at` on.
 #[inline(always)]
-fn chosen<S: Simd>(
+fn mean_of_flattest<S: Simd>(
     simd: S,
     params: &Params,
     [below, above]: [&[f32]; 2],
@@ -187,9 +187,7 @@ fn chosen<S: Simd>(
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     let mut squares = [[zero; 2]; 2];
     for (squares, sums) in squares.iter_mut().zip([below, above]) {
-        let values = &sums[8 * width + 2 * at..][..16];
-        *squares =
-            f32x8::from_slice(simd, &values[..8]).deinterleave(f32x8::from_slice(simd, &values[8..])).into();
+        *squares = read(simd, &sums[8 * width + 2 * at..][..16]);
     }
     let regions = [
         (&below[4 * at..4 * width], squares[0][0]),

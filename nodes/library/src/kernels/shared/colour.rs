@@ -87,7 +87,7 @@ fn power_2_4<S: Simd>(x: f32x8<S>) -> f32x8<S> {
     let r2 = r * r;
     // At most 0.156; what follows is (1 - e)^(-1/5).
     let e = (-(r2 * r2)).mul_add(x * r, f32x8::splat(x.simd, 1.0));
-    let root = x * mended(r, e, [0.200_000_12, 0.119_986_76, 0.087_963_57, 0.072_159_57, 0.061_620_72]);
+    let root = x * corrected(r, e, [0.200_000_12, 0.119_986_76, 0.087_963_57, 0.072_159_57, 0.061_620_72]);
     root * root * root
 }
 
@@ -98,13 +98,13 @@ fn cube_root<S: Simd>(x: f32x8<S>) -> f32x8<S> {
     let r = inverse_root(x, 1.0 / 3.0, 0x54a1_f000);
     // At most 0.103; what follows is (1 - e)^(-1/3).
     let e = (-(r * r)).mul_add(x * r, f32x8::splat(x.simd, 1.0));
-    let r = mended(r, e, [0.333_333_35, 0.222_216_78, 0.172_825, 0.145_687_32, 0.127_130_79]);
+    let r = corrected(r, e, [0.333_333_35, 0.222_216_78, 0.172_825, 0.145_687_32, 0.127_130_79]);
     x * (r * r)
 }
 
 /// `r` times 1 + c0 e + c1 e^2 + ..., where it misses an inverse root by `e` = 1 - x r^n.
 #[inline(always)]
-fn mended<S: Simd>(r: f32x8<S>, e: f32x8<S>, c: [f32; 5]) -> f32x8<S> {
+fn corrected<S: Simd>(r: f32x8<S>, e: f32x8<S>, c: [f32; 5]) -> f32x8<S> {
     let ee = e * e;
     let low = e.mul_add(f32x8::splat(e.simd, c[1]), f32x8::splat(e.simd, c[0]));
     let high = e.mul_add(f32x8::splat(e.simd, c[3]), f32x8::splat(e.simd, c[2]));

@@ -82,7 +82,7 @@ const FLAT: f32 = 1e-36;
 /// That is `p` projected on the eigenvector, (I + M / r) p / 2 with M = (-d, -f; -f, d), d = (E - G) / 2
 /// and r^2 = d^2 + f^2, and made a unit vector: no sign to choose, and little that waits for each other.
 /// Where there is no direction (r at most 1e-18, or above 1e18), `p` goes on straight; where the
-/// eigenvector lies straight across, so that its sign cannot be told, it goes on as well, with a cosine
+/// eigenvector lies straight across, so that its sign cannot be decided, it goes on as well, with a cosine
 /// of about 0.
 #[inline(always)]
 pub fn tangent_along<S: Simd>(
@@ -100,11 +100,11 @@ pub fn tangent_along<S: Simd>(
     let inverse = size.max(f32x8::splat(d.simd, f32::MIN_POSITIVE)).inverse_sqrt();
     let cosine = px.mul_add(x * inverse, py * (y * inverse));
     // False for what has overflowed too.
-    let told = size.simd_gt(rr * 1e-8) & size.simd_le(f32x8::splat(d.simd, f32::MAX));
+    let decided = size.simd_gt(rr * 1e-8) & size.simd_le(f32x8::splat(d.simd, f32::MAX));
     let directed = rr.simd_gt(f32x8::splat(d.simd, FLAT));
-    // Chosen before the product: a choice that replaces `p` in memory would be a masked store, a very slow one.
-    let inverse = told.select(inverse, one);
-    ([told.select(x, px) * inverse, told.select(y, py) * inverse], directed.select(cosine, one))
+    // Selected before the product: a choice that replaces `p` in memory would be a masked store, a very slow one.
+    let inverse = decided.select(inverse, one);
+    ([decided.select(x, px) * inverse, decided.select(y, py) * inverse], directed.select(cosine, one))
 }
 
 /// (lambda1 - lambda2) / (lambda1 + lambda2), 0..=1 (2.137); zero tensor: 0.

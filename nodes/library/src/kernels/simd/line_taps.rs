@@ -318,7 +318,7 @@ impl LineTaps {
     #[inline(always)]
     pub fn taps<S: Simd, const N: usize>(&self, step: &Step<S>) -> [[f32x8<S>; N]; 2] {
         let simd = step.across.simd;
-        // How many rows there are changes from step to step and is hard to foretell, but most often three
+        // How many rows there are changes from step to step and is hard to predict, but most often three
         // are enough.
         let minor = step.minor as u32 as usize;
         let (ahead, behind) = (step.ahead as u32 as usize, (step.behind - 2 * step.minor) as u32 as usize);

@@ -62,7 +62,7 @@ fn fill<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
             let i = 4 * (corner(x) - first) as usize;
             let (a, b) = (load(simd, &between, i), load(simd, &between, i + 4));
             let mixed = (b - a).mul_add(f32x4::splat(simd, fraction(x)), a) * tensor;
-            // A choice of values: which pixels are valid no branch could foretell.
+            // A selection of values: branches on validity would be mispredicted.
             let valid = f32x4::splat(simd, source[n + 3]).simd_ge(params.kept);
             valid.select(load(simd, source, n), mixed).store_slice(&mut target[n..n + 4]);
         }
