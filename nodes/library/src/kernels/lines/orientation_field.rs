@@ -2,7 +2,7 @@
 //! commutes, and stream lines load half as much. Read as a tensor whose G is 0 it has the same
 //! eigenvectors.
 //!
-//! Cost: a subtraction and two multiplications per pixel.
+//! Cost: a subtraction per pixel.
 
 use crate::kernels::simd::pixels::{for_blocks, write};
 use isophote_engine::fearless_simd::dispatch;
@@ -10,7 +10,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(orientation_field {
     cpu: run,
-    cost: |_| 3.0,
+    cost: |_| 1.0,
     tolerance: Tolerance { absolute: 1e-7, relative: 1e-6, outliers: 0.0, reason: "two roundings" },
 });
 

@@ -1,5 +1,6 @@
-//! Rings of rows for kernels that look at a small neighbourhood: each row is clamped to the edge,
-//! mapped once and kept channel by channel, ready for vectors that start at any column.
+//! A line buffer for kernels that look at a small neighbourhood: a ring of the rows around the one at hand.
+//! Each row is clamped to the edge, mapped once and kept channel by channel, ready for vectors that start at
+//! any column.
 
 use crate::kernels::simd::pixels::{eight, read};
 use isophote_engine::View;

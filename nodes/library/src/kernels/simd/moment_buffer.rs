@@ -1,5 +1,6 @@
-//! Rings of rows for the Kuwahara filters: colours times coverage, their squares and the coverage,
-//! channel by channel, ready for vectors that start at any column.
+//! A line buffer of what means and variances are made of, for the Kuwahara filters: a ring of rows that hold
+//! colours times coverage, their squares and the coverage, channel by channel, ready for vectors that start
+//! at any column.
 
 use crate::kernels::simd::pixels::read;
 use isophote_engine::View;

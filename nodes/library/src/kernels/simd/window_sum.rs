@@ -1,4 +1,5 @@
-//! Sums under symmetric windows on interleaved values: what rows and columns of all Gaussians share.
+//! Sums under symmetric windows on interleaved values, and the weights of Gaussian ones: what rows and
+//! columns of all Gaussians share.
 //!
 //! A run of values is summed at once, so that the place of a tap is looked up once for all of them and
 //! the sums stay in registers. The end of a row goes through the same operations in the same order.
