@@ -2,12 +2,6 @@
 // Cost: nine loads.
 #import gpu/grid
 
-struct Params {
-    /// Weights across the derivative: at the centre and beside it; they sum to 1.
-    weights: vec2f,
-}
-
-@group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
 
@@ -33,10 +27,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let left_down = excess(p + vec2i(-1, 1), c);
     let right_up = excess(p + vec2i(1, -1), c);
     let right_down = excess(p + vec2i(1, 1), c);
-    let x = params.weights.x * (excess(p + vec2i(1, 0), c) - excess(p - vec2i(1, 0), c))
-        + params.weights.y * ((right_up - left_up) + (right_down - left_down));
-    let y = params.weights.x * (excess(p + vec2i(0, 1), c) - excess(p - vec2i(0, 1), c))
-        + params.weights.y * ((left_down - left_up) + (right_down - right_up));
+    let x = 0.5 * (excess(p + vec2i(1, 0), c) - excess(p - vec2i(1, 0), c))
+        + 0.25 * ((right_up - left_up) + (right_down - left_down));
+    let y = 0.5 * (excess(p + vec2i(0, 1), c) - excess(p - vec2i(0, 1), c))
+        + 0.25 * ((left_down - left_up) + (right_down - right_up));
     let magnitude = 0.5 * sqrt(x * x + y * y) * color.a;
     textureStore(target_image, vec2i(id.xy), vec4f(magnitude, 0.0, 0.0, 1.0));
 }

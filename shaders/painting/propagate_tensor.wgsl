@@ -4,12 +4,9 @@
 #import shared/sampling
 #import shared/tensor
 
-struct Params {
-    /// Least anisotropy that counts.
-    floor: f32,
-}
+// Least anisotropy that counts.
+const FLOOR: f32 = 1e-3;
 
-@group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var fine: texture_2d<f32>;
 @group(0) @binding(3) var coarse: texture_2d<f32>;
 @group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
@@ -21,7 +18,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let own = fetch(fine, 0u, pixel(id));
     let below = sample_linear(coarse, 1u, centre(id) * 0.5);
-    let a = max(tensor_anisotropy(own), params.floor);
-    let b = max(tensor_anisotropy(below), params.floor);
+    let a = max(tensor_anisotropy(own), FLOOR);
+    let b = max(tensor_anisotropy(below), FLOOR);
     textureStore(target_image, vec2i(id.xy), own + (below - own) * (b / (a + b)));
 }

@@ -1,12 +1,6 @@
 // A colour at half the resolution: the mean of four pixels by their coverage. Cost: 4 loads.
 #import shared/coverage
 
-struct Params {
-    /// Coverage below this is none.
-    least: f32,
-}
-
-@group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
 
@@ -26,6 +20,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             count += 1.0;
         }
     }
-    let color = select(vec3f(0.0), sum.rgb / sum.a, sum.a > params.least);
+    let color = select(vec3f(0.0), sum.rgb / sum.a, sum.a > 1e-6);
     textureStore(target_image, vec2i(id.xy), vec4f(color, sum.a / count));
 }

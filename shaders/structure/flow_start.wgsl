@@ -3,12 +3,9 @@
 #import gpu/grid
 #import shared/tensor
 
-struct Params {
-    /// A magnitude below this is no gradient.
-    least: f32,
-}
+// A magnitude below this is no gradient.
+const LEAST: f32 = 1e-6;
 
-@group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
 
@@ -22,7 +19,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let magnitude = sqrt(max((t.x + t.z) * 0.5 + axis.radius, 0.0));
     let n = axis.major;
     var start = vec4f(n.x * n.x, n.x * n.y, n.y * n.y, magnitude);
-    if magnitude < params.least {
+    if magnitude < LEAST {
         start = vec4f(0.0);
     }
     textureStore(target_image, vec2i(id.xy), start);

@@ -4,12 +4,9 @@
 #import shared/sampling
 #import shared/tensor
 
-struct Params {
-    /// Where both anisotropies together are not above this, the finer tensor stays.
-    least: f32,
-}
+// Where both anisotropies together are not above this, the finer tensor stays.
+const LEAST: f32 = 1e-6;
 
-@group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var fine: texture_2d<f32>;
 @group(0) @binding(3) var coarse: texture_2d<f32>;
 @group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
@@ -24,7 +21,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let a = tensor_anisotropy(own);
     let sum = a + tensor_anisotropy(above);
     var alpha = 1.0;
-    if sum > params.least {
+    if sum > LEAST {
         alpha = a / sum;
     }
     textureStore(target_image, vec2i(id.xy), above + (own - above) * alpha);

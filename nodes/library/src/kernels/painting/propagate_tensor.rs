@@ -3,12 +3,14 @@
 //!
 //! Cost: 4 interpolations on four channels, two anisotropies and 20 operations.
 
-pub use crate::kernels::shaders::propagate_tensor::Params;
 use crate::kernels::shared::tensor::anisotropy;
 use crate::kernels::simd::pixels::{for_blocks, read, write};
 use crate::kernels::simd::upsampling::Upsampling;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+
+/// Least anisotropy that counts.
+const FLOOR: f32 = 1e-3;
 
 crate::kernel!(propagate_tensor {
     cpu: run,
@@ -24,20 +26,19 @@ crate::kernel!(propagate_tensor {
 /// Adds the pass; `coarse` lies one level above `fine`.
 pub fn merged(plan: &mut PlanBuilder, fine: ImageId, coarse: ImageId) -> ImageId {
     // Without a floor two isotropic tensors would have no weight, and rounding would decide.
-    plan.pass(&KERNEL, &[fine, coarse], &Params { floor: 1e-3 }, Class::Field, Support::Pixels(1))
+    plan.pass(&KERNEL, &[fine, coarse], &(), Class::Field, Support::Pixels(1))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => merge(simd, pass, &params, band));
+    dispatch!(pass.level, simd => merge(simd, pass, band));
 }
 
 #[inline(always)]
-fn merge<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
+fn merge<S: Simd>(simd: S, pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let mut upsampling = Upsampling::default();
     let columns = [band.window.x0, band.window.x1];
     let mut coarse: Vec<f32> = Vec::new();
-    let floor = f32x8::splat(simd, params.floor);
+    let floor = f32x8::splat(simd, FLOOR);
     for_blocks::<4>(band, |block, target| {
         if block.x == columns[0] {
             coarse.clear();

@@ -3,7 +3,7 @@
 //!
 //! Cost: 4 additions and a division on four channels.
 
-pub use crate::kernels::shaders::colour_restrict::Params;
+use crate::kernels::shared::coverage::LEAST_COVERAGE;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -21,17 +21,15 @@ crate::kernel!(colour_restrict {
 /// Adds the pass: from the image's level to the next coarser one, ceil(n / 2) pixels on a side.
 pub fn restrict(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
     let level = plan.desc(color).level + 1;
-    let params = Params { least: 1e-6 };
-    plan.pass_at(&KERNEL, &[color], &params, &[Class::Colour], Support::Pixels(0), level)
+    plan.pass_at(&KERNEL, &[color], &(), &[Class::Colour], Support::Pixels(0), level)
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => means(simd, pass, &params, band));
+    dispatch!(pass.level, simd => means(simd, pass, band));
 }
 
 #[inline(always)]
-fn means<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
+fn means<S: Simd>(simd: S, pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let window = band.window;
     let view = &pass.inputs[0];
     let [width, height] = view.full();
@@ -54,7 +52,7 @@ fn means<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
                 coverage += p[3];
                 count += 1.0f32;
             }
-            let color = if coverage > params.least { sum / coverage } else { f32x4::splat(simd, 0.0) };
+            let color = if coverage > LEAST_COVERAGE { sum / coverage } else { f32x4::splat(simd, 0.0) };
             color.store_slice(target);
             target[3] = coverage / count;
         }

@@ -4,7 +4,6 @@
 //!
 //! Cost: about 20 operations.
 
-pub use crate::kernels::shaders::flow_start::Params;
 use crate::kernels::shared::tensor::axis;
 use crate::kernels::simd::pixels::map_pixels;
 use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
@@ -26,11 +25,10 @@ const LEAST: f32 = 1e-6;
 
 /// Adds the pass: unsmoothed tensor to unit tensor and magnitude.
 pub fn start(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
-    plan.pass(&KERNEL, &[tensor], &Params { least: LEAST }, Class::Field, Support::Pixels(0))
+    plan.pass(&KERNEL, &[tensor], &(), Class::Field, Support::Pixels(0))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
     dispatch!(pass.level, simd => map_pixels(
         simd,
         pass,
@@ -40,7 +38,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
             let zero = f32x8::splat(simd, 0.0);
             let (radius, [x, y]) = axis((e - g) * 0.5, f);
             let magnitude = ((e + g) * 0.5 + radius).max(zero).sqrt();
-            let none = magnitude.simd_lt(f32x8::splat(simd, params.least));
+            let none = magnitude.simd_lt(f32x8::splat(simd, LEAST));
             let (xx, xy, yy) = (x * x, x * y, y * y);
             [none.select(zero, xx), none.select(zero, xy), none.select(zero, yy), none.select(zero, magnitude)]
         },

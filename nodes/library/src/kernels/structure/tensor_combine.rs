@@ -7,12 +7,14 @@
 //!
 //! Cost: 3 bilinear multiply-adds on four channels, two anisotropies, about 50 operations.
 
-pub use crate::kernels::shaders::tensor_combine::Params;
 use crate::kernels::shared::sampling::sample_linear4;
 use crate::kernels::shared::tensor::anisotropy;
 use crate::kernels::simd::pixels::{for_blocks, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+
+/// Where both anisotropies together are not above this, the finer tensor stays.
+const LEAST: f32 = 1e-6;
 
 crate::kernel!(tensor_combine {
     cpu: run,
@@ -28,16 +30,15 @@ crate::kernel!(tensor_combine {
 
 /// Adds the pass; `coarse` lies one level above `fine`.
 pub fn combine(plan: &mut PlanBuilder, fine: ImageId, coarse: ImageId) -> ImageId {
-    plan.pass(&KERNEL, &[fine, coarse], &Params { least: 1e-6 }, Class::Field, Support::Pixels(1))
+    plan.pass(&KERNEL, &[fine, coarse], &(), Class::Field, Support::Pixels(1))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => weighted(simd, pass, &params, band));
+    dispatch!(pass.level, simd => weighted(simd, pass, band));
 }
 
 #[inline(always)]
-fn weighted<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
+fn weighted<S: Simd>(simd: S, pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let (fine, coarse) = (&pass.inputs[0], &pass.inputs[1]);
     let c = |v: f32| f32x8::splat(simd, v);
     for_blocks::<4>(
@@ -49,7 +50,7 @@ fn weighted<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ba
             let other = sample_linear4(simd, coarse, x, c(0.5 * (block.y as f32 + 0.5)));
             let a = anisotropy(own[0], own[1], own[2]);
             let sum = a + anisotropy(other[0], other[1], other[2]);
-            let alpha = sum.simd_gt(c(params.least)).select(a / sum, c(1.0));
+            let alpha = sum.simd_gt(c(LEAST)).select(a / sum, c(1.0));
             let mut result = own;
             for i in 0..4 {
                 result[i] = other[i] + (own[i] - other[i]) * alpha;
