@@ -135,8 +135,7 @@ fn programs() -> Result<Vec<Program>> {
         return Err(Failure("the tests cannot be built".into()));
     }
     let messages = String::from_utf8_lossy(&output.stdout).into_owned();
-    let is_test = |line: &&str| line.contains(r#""profile":{"#) && line.contains(r#""test":true}"#);
-    let programs = messages.lines().filter(is_test).filter_map(|line| {
+    let programs = messages.lines().filter(|line| is_test(line)).filter_map(|line| {
         let path = PathBuf::from(field(line, "executable")?);
         let folder = Path::new(&field(line, "manifest_path")?).parent()?.to_owned();
         // Cargo adds a hash.
@@ -144,6 +143,12 @@ fn programs() -> Result<Vec<Program>> {
         Some(Program { name, path, folder })
     });
     Ok(programs.collect())
+}
+
+/// Whether one of cargo's messages tells of something compiled as a test, and not of what may be.
+fn is_test(message: &str) -> bool {
+    let profile = message.split_once(r#""profile":{"#).and_then(|(_, rest)| rest.split_once('}'));
+    profile.is_some_and(|(profile, _)| profile.contains(r#""test":true"#))
 }
 
 /// A text of one of cargo's messages.
@@ -254,7 +259,7 @@ pub fn bless() -> Result<()> {
 
 #[cfg(test)]
 mod tests {
-    use super::field;
+    use super::{field, is_test};
 
     #[test]
     fn fields_of_messages_are_found() {
@@ -262,5 +267,14 @@ mod tests {
             r#"{"reason":"compiler-artifact","manifest_path":"C:\\a b\\Cargo.toml","executable":null}"#;
         assert_eq!(field(message, "manifest_path").as_deref(), Some(r"C:\a b\Cargo.toml"));
         assert_eq!(field(message, "executable"), None);
+    }
+
+    #[test]
+    fn programs_of_tests_are_told_from_programs_that_have_tests() {
+        let message = |is_test: bool| {
+            format!(r#"{{"target":{{"test":true}},"profile":{{"test":{is_test}}},"executable":"/a/x-0"}}"#)
+        };
+        assert!(is_test(&message(true)) && !is_test(&message(false)));
+        assert!(!is_test(r#"{"reason":"build-finished","success":true}"#));
     }
 }
