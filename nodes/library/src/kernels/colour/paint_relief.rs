@@ -5,8 +5,8 @@
 //! Cost: 25 multiply-adds.
 
 pub use crate::kernels::shaders::paint_relief::Params;
-use crate::kernels::simd::line_buffer::{LineBuffer, strips};
-use crate::kernels::simd::pixels::{Block, eight, write};
+use crate::kernels::simd::line_buffer::{Row, STRIP, for_rows};
+use crate::kernels::simd::pixels::{BLOCK, Block, eight, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -43,28 +43,26 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 
 #[inline(always)]
 fn relief<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
-    let window = band.window;
-    let mut rows = LineBuffer::default();
-    for (x0, x1) in strips(window.x0, window.x1) {
-        rows.start(x0, x1, 1, 4);
-        for y in window.y0 - 1..=window.y0 {
-            rows.load(simd, &pass.inputs[1], y);
-        }
-        for y in window.y0..window.y1 {
-            rows.load(simd, &pass.inputs[1], y + 1);
-            let (above, centre, below) = (rows.row(y - 1, 0), rows.row(y, 0), rows.row(y + 1, 0));
-            let target =
-                &mut band.row_mut(0, y)[4 * (x0 - window.x0) as usize..4 * (x1 - window.x0) as usize];
-            for (i, target) in target.chunks_mut(32).enumerate() {
-                let at = 8 * i + 1;
+    for_rows::<S, 4>(
+        simd,
+        &pass.inputs[1],
+        band,
+        [STRIP, 1],
+        std::convert::identity,
+        #[inline(always)]
+        |Row { held, columns: [x0, x1], y }, target| {
+            let (above, centre, below) = (held.row(y - 1, 0), held.row(y, 0), held.row(y + 1, 0));
+            for (i, target) in target.chunks_mut(4 * BLOCK).enumerate() {
+                let at = BLOCK * i + 1;
                 let dx = (eight(simd, centre, at + 1) - eight(simd, centre, at - 1)) * 0.5;
                 let dy = (eight(simd, below, at) - eight(simd, above, at)) * 0.5;
                 let lift = (eight(simd, centre, at) - 0.5) * params.bristle
                     - (dx * params.light[0] + dy * params.light[1]);
-                let [l, a, b, alpha] = Block::until(x1, x0 + 8 * i as i32, y).read(simd, &pass.inputs[0]);
+                let block = Block::until(x1, x0 + (BLOCK * i) as i32, y);
+                let [l, a, b, alpha] = block.read(simd, &pass.inputs[0]);
                 let share = (l.max(0.0) + 16.0) / 116.0;
                 write([l + share * lift, a, b, alpha], target);
             }
-        }
-    }
+        },
+    );
 }

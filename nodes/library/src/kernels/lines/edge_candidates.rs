@@ -5,7 +5,7 @@
 //! Cost: eight neighbours and about 40 operations per pixel.
 
 pub use crate::kernels::shaders::edge_candidates::Params;
-use crate::kernels::simd::line_buffer::{LineBuffer, strips};
+use crate::kernels::simd::line_buffer::{Row, STRIP, for_rows};
 use crate::kernels::simd::pixels::{BLOCK, eight, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, mask32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -53,20 +53,17 @@ type Around<'a> = [&'a [f32]; 3];
 
 #[inline(always)]
 fn candidates<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
-    let window = band.window;
-    let mut rows = LineBuffer::default();
-    for (x0, x1) in strips(window.x0, window.x1) {
-        rows.start(x0, x1, 1, 4);
-        for y in [window.y0 - 1, window.y0] {
-            rows.load_mapped(simd, &pass.inputs[0], y, std::convert::identity);
-        }
-        for y in window.y0..window.y1 {
-            rows.load_mapped(simd, &pass.inputs[0], y + 1, std::convert::identity);
-            let heights = [rows.row(y - 1, 2), rows.row(y, 2), rows.row(y + 1, 2)];
-            let laplacians = [rows.row(y - 1, 3), rows.row(y, 3), rows.row(y + 1, 3)];
-            let (gx, gy) = (rows.row(y, 0), rows.row(y, 1));
-            let start = (x0 - window.x0) as usize;
-            let target = &mut band.row_mut(0, y)[start..start + (x1 - x0) as usize];
+    for_rows::<S, 1>(
+        simd,
+        &pass.inputs[0],
+        band,
+        [STRIP, 1],
+        std::convert::identity,
+        #[inline(always)]
+        |Row { held, y, .. }, target| {
+            let heights = [held.row(y - 1, 2), held.row(y, 2), held.row(y + 1, 2)];
+            let laplacians = [held.row(y - 1, 3), held.row(y, 3), held.row(y + 1, 3)];
+            let (gx, gy) = (held.row(y, 0), held.row(y, 1));
             for (i, pixels) in target.chunks_mut(BLOCK).enumerate() {
                 let at = BLOCK * i;
                 let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
@@ -78,10 +75,7 @@ fn candidates<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut 
                     continue;
                 }
                 let found = if params.method == Method::Maximum as u32 {
-                    let g = [
-                        f32x8::from_slice(simd, &gx[at + 1..at + 9]),
-                        f32x8::from_slice(simd, &gy[at + 1..at + 9]),
-                    ];
+                    let g = [eight(simd, gx, at + 1), eight(simd, gy, at + 1)];
                     is_maximum(simd, &heights, at, height, g)
                 } else {
                     is_crossing(simd, &laplacians, at)
@@ -90,8 +84,8 @@ fn candidates<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut 
                 let class = height.simd_gt(params.high).select(one + one, one);
                 write([found.select(class, zero)], pixels);
             }
-        }
-    }
+        },
+    );
 }
 
 /// Values of the pixels at (dx, dy) from those of a block.

@@ -7,8 +7,8 @@
 //! Cost: 24 multiply-adds and a square root per pixel.
 
 pub use crate::kernels::shaders::edge_gradient::Params;
-use crate::kernels::simd::line_buffer::{LineBuffer, strips};
-use crate::kernels::simd::pixels::write;
+use crate::kernels::simd::line_buffer::{Row, STRIP, for_rows};
+use crate::kernels::simd::pixels::{BLOCK, eight, write};
 use crate::kernels::simd::window_sum::{gaussian_radius, gaussian_table};
 use crate::kernels::smoothing::gaussian_blur;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
@@ -43,32 +43,27 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 
 #[inline(always)]
 fn derivatives<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
-    let window = band.window;
-    let mut rows = LineBuffer::default();
-    for (x0, x1) in strips(window.x0, window.x1) {
-        rows.start(x0, x1, 1, 4);
-        for y in [window.y0 - 1, window.y0] {
-            rows.load_mapped(simd, &pass.inputs[0], y, covered);
-        }
-        for y in window.y0..window.y1 {
-            rows.load_mapped(simd, &pass.inputs[0], y + 1, covered);
-            let light = [rows.row(y - 1, 0), rows.row(y, 0), rows.row(y + 1, 0)];
-            let cover = [rows.row(y - 1, 3), rows.row(y, 3), rows.row(y + 1, 3)];
-            let start = 4 * (x0 - window.x0) as usize;
-            let target = &mut band.row_mut(0, y)[start..start + 4 * (x1 - x0) as usize];
-            for (i, pixels) in target.chunks_mut(32).enumerate() {
-                let at = 8 * i;
+    for_rows::<S, 4>(
+        simd,
+        &pass.inputs[0],
+        band,
+        [STRIP, 1],
+        weighted,
+        #[inline(always)]
+        |Row { held, y, .. }, target| {
+            let light = [held.row(y - 1, 0), held.row(y, 0), held.row(y + 1, 0)];
+            let cover = [held.row(y - 1, 3), held.row(y, 3), held.row(y + 1, 3)];
+            for (i, pixels) in target.chunks_mut(4 * BLOCK).enumerate() {
+                let at = BLOCK * i;
                 let zero = f32x8::splat(simd, 0.0);
-                let alpha = f32x8::from_slice(simd, &cover[1][at + 1..at + 9]);
-                let own = f32x8::from_slice(simd, &light[1][at + 1..at + 9]);
+                let (alpha, own) = (eight(simd, cover[1], at + 1), eight(simd, light[1], at + 1));
                 let own = alpha.simd_gt(0.0).select(own / alpha.max(1e-30), zero);
                 // How far the neighbours are above the pixel, as far as they are covered.
                 let mut rise = [[zero; 3]; 3];
                 for dy in 0..3 {
                     for dx in 0..3 {
-                        let l = f32x8::from_slice(simd, &light[dy][at + dx..at + dx + 8]);
-                        let a = f32x8::from_slice(simd, &cover[dy][at + dx..at + dx + 8]);
-                        rise[dy][dx] = l - own * a;
+                        rise[dy][dx] =
+                            eight(simd, light[dy], at + dx) - own * eight(simd, cover[dy], at + dx);
                     }
                 }
                 let [[nw, n, ne], [w, _, e], [sw, s, se]] = rise;
@@ -78,12 +73,12 @@ fn derivatives<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut
                 let laplacian = ((n + s) + (e + w)) * 0.666_666_7 + ((nw + ne) + (sw + se)) * 0.166_666_67;
                 write([gx, gy, height, laplacian], pixels);
             }
-        }
-    }
+        },
+    );
 }
 
 /// Lightness times coverage in place of lightness.
 #[inline(always)]
-fn covered<S: Simd>([l, a, b, alpha]: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
+fn weighted<S: Simd>([l, a, b, alpha]: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
     [l * alpha, a, b, alpha]
 }

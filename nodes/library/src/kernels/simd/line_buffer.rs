@@ -3,8 +3,8 @@
 //! any column.
 
 use crate::kernels::simd::pixels::{eight, read};
-use isophote_engine::View;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
+use isophote_engine::{Band, View};
 
 /// Columns of a strip. Bands are worked through in strips so that their rows stay in the first-level
 /// cache.
@@ -114,6 +114,44 @@ pub fn pixels<S: Simd>(simd: S, channels: &[&[f32]; 4], at: usize) -> [f32x8<S>;
         values[c] = eight(simd, channels[c], at);
     }
     values
+}
+
+/// A row of a strip, whose neighbourhood a line buffer holds.
+#[derive(Clone, Copy, Debug)]
+pub struct Row<'a> {
+    /// The rows around it.
+    pub held: &'a LineBuffer,
+    /// Columns of the strip, the second one exclusive.
+    pub columns: [i32; 2],
+    /// The row.
+    pub y: i32,
+}
+
+/// Runs `f` on every row of a band in strips of `width` columns, with the rows up to `radius` pixels around it
+/// in a line buffer, each after `map`; `f` is given the values of output 0 to fill, `N` a pixel.
+#[inline(always)]
+pub fn for_rows<S: Simd, const N: usize>(
+    simd: S,
+    view: &View<'_>,
+    band: &mut Band<'_>,
+    [width, radius]: [i32; 2],
+    map: impl Fn([f32x8<S>; 4]) -> [f32x8<S>; 4] + Copy,
+    mut f: impl FnMut(Row<'_>, &mut [f32]),
+) {
+    let window = band.window;
+    let mut held = LineBuffer::default();
+    for (x0, x1) in strips_of(width, window.x0, window.x1) {
+        held.start(x0, x1, radius, 4);
+        for y in window.y0 - radius..window.y0 + radius {
+            held.load_mapped(simd, view, y, map);
+        }
+        for y in window.y0..window.y1 {
+            held.load_mapped(simd, view, y + radius, map);
+            let start = N * (x0 - window.x0) as usize;
+            let target = &mut band.row_mut(0, y)[start..start + N * (x1 - x0) as usize];
+            f(Row { held: &held, columns: [x0, x1], y }, target);
+        }
+    }
 }
 
 /// The strips of columns `x0..x1`.

@@ -1,7 +1,7 @@
 //! The eight neighbours of eight pixels, for kernels of small support.
 
-use crate::kernels::simd::line_buffer::{LineBuffer, strips};
-use crate::kernels::simd::pixels::{Block, write};
+use crate::kernels::simd::line_buffer::{LineBuffer, STRIP, for_rows};
+use crate::kernels::simd::pixels::{BLOCK, Block, write};
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, View};
 
@@ -44,22 +44,19 @@ pub fn each<S: Simd>(
     band: &mut Band<'_>,
     mut f: impl FnMut(Neighbours<'_, S>) -> [f32x8<S>; 4],
 ) {
-    let window = band.window;
-    let mut rows = LineBuffer::default();
-    for (x0, x1) in strips(window.x0, window.x1) {
-        rows.start(x0, x1, 1, 4);
-        for y in window.y0 - 1..window.y0 + 1 {
-            rows.load(simd, view, y);
-        }
-        for y in window.y0..window.y1 {
-            rows.load(simd, view, y + 1);
-            let start = 4 * (x0 - window.x0) as usize;
-            let target = &mut band.row_mut(0, y)[start..start + 4 * (x1 - x0) as usize];
-            for (i, pixels) in target.chunks_mut(32).enumerate() {
-                let block = Block::until(x1, x0 + 8 * i as i32, y);
-                let around = Neighbours { simd, block, rows: &rows, at: 1 + 8 * i };
-                write(f(around), pixels);
+    for_rows::<S, 4>(
+        simd,
+        view,
+        band,
+        [STRIP, 1],
+        std::convert::identity,
+        #[inline(always)]
+        |row, target| {
+            for (i, pixels) in target.chunks_mut(4 * BLOCK).enumerate() {
+                let at = BLOCK * i;
+                let block = Block::until(row.columns[1], row.columns[0] + at as i32, row.y);
+                write(f(Neighbours { simd, block, rows: row.held, at: 1 + at }), pixels);
             }
-        }
-    }
+        },
+    );
 }

@@ -81,11 +81,8 @@ fn channels<S: Simd, const N: usize>(simd: S, values: &[f32]) -> [f32x8<S>; N] {
     const { assert!(N == 1 || N == 2 || N == 4) }
     let mut out = [f32x8::splat(simd, 0.0); N];
     if N == 4 {
-        let pixels: [f32x8<S>; 4] = load4(simd, &values[..4 * BLOCK]);
-        // A plain loop: array functions stay calls in code for wide vectors.
-        for c in 0..N {
-            out[c] = pixels[c];
-        }
+        let [r, g, b, a] = load4(simd, &values[..4 * BLOCK]);
+        (out[0], out[1 % N], out[2 % N], out[3 % N]) = (r, g, b, a);
     } else if N == 2 {
         let (low, high) = (eight(simd, values, 0), eight(simd, values, BLOCK));
         (out[0], out[N - 1]) = low.deinterleave(high);

@@ -8,8 +8,8 @@
 //! Cost: 60 operations (exponential: 100); memory takes longer.
 
 pub use crate::kernels::shaders::perona_malik::Params;
-use crate::kernels::simd::line_buffer::{LineBuffer, WIDE_STRIP, pixels, strips_of};
-use crate::kernels::simd::pixels::write;
+use crate::kernels::simd::line_buffer::{Row, WIDE_STRIP, for_rows, pixels};
+use crate::kernels::simd::pixels::{BLOCK, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -67,21 +67,17 @@ fn diffused<S: Simd, const EXPONENTIAL: bool>(
     params: &Params,
     band: &mut Band<'_>,
 ) {
-    let window = band.window;
-    let view = &pass.inputs[0];
-    let mut rows = LineBuffer::default();
-    for (x0, x1) in strips_of(WIDE_STRIP, window.x0, window.x1) {
-        rows.start(x0, x1, 1, 4);
-        for y in window.y0 - 1..=window.y0 {
-            rows.load(simd, view, y);
-        }
-        for y in window.y0..window.y1 {
-            rows.load(simd, view, y + 1);
-            let (above, centre, below) = (rows.channels(y - 1), rows.channels(y), rows.channels(y + 1));
-            let target =
-                &mut band.row_mut(0, y)[4 * (x0 - window.x0) as usize..4 * (x1 - window.x0) as usize];
-            for (i, target) in target.chunks_mut(32).enumerate() {
-                let at = 8 * i + 1;
+    for_rows::<S, 4>(
+        simd,
+        &pass.inputs[0],
+        band,
+        [WIDE_STRIP, 1],
+        std::convert::identity,
+        #[inline(always)]
+        |Row { held, y, .. }, target| {
+            let (above, centre, below) = (held.channels(y - 1), held.channels(y), held.channels(y + 1));
+            for (i, target) in target.chunks_mut(4 * BLOCK).enumerate() {
+                let at = BLOCK * i + 1;
                 let origin = pixels(simd, &centre, at);
                 let neighbours = [
                     pixels(simd, &centre, at - 1),
@@ -91,8 +87,8 @@ fn diffused<S: Simd, const EXPONENTIAL: bool>(
                 ];
                 write(block::<S, EXPONENTIAL>(simd, &origin, &neighbours, params), target);
             }
-        }
-    }
+        },
+    );
 }
 
 #[inline(always)]

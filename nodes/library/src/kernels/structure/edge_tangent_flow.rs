@@ -14,8 +14,8 @@
 
 pub use crate::kernels::shaders::edge_tangent_flow::Params;
 use crate::kernels::shared::tensor::axis;
-use crate::kernels::simd::line_buffer::{LineBuffer, strips};
-use crate::kernels::simd::pixels::{eight, write};
+use crate::kernels::simd::line_buffer::{self, Row, STRIP, for_rows};
+use crate::kernels::simd::pixels::{BLOCK, eight, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -102,8 +102,6 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 
 #[inline(always)]
 fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
-    let window = band.window;
-    let view = &pass.inputs[0];
     let inverse = 1.0 / pass.inputs[1].pixel1(0, 0).max(f32::MIN_POSITIVE);
     let [reach_x, reach_y] = params.reach;
     // Neighbours of a row: how far they lie to either side, and the weights.
@@ -113,18 +111,16 @@ fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
         (-reach_y..=reach_y).filter_map(|j| half(j).map(|i| (j, i, weight(j.abs())))).collect();
     let radius = reach_x.max(reach_y);
     let zero = f32x8::splat(simd, 0.0);
-    let mut held = LineBuffer::default();
-    for (x0, x1) in strips(window.x0, window.x1) {
-        held.start(x0, x1, radius, 4);
-        for y in window.y0 - radius..window.y0 + radius {
-            held.load(simd, view, y);
-        }
-        for y in window.y0..window.y1 {
-            held.load(simd, view, y + radius);
-            let start = 4 * (x0 - window.x0) as usize;
-            let target = &mut band.row_mut(0, y)[start..start + 4 * (x1 - x0) as usize];
-            for (block, pixels) in target.chunks_mut(32).enumerate() {
-                let centre = radius as usize + 8 * block;
+    for_rows::<S, 4>(
+        simd,
+        &pass.inputs[0],
+        band,
+        [STRIP, radius],
+        std::convert::identity,
+        #[inline(always)]
+        |Row { held, y, .. }, target| {
+            for (block, pixels) in target.chunks_mut(4 * BLOCK).enumerate() {
+                let centre = radius as usize + BLOCK * block;
                 let (mut plain, mut strong) = ([zero; 3], [zero; 3]);
                 for &(j, half, wy) in &spans {
                     let len = 2 * half as usize + 8;
@@ -147,14 +143,11 @@ fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
                         ];
                     }
                 }
-                let mut own = [zero; 4];
-                for (c, own) in own.iter_mut().enumerate() {
-                    *own = eight(simd, held.row(y, c), centre);
-                }
+                let own = line_buffer::pixels(simd, &held.channels(y), centre);
                 write(turned(simd, params, own, plain, strong, inverse), pixels);
             }
-        }
-    }
+        },
+    );
 }
 
 /// The centre's tensor after the pass.

@@ -12,8 +12,8 @@
 
 pub use crate::kernels::shaders::gradient_tensor::Params;
 use crate::kernels::shared::outer_product::outer_product;
-use crate::kernels::simd::line_buffer::{LineBuffer, WIDE_STRIP, strips_of};
-use crate::kernels::simd::pixels::{eight, premultiply, write};
+use crate::kernels::simd::line_buffer::{LineBuffer, Row, WIDE_STRIP, for_rows};
+use crate::kernels::simd::pixels::{BLOCK, eight, premultiply, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -174,36 +174,32 @@ struct Weights {
 
 #[inline(always)]
 fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, band: &mut Band<'_>) {
-    let window = band.window;
-    let view = &pass.inputs[0];
     let r = radius as usize;
     let flat = |table: &Table| std::array::from_fn(|i| table[i / 4][i % 4]);
     let weights = Weights { smoothing: flat(&params.smoothing), derivative: flat(&params.derivative) };
     let zero = f32x8::splat(simd, 0.0);
-    let mut rows = LineBuffer::default();
     // Column sums of one row: smoothed and derived, four channels each.
     let mut columns: Vec<f32> = Vec::new();
-    for (x0, x1) in strips_of(WIDE_STRIP, window.x0, window.x1) {
-        rows.start(x0, x1, radius, 4);
-        let len = rows.stride();
-        columns.resize(8 * len, 0.0);
-        for y in window.y0 - radius..window.y0 + radius {
-            rows.load_mapped(simd, view, y, premultiply);
-        }
-        for y in window.y0..window.y1 {
-            rows.load_mapped(simd, view, y + radius, premultiply);
+    for_rows::<S, 4>(
+        simd,
+        &pass.inputs[0],
+        band,
+        [WIDE_STRIP, radius],
+        premultiply,
+        #[inline(always)]
+        |Row { held, y, .. }, target| {
+            let len = held.stride();
+            columns.resize(8 * len, 0.0);
             for (channel, sums) in columns.chunks_exact_mut(2 * len).enumerate() {
-                sum_columns(simd, &rows, &weights, r, y, channel, sums);
+                sum_columns(simd, held, &weights, r, y, channel, sums);
             }
-            let start = 4 * (x0 - window.x0) as usize;
-            let target = &mut band.row_mut(0, y)[start..start + 4 * (x1 - x0) as usize];
-            let centres: [&[f32]; 4] = std::array::from_fn(|c| rows.row(y, c));
+            let centres = held.channels(y);
             let sums: [[&[f32]; 2]; 4] = std::array::from_fn(|c| {
                 let (smoothed, derived) = columns[2 * c * len..][..2 * len].split_at(len);
                 [smoothed, derived]
             });
-            for (i, pixels) in target.chunks_mut(32).enumerate() {
-                let at = r + 8 * i;
+            for (i, pixels) in target.chunks_mut(4 * BLOCK).enumerate() {
+                let at = r + BLOCK * i;
                 // Loops, not closures given to arrays: those stay calls, and every operation in them one.
                 let (mut centre, mut gradients) = ([zero; 4], [[zero; 2]; 4]);
                 for c in 0..4 {
@@ -213,8 +209,8 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
                 let (flags, scale, threshold) = (params.flags, params.scale, params.threshold);
                 write(outer_product(simd, flags, scale, threshold, centre, gradients), pixels);
             }
-        }
-    }
+        },
+    );
 }
 
 /// Smooths and derives along the columns: one channel of row `y`, first all smoothed, then all derived.
