@@ -5,6 +5,7 @@ use isophote::Request;
 use isophote::request::Planned;
 use isophote::spec::{ImageKind, NodeSpec};
 use isophote_engine::cpu::{CallingThread, CpuExecutor, Pool, Threads};
+use isophote_engine::dispatch::levels;
 use isophote_engine::fearless_simd::Level;
 use isophote_engine::{Image, Plan, Rect, Support};
 use isophote_tests::cases::{self, Setting};
@@ -147,20 +148,6 @@ fn the_number_of_threads_changes_nothing(spec: &'static NodeSpec) -> Vec<String>
         }
     }
     wrong
-}
-
-/// Every instruction set that this machine can run.
-fn levels() -> Vec<(&'static str, Level)> {
-    #[cfg_attr(not(target_arch = "x86_64"), allow(unused_mut))]
-    let mut levels = vec![("baseline", Level::baseline())];
-    #[cfg(target_arch = "x86_64")]
-    {
-        let best = Level::new();
-        levels.extend(best.as_sse4_2().map(|l| ("SSE4.2", Level::Sse4_2(l))));
-        levels.extend(best.as_avx2().map(|l| ("AVX2", Level::Avx2(l))));
-        levels.extend(best.as_avx512().map(|l| ("AVX-512", Level::Avx512(l))));
-    }
-    levels
 }
 
 fn instruction_sets_differ_by_rounding_only(spec: &'static NodeSpec) -> Vec<String> {

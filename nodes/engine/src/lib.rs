@@ -5,6 +5,7 @@
 //! graphics API, and [`gpu`] runs that with wgpu.
 
 pub mod cpu;
+pub mod dispatch;
 pub mod error;
 #[cfg(feature = "gpu")]
 pub mod gpu;
@@ -16,7 +17,12 @@ pub mod plan;
 pub mod program;
 
 pub use error::{Error, Result};
-pub use fearless_simd;
 pub use image::{Image, Rect, View};
 pub use kernel::{Band, CpuPass, Kernel, Tolerance};
 pub use plan::{Class, ImageId, Plan, PlanBuilder, Support};
+
+/// The vectors that kernels compute with, and [`dispatch!`](crate::dispatch!) in place of its own.
+pub mod fearless_simd {
+    pub use crate::dispatch;
+    pub use ::fearless_simd::*;
+}

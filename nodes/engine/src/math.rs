@@ -6,7 +6,7 @@
 
 #[cfg(target_arch = "x86_64")]
 use fearless_simd::Avx2;
-use fearless_simd::{Level, Simd, f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, prelude::*};
+use fearless_simd::{Simd, f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, prelude::*};
 
 const LN2_HIGH: f32 = 0.693_359_4;
 const LN2_LOW: f32 = -2.121_944_4e-4;
@@ -216,7 +216,7 @@ pub fn transposed<S: Simd>(p: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
 #[inline(always)]
 fn zip_halves<S: Simd>(a: f32x8<S>, b: f32x8<S>) -> (f32x8<S>, f32x8<S>) {
     #[cfg(target_arch = "x86_64")]
-    if let Level::Avx2(avx2) = a.simd.level() {
+    if let Some(avx2) = a.simd.level().as_avx2() {
         // The compiler would split the vectors and join them again.
         let (simd, a, b) =
             (a.simd, f32x8::simd_from(avx2, a.to_array()), f32x8::simd_from(avx2, b.to_array()));
@@ -254,7 +254,8 @@ pub fn spread<S: Simd>(factor: f32x8<S>) -> [f32x8<S>; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fearless_simd::{Level, dispatch};
+    use crate::dispatch;
+    use fearless_simd::Level;
 
     fn apply(
         f: impl Fn(f32) -> f64,

@@ -1,0 +1,83 @@
+//! Which instruction sets pixel code is compiled for.
+//!
+//! On x86-64: SSE2, which every machine has, AVX2 with FMA and, in builds without debug assertions,
+//! AVX-512 as of Ice Lake. Each makes builds half as long again, so that builds for development do with two.
+//! Elsewhere: what fearless_simd chooses.
+
+#[doc(hidden)]
+pub use fearless_simd as vectors;
+use fearless_simd::Level;
+
+/// Runs `$op` with vectors `$simd` of the widest instruction set that `$level` has and this build knows.
+///
+/// Everything that `$op` calls must be `#[inline(always)]`, or it is compiled for every machine.
+#[macro_export]
+macro_rules! dispatch {
+    (@on $token:expr, $simd:pat => $op:expr) => {{
+        let token = $token;
+        let $simd = $crate::dispatch::of_any(token);
+        $crate::dispatch::vectors::Simd::vectorize(
+            token,
+            #[inline(always)]
+            || $op,
+        )
+    }};
+    ($level:expr, $simd:pat => $op:expr) => {{
+        let level: $crate::dispatch::vectors::Level = $level;
+        #[cfg(not(target_arch = "x86_64"))]
+        let result = $crate::dispatch::vectors::dispatch!(level, $simd => $op);
+        #[cfg(target_arch = "x86_64")]
+        let result = match (level.as_avx512(), level.as_avx2(), level.as_sse2()) {
+            #[cfg(not(debug_assertions))]
+            (Some(token), _, _) => $crate::dispatch!(@on token, $simd => $op),
+            (_, Some(token), _) => $crate::dispatch!(@on token, $simd => $op),
+            (_, _, Some(token)) => $crate::dispatch!(@on token, $simd => $op),
+            (_, _, None) => unreachable!("x86-64 has SSE2"),
+        };
+        result
+    }};
+}
+
+/// Hides which instruction set it is, so that code is written for all.
+#[doc(hidden)]
+#[inline(always)]
+pub fn of_any<S: fearless_simd::Simd>(simd: S) -> impl fearless_simd::Simd {
+    simd
+}
+
+/// The instruction sets that this build knows and this machine has, each with its name, from the narrowest to
+/// the widest. Code for another one runs as the next narrower one listed here.
+pub fn levels() -> Vec<(&'static str, Level)> {
+    #[cfg(not(target_arch = "x86_64"))]
+    let levels = vec![("the only one", Level::new())];
+    #[cfg(target_arch = "x86_64")]
+    let levels = {
+        let widest = Level::new();
+        let mut levels = Vec::new();
+        levels.extend(widest.as_sse2().map(|token| ("SSE2", Level::Sse2(token))));
+        levels.extend(widest.as_avx2().map(|token| ("AVX2", Level::Avx2(token))));
+        #[cfg(not(debug_assertions))]
+        levels.extend(widest.as_avx512().map(|token| ("AVX-512", Level::Avx512(token))));
+        levels
+    };
+    levels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fearless_simd::{Simd, SimdBase, f32x8};
+
+    #[test]
+    fn every_level_is_dispatched_to() {
+        let known = levels();
+        assert!(!known.is_empty());
+        for (name, level) in known {
+            let dispatched = crate::dispatch!(level, simd => {
+                let sum = f32x8::splat(simd, 1.5) + f32x8::splat(simd, 0.5);
+                (format!("{:?}", simd.level()), sum.as_slice()[7])
+            });
+            assert_eq!(dispatched, (format!("{level:?}"), 2.0), "{name}");
+        }
+    }
+}
