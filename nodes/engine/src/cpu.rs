@@ -12,5 +12,6 @@ mod threads;
 
 pub use control::{Control, PassTime};
 pub use executor::CpuExecutor;
+#[cfg(feature = "gpu")]
 pub(crate) use images::bind_inputs;
 pub use threads::{CallingThread, Pool, Threads};

@@ -1,4 +1,4 @@
-//! The GPU executor: same results as the CPU's, tiles, warm runs, lent devices, errors.
+//! The GPU executor: same results as the CPU's, tiles, warm runs, devices of hosts, errors.
 #![cfg(feature = "gpu")]
 #![allow(missing_docs)]
 
@@ -214,7 +214,7 @@ fn download(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture,
 #[test]
 fn a_host_records_several_programs_into_one_submission() {
     let Some(owner) = device() else { return };
-    // What a host has: a device of its own, of which it lends us handles.
+    // What a host has: a device of its own, of which we get handles.
     let (raw, queue) = (owner.raw().clone(), owner.queue().clone());
     let device = Device::wrap(raw.clone(), queue.clone());
     let executor = Executor::new(Arc::clone(&device));
@@ -345,9 +345,9 @@ fn passes_are_timed() {
 }
 
 /// `BOX` with another shader.
-fn spoiled(shader: String) -> Plan {
+fn custom(shader: String) -> Plan {
     let kernel: &'static Kernel =
-        Box::leak(Box::new(Kernel { shader: shader.leak(), name: "spoiled", ..BOX }));
+        Box::leak(Box::new(Kernel { shader: shader.leak(), name: "custom", ..BOX }));
     let mut b = PlanBuilder::new(8, 8).unwrap();
     let source = b.input("source", 4, Class::Colour);
     let result =
@@ -370,16 +370,16 @@ fn a_bad_shader_is_an_error_of_one_line() {
         String::new(),
     ];
     for shader in shaders {
-        let plan = spoiled(shader);
+        let plan = custom(shader);
         let result =
             executor.run_images(&plan, &[("source", &source)], Rect::of_size(8, 8), Control::default());
         match result {
-            Err(Error::Device(e)) => assert!(e.contains("'spoiled'") && !e.contains('\n'), "{e}"),
+            Err(Error::Device(e)) => assert!(e.contains("'custom'") && !e.contains('\n'), "{e}"),
             other => panic!("{other:?}"),
         }
         device.check().unwrap();
     }
-    let fine = spoiled(BOX.shader.to_owned());
+    let fine = custom(BOX.shader.to_owned());
     on_gpu(&mut executor, &fine, &source, Rect::of_size(8, 8));
 }
 
@@ -438,9 +438,9 @@ fn a_lost_device_is_an_error() {
             other => panic!("{other:?}"),
         }
     }
-    // A lent device tells its owner, not us; there, too, nothing may panic.
-    let lent = Device::wrap(device.raw().clone(), device.queue().clone());
-    let lost = Executor::new(lent).run_images(&plan, &[("source", &source)], whole, Control::default());
+    // A host's device reports to the host, not to us; there, too, nothing may panic.
+    let wrapped = Device::wrap(device.raw().clone(), device.queue().clone());
+    let lost = Executor::new(wrapped).run_images(&plan, &[("source", &source)], whole, Control::default());
     assert!(matches!(lost, Err(Error::Device(_))), "{lost:?}");
 }
 

@@ -59,7 +59,7 @@ fn windows_grow_backwards_and_stop_at_the_edge() {
     assert_eq!(windows[source.index()], rect(5, 0, 25, 50));
     assert!(windows[dead.index()].is_empty() && windows[unused.index()].is_empty());
     assert_eq!(plan.support(), Support::Pixels(5));
-    // What nobody needs is neither asked for nor computed.
+    // What is not needed is neither asked for nor computed.
     let image = noise(100, 50, 4);
     assert_eq!(run(&plan, &[("source", &image)], Rect::of_size(100, 50)).len(), 2);
     let program = Program::lower(&plan, Rect::of_size(100, 50)).unwrap();
@@ -118,27 +118,28 @@ fn strips_compute_what_whole_passes_do() {
             let mut executor = CpuExecutor::new();
             executor.set_strip(Some(strip));
             executor.record_times(true);
-            let told = std::cell::RefCell::new(Vec::new());
-            let control = Control { cancelled: None, progress: Some(&|share| told.borrow_mut().push(share)) };
+            let shares = std::cell::RefCell::new(Vec::new());
+            let control =
+                Control { cancelled: None, progress: Some(&|share| shares.borrow_mut().push(share)) };
             // The second run finds the memory of the first.
             let mut results = Vec::new();
             for _ in 0..2 {
-                told.borrow_mut().clear();
+                shares.borrow_mut().clear();
                 results =
                     executor.run(&plan, &[("source", &source)], region, &CallingThread, control).unwrap();
             }
             assert_eq!(executor.times().len(), 5);
             assert_eq!(executor.times()[4].pixels, region.area());
-            (results, told.into_inner())
+            (results, shares.into_inner())
         };
         let (whole, once) = run(u32::MAX);
         assert_eq!(once.len(), 5);
         for strip in [1, 8, 13, 40] {
-            let (strips, told) = run(strip);
+            let (strips, shares) = run(strip);
             assert_eq!(strips, whole, "{region:?} in strips of {strip}");
             // Forty rows of so small a picture would take more memory than whole passes do.
-            assert_eq!(told.len() > 5, strip < 40, "{region:?} in strips of {strip}");
-            assert!(told.is_sorted() && told.last() == Some(&1.0), "{told:?}");
+            assert_eq!(shares.len() > 5, strip < 40, "{region:?} in strips of {strip}");
+            assert!(shares.is_sorted() && shares.last() == Some(&1.0), "{shares:?}");
         }
     }
 }

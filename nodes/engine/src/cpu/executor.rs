@@ -181,8 +181,8 @@ impl Run<'_> {
         window.area()
     }
 
-    /// The memory that a pass writes an image to, with room for the rows of the step. Rows that nobody
-    /// reads any more make it.
+    /// The memory that a pass writes an image to, with room for the rows of the step. Rows that are
+    /// not read any more give way.
     fn output(&mut self, step: usize, id: ImageId) -> Image {
         let at = id.index();
         let mut image = self.images.take(id).unwrap_or_else(|| {

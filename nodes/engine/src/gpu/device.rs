@@ -1,4 +1,4 @@
-//! A graphics device: the library's own, or one lent by a host.
+//! A graphics device: the library's own, or a host's.
 
 use super::pipeline::{self, Pipeline, Pipelines};
 use crate::error::{Error, Result};
@@ -318,7 +318,7 @@ impl Device {
 
 impl Drop for Device {
     fn drop(&mut self) {
-        // Drivers dislike being unloaded while they compute. A failure has nobody left to hear of it.
+        // Drivers dislike being unloaded while they compute. A failure can be reported to no one.
         if self.owned {
             let _ = self.wait(None);
         }

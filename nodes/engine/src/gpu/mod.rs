@@ -1,6 +1,6 @@
 //! The GPU executor of a plan, on wgpu.
 //!
-//! A [`Device`] is a graphics device of the library's own or one that a host lends. An [`Executor`]
+//! A [`Device`] is a graphics device of the library's own or a host's. An [`Executor`]
 //! turns programs into [`Prepared`] ones, which record their dispatches into a command encoder that
 //! the caller owns and submits; once warm they create nothing. [`Executor::run_images`] does the
 //! same for images in memory, in tiles where they are larger than the device takes.

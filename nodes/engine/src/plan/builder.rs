@@ -26,7 +26,7 @@ impl Plan {
     /// Describes the plan again with other uniform bytes, in place and without allocating.
     ///
     /// Returns false when the description took another course (other passes, other connections, or
-    /// passes that were shared and now differ); the plan is then spoiled and must be made anew, as it
+    /// passes that were shared and now differ); the plan is then invalid and must be made anew, as it
     /// is after an error.
     ///
     /// # Errors
@@ -257,17 +257,17 @@ impl PlanBuilder {
     ) -> ImageId {
         let plan = &mut self.plan;
         let Some(replay) = self.replay.as_mut().filter(|r| !r.diverged) else {
-            return self.astray(kernel, classes, level);
+            return self.diverge(kernel, classes, level);
         };
         let Some(&index) = plan.calls.get(replay.call) else {
-            return self.astray(kernel, classes, level);
+            return self.diverge(kernel, classes, level);
         };
         replay.call += 1;
         let pass = &mut plan.passes[index as usize];
         let descs = pass.outputs.iter().map(|o| plan.images[o.index()]);
         let same_outputs = descs.map(|d| (d.class, d.level)).eq(classes.iter().map(|c| (*c, level)));
         if !std::ptr::eq(pass.kernel, kernel) || pass.inputs != inputs || !same_outputs {
-            return self.astray(kernel, classes, level);
+            return self.diverge(kernel, classes, level);
         }
         let stamp = &mut plan.stamps[index as usize];
         if *stamp == plan.edit && (pass.params != params || pass.support != support) {
@@ -280,10 +280,10 @@ impl PlanBuilder {
         pass.outputs[0]
     }
 
-    /// Outputs for a pass that the plan does not have. The plan is spoiled then, but the description
+    /// Outputs for a pass that the plan does not have. The plan is invalid then, but the description
     /// goes on to its end and must meet images of the shapes it asked for: a pyramid described from a
     /// level that never changes would not end.
-    fn astray(&mut self, kernel: &'static Kernel, classes: &[Class], level: i8) -> ImageId {
+    fn diverge(&mut self, kernel: &'static Kernel, classes: &[Class], level: i8) -> ImageId {
         if let Some(replay) = &mut self.replay {
             replay.diverged = true;
         }

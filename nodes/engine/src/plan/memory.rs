@@ -28,7 +28,7 @@ impl Plan {
         windows[id.index()].area() * u64::from(self.desc(id).channels)
     }
 
-    /// Rows of a band of `region`, for whoever computes it band by band to save memory.
+    /// Rows of a band of `region`, for callers that compute it band by band to save memory.
     ///
     /// Images ([`Plan::peak_bytes`]) take at most `good` bytes, as long as bands are high against what is
     /// read around them, which is computed anew for each; beyond that they take at most `most`. Bands have

@@ -75,7 +75,7 @@ pub unsafe fn fill(target: *mut IsophoteText, value: &str) -> Outcome<()> {
     if buffer.data.is_null() && buffer.capacity > 0 {
         return Err(Failure::argument("the text to fill has a capacity and no data"));
     }
-    // Text ends at the first zero for whoever reads it; none of ours holds one.
+    // A reader takes the first zero for the end of the text; none of ours holds one.
     let mut end = value.len();
     if end >= buffer.capacity {
         end = buffer.capacity.saturating_sub(1);

@@ -59,7 +59,7 @@ pub unsafe fn create<T: Object>(
     call(inside, |message| unsafe { args::fill_message(error, message) })
 }
 
-/// The handle's object is dropped, once nobody uses it.
+/// Drops the handle's object once no call uses it.
 pub fn destroy<T: Object>(handle: u64) -> IsophoteStatus {
     call(
         || {

@@ -98,7 +98,7 @@ impl<T> Slots<T> {
             return Err(self.stale(handle));
         };
         let object = slot.object.take().ok_or_else(|| self.stale(handle))?;
-        // A slot whose generations are used up rests for ever.
+        // A slot whose generations are used up is not used again.
         if let Some(next) = slot.generation.checked_add(1) {
             slot.generation = next;
             entries.free.push(index as u32);

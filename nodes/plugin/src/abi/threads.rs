@@ -39,7 +39,7 @@ pub fn pool(threads: usize) -> Outcome<Arc<Pool>> {
     Ok(pool)
 }
 
-/// Lets the pools end that nobody uses.
+/// Ends the pools that no call uses.
 pub fn forget_pools() {
     let pools = std::mem::take(&mut *lock(&POOLS));
     drop(pools);
@@ -152,7 +152,7 @@ impl Batch {
             }
             state.running += 1;
         }
-        // SAFETY: the batch was open when this job was counted as running, and whoever owns the closure
+        // SAFETY: the batch was open when this job was counted as running, and the owner of the closure
         // waits until none is.
         let outcome = catch_unwind(AssertUnwindSafe(|| unsafe { (*self.job)(index) }));
         let mut state = lock(&self.state);

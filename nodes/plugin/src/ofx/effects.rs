@@ -32,10 +32,11 @@ pub enum Form {
     Structure,
 }
 
-/// The space that nobody claims.
+/// The space of pixels that are in none of the others.
 pub const AS_IS: &CStr = c"As is";
 
-/// The spaces that pixels may be in. "As is" computes as sRGB does, and says that nobody claims it.
+/// The spaces that pixels may be in. "As is" computes as sRGB does, without
+/// a claim that the pixels are.
 pub const SPACES: [(&CStr, ColourSpace); 4] = [
     (c"Linear (Rec. 709)", ColourSpace::Linear),
     (c"sRGB", ColourSpace::Srgb),

@@ -72,22 +72,22 @@ impl<'h> Clip<'h> {
         if status != kOfxStatOK || handle.is_null() {
             return Ok(None);
         }
-        let image = Lent { host: self.host, handle };
+        let image = ImageHandle { host: self.host, handle };
         Fetched::of(image)
     }
 }
 
 /// An image that goes back to the host when it is dropped.
 #[derive(Debug)]
-struct Lent<'h> {
+struct ImageHandle<'h> {
     host: &'h Host,
     handle: Handle,
 }
 
-impl Drop for Lent<'_> {
+impl Drop for ImageHandle<'_> {
     fn drop(&mut self) {
         if let Some(release) = self.host.effects.clipReleaseImage {
-            // SAFETY: an image that the host lent and that goes back once.
+            // SAFETY: an image that the host gave and that goes back once.
             unsafe { release(self.handle) };
         }
     }
@@ -109,12 +109,12 @@ pub struct Fetched<'h> {
     pub aspect: Option<f64>,
     blue_first: bool,
     #[allow(dead_code, reason = "released when it is dropped")]
-    lent: Lent<'h>,
+    handle: ImageHandle<'h>,
 }
 
 impl<'h> Fetched<'h> {
-    fn of(lent: Lent<'h>) -> Outcome<Option<Self>> {
-        let set = lent.host.set(lent.handle);
+    fn of(handle: ImageHandle<'h>) -> Outcome<Option<Self>> {
+        let set = handle.host.set(handle.handle);
         let Some(data) = set.pointer(kOfxImagePropData) else { return Ok(None) };
         let Some(bounds) = set.ints::<4>(kOfxImagePropBounds) else { return Ok(None) };
         if bounds[0] >= bounds[2] || bounds[1] >= bounds[3] {
@@ -150,7 +150,7 @@ impl<'h> Fetched<'h> {
         };
         let aspect = set.double(kOfxImagePropPixelAspectRatio, 0).filter(|par| (0.01..100.0).contains(par));
         let blue_first = set.string(PIXEL_ORDER, 0).as_deref() == Some(PIXEL_ORDER_BGRA) && channels == 4;
-        Ok(Some(Self { data, row_bytes, sample, channels, bounds, alpha, aspect, blue_first, lent }))
+        Ok(Some(Self { data, row_bytes, sample, channels, bounds, alpha, aspect, blue_first, handle }))
     }
 
     /// The image as part of the picture, rows downwards: the host's top row is the first.
@@ -189,7 +189,7 @@ impl<'h> Fetched<'h> {
             return Ok(image);
         }
         let held = if held.is_empty() { nearest(&window, &checked.window) } else { held };
-        // SAFETY: the host lent the image, so that its memory may be read until it is released.
+        // SAFETY: the host gave the image, so that its memory may be read until it is released.
         let (mut part, _) = unsafe { checked.read(held, as_input) }.map_err(|_| kOfxStatErrMemory)?;
         if self.blue_first && channels == 4 {
             part.data_mut().chunks_exact_mut(4).for_each(|p| p.swap(0, 2));
@@ -247,7 +247,7 @@ impl<'h> Fetched<'h> {
         if self.blue_first && image.channels() == 4 {
             image.data_mut().chunks_exact_mut(4).for_each(|p| p.swap(0, 2));
         }
-        // SAFETY: the host lent the image to be written, until it is released.
+        // SAFETY: the host gave the image to be written, until it is released.
         unsafe { checked.write(&image) };
         Ok(())
     }

@@ -162,7 +162,7 @@ pub fn regions_of_interest(
     let guides = Guides { normal: has(GraphInput::Normal), depth: has(GraphInput::Depth), object_id: false };
     let prepared = Prepared::new(&settings, &frame, true, guides).map_err(|_| kOfxStatFailed)?;
     let windows = prepared.windows(region);
-    // Lines of the other field lend the first and last of a field their neighbours.
+    // The first and last line of a field have neighbours in the other field.
     let order = source.properties.string(kOfxImageClipPropFieldOrder, 0);
     let fields = order.is_some_and(|order| order.as_c_str() != kOfxImageFieldNone);
     let mut interest = Interest { answer, frame, fields, answered: false };

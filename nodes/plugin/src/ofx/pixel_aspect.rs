@@ -38,7 +38,7 @@ struct Axis {
     share: f64,
 }
 
-/// What one pixel lends to a new one: factors on its value, and on slope and curvature within it.
+/// What one pixel contributes to a new one: factors on its value, and on slope and curvature within it.
 #[derive(Clone, Copy, Debug)]
 struct Tap {
     at: i32,
@@ -262,7 +262,7 @@ fn across_rows(axis: &Axis, image: &Image, y: i32, depth: bool, target: &mut [f3
     }
 }
 
-/// Adds what a pixel lends: the difference to the `first` one, so that what is flat stays so exactly, and
+/// Adds what a pixel contributes: the difference to the `first` one, so that what is flat stays so exactly, and
 /// the parabola that it makes with the pixels before and after it.
 #[inline(always)]
 fn add(target: &mut [f32], first: &[f32], [before, here, after]: [&[f32]; 3], tap: &Tap) {
