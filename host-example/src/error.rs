@@ -1,5 +1,5 @@
 //! The host's one error type: every failure is a single line that says what is wrong, where, and how to
-//! mend it, and knows the exit code that goes with it.
+//! fix it, and knows the exit code that goes with it.
 
 use std::fmt::Display;
 use std::path::Path;
@@ -9,50 +9,50 @@ use std::path::Path;
 #[non_exhaustive]
 pub enum Error {
     /// The input or the way the program was called is at fault (exit code 2).
-    #[error("{place}: {problem}; {mend}")]
+    #[error("{place}: {problem}; {fix}")]
     Input {
         /// The file, option or value at fault.
         place: String,
         /// What is wrong with it.
         problem: String,
         /// How to put it right.
-        mend: String,
+        fix: String,
     },
     /// The machine or a device could not do its part (exit code 1).
-    #[error("{problem}; {mend}")]
+    #[error("{problem}; {fix}")]
     Failure {
         /// What went wrong.
         problem: String,
         /// How to put it right.
-        mend: String,
+        fix: String,
     },
 }
 
 impl Error {
     /// An [`Error::Input`] about a file.
-    pub fn file(path: &Path, problem: impl Display, mend: impl Display) -> Self {
-        Self::input(path.display(), problem, mend)
+    pub fn file(path: &Path, problem: impl Display, fix: impl Display) -> Self {
+        Self::input(path.display(), problem, fix)
     }
 
     /// An [`Error::Input`] about anything that has a name.
-    pub fn input(place: impl Display, problem: impl Display, mend: impl Display) -> Self {
-        Self::Input { place: one_line(place), problem: one_line(problem), mend: one_line(mend) }
+    pub fn input(place: impl Display, problem: impl Display, fix: impl Display) -> Self {
+        Self::Input { place: one_line(place), problem: one_line(problem), fix: one_line(fix) }
     }
 
     /// An [`Error::Failure`].
-    pub fn failure(problem: impl Display, mend: impl Display) -> Self {
-        Self::Failure { problem: one_line(problem), mend: one_line(mend) }
+    pub fn failure(problem: impl Display, fix: impl Display) -> Self {
+        Self::Failure { problem: one_line(problem), fix: one_line(fix) }
     }
 
     /// The same of a file that names the place at fault.
     #[must_use]
     pub fn within(self, path: &Path) -> Self {
         match self {
-            Self::Input { place, problem, mend } => {
-                Self::Input { place: format!("{}: {place}", path.display()), problem, mend }
+            Self::Input { place, problem, fix } => {
+                Self::Input { place: format!("{}: {place}", path.display()), problem, fix }
             }
-            Self::Failure { problem, mend } => {
-                Self::Failure { problem: format!("{}: {problem}", path.display()), mend }
+            Self::Failure { problem, fix } => {
+                Self::Failure { problem: format!("{}: {problem}", path.display()), fix }
             }
         }
     }

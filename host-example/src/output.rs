@@ -154,7 +154,7 @@ fn beside(path: &Path) -> Result<tempfile::NamedTempFile> {
 }
 
 /// How the names of temporary files begin; machine and process follow, so that what a killed process left
-/// can be told from what another is just writing.
+/// is not mistaken for what another is writing.
 const TEMPORARY: &str = ".isophote-";
 
 /// Age after which a temporary file of another machine was left behind.

@@ -17,15 +17,15 @@ use image::{ImageBuffer, Rgb, RgbImage, Rgba};
 
 use crate::apply::convert;
 use crate::apply::exr::Selection;
-use crate::apply::filter::Light;
-use crate::apply::read::{self, Family};
+use crate::apply::filter::WorkingSpace;
+use crate::apply::read::{self, ImageState};
 use crate::apply::space::srgb_encode;
 use crate::error::{Error, Result};
 use crate::pixels::MOST_PIXELS;
 
 /// Pixels between and around pictures.
 const GAP: u32 = 12;
-/// Height of a line of text with what surrounds it.
+/// Height of a line of text with its margins.
 const LINE: u32 = 26;
 /// Columns of a letter.
 const LETTER: u32 = FONT_9X18.character_size.width;
@@ -47,12 +47,12 @@ pub fn cells(path: &Path, label: &str, width: u32) -> Result<Vec<Cell>> {
     let several = source.pictures.len() > 1;
     let mut cells = Vec::with_capacity(source.pictures.len());
     for (view, picture) in source.pictures.iter().enumerate() {
-        let light = Light::of(None, source.family, picture);
-        let pixels = match &light.change {
+        let working = WorkingSpace::of(None, source.state, picture);
+        let pixels = match &working.change {
             Some((there, _)) => convert::changed(&picture.pixels, there).0,
             None => picture.pixels.clone(),
         };
-        let pixels = convert::between(pixels, source.family, light.space, Family::Display);
+        let pixels = convert::between(pixels, source.state, working.space, ImageState::DisplayReferred);
         let (wide, high, channels) = (pixels.width(), pixels.height(), pixels.channels() as usize);
         let mut numbers = Vec::with_capacity(wide as usize * high as usize * 4);
         for pixel in pixels.to_f32().chunks_exact(channels) {
@@ -60,7 +60,7 @@ pub fn cells(path: &Path, label: &str, width: u32) -> Result<Vec<Cell>> {
                 [r, g, b, a] => ([r, g, b], a.clamp(0.0, 1.0)),
                 [r, g, b] => ([r, g, b], 1.0),
                 // Numbers of light have no colours to convert.
-                [v, ..] if source.family == Family::Light => ([srgb_encode(v.max(0.0)); 3], 1.0),
+                [v, ..] if source.state == ImageState::SceneReferred => ([srgb_encode(v.max(0.0)); 3], 1.0),
                 [v, ..] => ([v; 3], 1.0),
                 [] => continue,
             };

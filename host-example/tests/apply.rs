@@ -201,7 +201,7 @@ fn exr_keeps_its_other_channels_and_its_windows() {
 }
 
 #[test]
-fn bad_pixels_are_mended_and_told_of() {
+fn bad_pixels_are_replaced_and_reported() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
     exr::prelude::write_rgb_file(at("in.exr"), 16, 16, |x, y| {

@@ -1,4 +1,4 @@
-//! Bad input of every kind: one line that says what, where and how to mend it, the right exit code, and no file
+//! Bad input of every kind: one line that says what, where and how to fix it, the right exit code, and no file
 //! left behind.
 
 mod support;
@@ -51,7 +51,7 @@ fn pictures() {
             apply_fails(folder.path(), "gaussian", &name, &[], &[&name, "damaged", "intact"]);
         }
         let mut spoiled = bytes.clone();
-        // Sizes and compression are told in the first bytes after the signature.
+        // Sizes and compression stand in the first bytes after the signature.
         for byte in spoiled.iter_mut().skip(8).take(24) {
             *byte ^= 0x5a;
         }

@@ -214,7 +214,7 @@ fn interrupted_runs_leave_whole_files() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn full_disks_and_read_only_folders_are_told_of() {
+fn full_disks_and_read_only_folders_are_reported() {
     let folder = folder();
     frames(folder.path(), 1..=2, 256);
     // A limit on the size of files fails as a full disk does, once its signal is ignored.

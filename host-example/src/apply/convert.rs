@@ -1,7 +1,7 @@
-//! From the numbers of one family of files to those of the other.
+//! Between display-referred and scene-referred numbers, and between primaries.
 
 use super::primaries::{Change, REC709};
-use super::read::Family;
+use super::read::ImageState;
 use super::space::{Space, srgb_decode, srgb_encode};
 use crate::pixels::{Pixels, Samples};
 
@@ -10,7 +10,7 @@ const LARGEST_HALF: f32 = 65504.0;
 
 /// Turns colours that a graph gave for a picture of `from` in `space` into what a file of `to` holds. PNG and
 /// JPEG become sRGB from whatever EXR held; EXR becomes light of the same primaries.
-pub fn between(pixels: Pixels, from: Family, space: Space, to: Family) -> Pixels {
+pub fn between(pixels: Pixels, from: ImageState, space: Space, to: ImageState) -> Pixels {
     if from == to {
         return pixels;
     }
@@ -26,7 +26,7 @@ pub fn between(pixels: Pixels, from: Family, space: Space, to: Family) -> Pixels
         let [r, g, b] = color;
         let mut rgb = [*r, *g, *b];
         match to {
-            Family::Display => {
+            ImageState::DisplayReferred => {
                 if alpha > 0.0 {
                     rgb = rgb.map(|v| v / alpha);
                 }
@@ -37,7 +37,7 @@ pub fn between(pixels: Pixels, from: Family, space: Space, to: Family) -> Pixels
                     rgb = rgb.map(srgb_encode);
                 }
             }
-            Family::Light => {
+            ImageState::SceneReferred => {
                 if space == Space::Srgb {
                     rgb = rgb.map(srgb_decode);
                 }
@@ -51,23 +51,23 @@ pub fn between(pixels: Pixels, from: Family, space: Space, to: Family) -> Pixels
     Pixels::new(width, height, channels, samples).unwrap_or(pixels)
 }
 
-/// Colours of other primaries, premultiplied or not; what is no number or infinite is mended first, as the
-/// library would, and counted, lest it spread to the other channels.
+/// Colours of other primaries, premultiplied or not; what is no number or infinite is replaced first, as the
+/// library would, and counted, so that it does not spread to the other channels.
 pub fn changed(pixels: &Pixels, change: &Change) -> (Pixels, u64) {
     let mut numbers = pixels.to_f32();
-    let mut mended = 0;
+    let mut replaced = 0;
     for pixel in numbers.chunks_exact_mut(pixels.channels() as usize) {
         if let Some(rgb) = pixel.first_chunk_mut::<3>() {
             for value in rgb.iter_mut().filter(|v| !v.is_finite()) {
                 *value = if value.is_nan() { 0.0 } else { LARGEST_HALF.copysign(*value) };
-                mended += 1;
+                replaced += 1;
             }
             *rgb = change.apply(*rgb);
         }
     }
     // As many numbers as there were.
     let changed = Pixels::new(pixels.width(), pixels.height(), pixels.channels(), Samples::F32(numbers));
-    (changed.unwrap_or_else(|| pixels.clone()), mended)
+    (changed.unwrap_or_else(|| pixels.clone()), replaced)
 }
 
 #[cfg(test)]
@@ -79,9 +79,11 @@ mod tests {
         let numbers: Vec<f32> =
             (0..8 * 4).map(|i| [0.0f32, 0.02, 0.5, 1.0][i % 4].max(0.01 * i as f32)).collect();
         let picture = Pixels::new(8, 1, 4, Samples::F32(numbers.clone())).unwrap();
-        let light = between(picture.clone(), Family::Display, Space::Srgb, Family::Light);
+        let light =
+            between(picture.clone(), ImageState::DisplayReferred, Space::Srgb, ImageState::SceneReferred);
         assert_ne!(light, picture);
-        let back = between(light, Family::Light, Space::Linear, Family::Display).to_f32();
+        let back =
+            between(light, ImageState::SceneReferred, Space::Linear, ImageState::DisplayReferred).to_f32();
         for (a, b) in back.iter().zip(&numbers) {
             assert!((a - b).abs() < 1e-5, "{a} {b}");
         }
@@ -90,7 +92,8 @@ mod tests {
     #[test]
     fn white_stays_white_and_primaries_widen() {
         let aces = Pixels::new(2, 1, 3, Samples::F32(vec![1.0, 1.0, 1.0, 0.0, 1.0, 0.0])).unwrap();
-        let display = between(aces, Family::Light, Space::Acescg, Family::Display).to_f32();
+        let display =
+            between(aces, ImageState::SceneReferred, Space::Acescg, ImageState::DisplayReferred).to_f32();
         assert!(display[..3].iter().all(|v| (v - 1.0).abs() < 1e-6));
         assert!(display[3] < 0.0 && display[4] > 1.0);
     }

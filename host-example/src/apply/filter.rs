@@ -6,7 +6,7 @@ use super::backend::Backend;
 use super::convert;
 use super::exr::{Guide, Picture};
 use super::primaries::{AP1, Change, REC709, same};
-use super::read::{Family, Opened, Source};
+use super::read::{ImageState, Opened, Source};
 use super::space::Space;
 use super::write::Format;
 use crate::error::Result;
@@ -37,7 +37,7 @@ pub struct Filtered {
     /// One for each picture that is written.
     pub results: Vec<Pixels>,
     /// Samples that were NaN or infinite and were replaced.
-    pub mended: u64,
+    pub replaced: u64,
 }
 
 /// Memory that a run needs, in bytes.
@@ -115,22 +115,22 @@ impl Filter {
         } else {
             source.pictures.get(..1).unwrap_or_default()
         };
-        let to = format.family(source.family);
+        let to = format.state(source.state);
         let scalar = self.style.kind != Kind::Color;
-        let mut filtered = Filtered { results: Vec::with_capacity(pictures.len()), mended: 0 };
+        let mut filtered = Filtered { results: Vec::with_capacity(pictures.len()), replaced: 0 };
         for (at, picture) in pictures.iter().enumerate() {
             let channels = match in_place {
                 Some(exr) => exr.result_channels(at, scalar),
                 None if scalar => 1,
                 None => picture.pixels.channels().max(3),
             };
-            let light = Light::of(self.space, source.family, picture);
-            let there = light.change.map(|(there, _)| convert::changed(&picture.pixels, &there));
+            let working = WorkingSpace::of(self.space, source.state, picture);
+            let there = working.change.map(|(there, _)| convert::changed(&picture.pixels, &there));
             let (color, bad) = there.as_ref().map_or((&picture.pixels, 0), |(pixels, bad)| (pixels, *bad));
-            filtered.mended += bad;
-            let precision = if to == source.family { color.precision() } else { Precision::F32 };
+            filtered.replaced += bad;
+            let precision = if to == source.state { color.precision() } else { Precision::F32 };
             let mut result = Pixels::zeroed(color.width(), color.height(), channels, precision);
-            let request = self.request(name, color, source.family, light.space)?;
+            let request = self.request(name, color, source.state, working.space)?;
             let mut inputs = vec![Input { name: "color", pixels: color }];
             inputs.extend(picture.guides.iter().map(|(name, pixels)| Input { name, pixels }));
             let share = 1.0 / pictures.len() as f32;
@@ -141,11 +141,11 @@ impl Filter {
                 .graph
                 .process(self.device.as_ref(), &request, &inputs, &mut result, &mut control)
                 .map_err(|e| e.at(name, "choose another picture or style"))?;
-            filtered.mended += report.mended;
+            filtered.replaced += report.replaced;
             if !scalar {
-                result = convert::between(result, source.family, light.space, to);
-                let is_shown = source.family == Family::Light && to == Family::Display;
-                if let Some((_, back)) = light.change.filter(|_| !is_shown) {
+                result = convert::between(result, source.state, working.space, to);
+                let is_shown = source.state == ImageState::SceneReferred && to == ImageState::DisplayReferred;
+                if let Some((_, back)) = working.change.filter(|_| !is_shown) {
                     result = convert::changed(&result, &back).0;
                 }
             }
@@ -154,7 +154,13 @@ impl Filter {
         Ok(filtered)
     }
 
-    fn request(&self, name: &str, color: &Pixels, family: Family, space: Space) -> Result<IsophoteRequest> {
+    fn request(
+        &self,
+        name: &str,
+        color: &Pixels,
+        state: ImageState,
+        space: Space,
+    ) -> Result<IsophoteRequest> {
         let size = (color.width(), color.height());
         let request = self.library.request(size).map_err(|e| e.at(name, "use a smaller picture"))?;
         Ok(IsophoteRequest {
@@ -163,40 +169,41 @@ impl Filter {
                 Space::Acescg => ISOPHOTE_SPACE_ACESCG,
                 _ => ISOPHOTE_SPACE_LINEAR,
             },
-            alpha: match family {
-                Family::Display => ISOPHOTE_ALPHA_STRAIGHT,
-                Family::Light => ISOPHOTE_ALPHA_PREMULTIPLIED,
+            alpha: match state {
+                ImageState::DisplayReferred => ISOPHOTE_ALPHA_STRAIGHT,
+                ImageState::SceneReferred => ISOPHOTE_ALPHA_PREMULTIPLIED,
             },
             ..request
         })
     }
 }
 
-/// What the library is told of a picture's numbers, and what it does not know and is done here.
-pub struct Light {
-    /// The space that the library is told.
+/// The colour space in which a picture is filtered, and the change of primaries to it, which the library does not
+/// know and which is done here.
+pub struct WorkingSpace {
+    /// The space of the request.
     pub space: Space,
-    /// To Rec.709 and back.
+    /// To Rec.709 and back, for primaries that a request cannot name.
     pub change: Option<(Change, Change)>,
 }
 
-impl Light {
+impl WorkingSpace {
     /// What `space` says, or what the file says without.
-    pub fn of(space: Option<Space>, family: Family, picture: &Picture) -> Self {
-        let told = |space| Self { space, change: None };
-        let primaries = match (space, family) {
+    pub fn of(space: Option<Space>, state: ImageState, picture: &Picture) -> Self {
+        let known = |space| Self { space, change: None };
+        let primaries = match (space, state) {
             (Some(Space::P3 | Space::Rec2020), _) => space.and_then(Space::primaries),
-            (Some(space), _) => return told(space),
-            (None, Family::Display) => return told(Space::Srgb),
-            (None, Family::Light) => picture.chromaticities,
+            (Some(space), _) => return known(space),
+            (None, ImageState::DisplayReferred) => return known(Space::Srgb),
+            (None, ImageState::SceneReferred) => picture.chromaticities,
         };
         let change = |from| Some((Change::new(from, REC709)?, Change::new(REC709, from)?));
         match primaries {
-            Some(c) if same(c, AP1) => told(Space::Acescg),
+            Some(c) if same(c, AP1) => known(Space::Acescg),
             Some(c) if !same(c, REC709) && picture.pixels.channels() > 1 => {
                 Self { space: Space::Linear, change: change(c) }
             }
-            _ => told(Space::Linear),
+            _ => known(Space::Linear),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Pictures from files: PNG, JPEG, TIFF, WebP, HDR and EXR, told apart by their first bytes.
+//! Pictures from files: PNG, JPEG, TIFF, WebP, HDR and EXR, recognized by their first bytes.
 
 use std::fs;
 use std::io::Cursor;
@@ -14,13 +14,13 @@ use crate::pixels::{MOST_PIXELS, Pixels, Precision, Samples};
 /// First bytes of an EXR file.
 const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
-/// What a kind of file means by its numbers.
+/// What the numbers of a file stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Family {
+pub enum ImageState {
     /// Encoded for displays, alpha apart from colour: PNG, JPEG, WebP and TIFF of integers.
-    Display,
+    DisplayReferred,
     /// Linear light, colour multiplied by alpha: EXR, HDR and TIFF of floats.
-    Light,
+    SceneReferred,
 }
 
 /// A picture with what is to be kept beside its pixels.
@@ -29,7 +29,7 @@ pub struct Source {
     /// What is to be filtered: one picture, or one for each view of an EXR file.
     pub pictures: Vec<Picture>,
     /// What the numbers mean.
-    pub family: Family,
+    pub state: ImageState,
     /// The colour profile of a PNG or JPEG file.
     pub profile: Option<Vec<u8>>,
     /// Everything else in an EXR file.
@@ -51,7 +51,7 @@ pub struct Opened(Kind);
 #[derive(Debug)]
 enum Kind {
     Exr(exr::Opened),
-    /// The bytes of another file, and what was chosen as if it were an EXR file.
+    /// The bytes of another file, and what was selected as if it were an EXR file.
     Other(Vec<u8>, Option<&'static str>),
 }
 
@@ -98,13 +98,13 @@ impl Opened {
     ///
     /// # Errors
     /// [`Error::Input`] when the file is of another kind, truncated, malformed or too large, or cannot have what
-    /// was chosen.
+    /// was selected.
     pub fn decode(self, path: &Path) -> Result<Source> {
         match self.0 {
             Kind::Exr(file) => {
                 let exr = file.decode(path)?;
                 let pictures = exr.pictures(path)?;
-                Ok(Source { pictures, family: Family::Light, profile: None, exr: Some(exr) })
+                Ok(Source { pictures, state: ImageState::SceneReferred, profile: None, exr: Some(exr) })
             }
             Kind::Other(_, Some(option)) => {
                 Err(Error::input(option, format!("'{}' is no EXR file", path.display()), "leave it out"))
@@ -201,9 +201,9 @@ fn picture(path: &Path, mut decoder: impl ImageDecoder, kind: &str) -> Result<So
     let pixels = Pixels::new(width, height, channels, samples)
         .ok_or_else(|| malformed(path, kind, "it does not hold as many pixels as it says"))?;
     let picture = Picture { pixels, guides: Vec::new(), chromaticities: None };
-    let family = match picture.pixels.precision() {
-        Precision::F16 | Precision::F32 => Family::Light,
-        Precision::U8 | Precision::U16 => Family::Display,
+    let state = match picture.pixels.precision() {
+        Precision::F16 | Precision::F32 => ImageState::SceneReferred,
+        Precision::U8 | Precision::U16 => ImageState::DisplayReferred,
     };
-    Ok(Source { pictures: vec![picture], family, profile, exr: None })
+    Ok(Source { pictures: vec![picture], state, profile, exr: None })
 }

@@ -1,4 +1,4 @@
-//! Telling how far a run is: a bar for people, lines of JSON for machines, a summary for both.
+//! Progress of a run: a bar for people, lines of JSON for programs, and a summary.
 
 use std::io::Write;
 use std::sync::{Mutex, PoisonError};
@@ -13,7 +13,7 @@ use crate::error::Error;
 /// What became of a frame.
 #[derive(Debug)]
 pub enum Outcome {
-    /// It was written; so many samples were mended.
+    /// It was written; so many samples were replaced.
     Written(u64),
     /// Its result was there already.
     Skipped,
@@ -35,10 +35,10 @@ pub struct Counts {
     /// Frames that could not be done.
     pub failed: u64,
     /// Samples that were NaN or infinite and were replaced.
-    pub mended: u64,
+    pub replaced: u64,
 }
 
-/// The one who tells.
+/// Prints the progress of a run and counts its frames.
 #[derive(Debug)]
 pub struct Report {
     bar: ProgressBar,
@@ -49,7 +49,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Of so many frames; a picture by itself is told of by its share of work done.
+    /// A report on so many frames; of a picture by itself the bar shows the share of the work done.
     pub fn new(frames: usize, sequence: bool, json: bool) -> Self {
         let bar = if json {
             ProgressBar::hidden()
@@ -77,11 +77,11 @@ impl Report {
     /// A frame is over.
     pub fn frame(&self, task: &Task, outcome: &Outcome) {
         let mut counts = self.counts.lock().unwrap_or_else(PoisonError::into_inner);
-        let (status, mended, problem) = match outcome {
-            Outcome::Written(mended) => {
+        let (status, replaced, problem) = match outcome {
+            Outcome::Written(replaced) => {
                 counts.written += 1;
-                counts.mended += mended;
-                ("written", *mended, None)
+                counts.replaced += replaced;
+                ("written", *replaced, None)
             }
             Outcome::Skipped => {
                 counts.skipped += 1;
@@ -96,9 +96,10 @@ impl Report {
                 ("failed", 0, Some(error.to_string()))
             }
         };
-        if mended > 0 {
+        if replaced > 0 {
             let name = task.input.display();
-            let warning = format!("warning: {name}: {mended} samples were NaN or infinite and were replaced");
+            let warning =
+                format!("warning: {name}: {replaced} samples were NaN or infinite and were replaced");
             self.bar.suspend(|| eprintln!("{warning}"));
         }
         if let (Some(problem), true) = (&problem, self.sequence && !self.json) {
@@ -113,7 +114,7 @@ impl Report {
             "status": status,
             "input": task.input.to_string_lossy(),
             "output": task.output.to_string_lossy(),
-            "mended": mended,
+            "replaced": replaced,
             "error": problem,
             "seconds": self.started.elapsed().as_secs_f64(),
         }));
@@ -130,7 +131,7 @@ impl Report {
             "skipped": counts.skipped,
             "missing": counts.missing,
             "failed": counts.failed,
-            "mended": counts.mended,
+            "replaced": counts.replaced,
             "seconds": seconds,
         }));
         if self.sequence && !self.json && whole && counts.failed == 0 {
@@ -139,7 +140,7 @@ impl Report {
                 (counts.skipped, "there already"),
                 (counts.missing, "missing"),
                 (counts.failed, "failed"),
-                (counts.mended, "samples mended"),
+                (counts.replaced, "samples replaced"),
             ] {
                 if count > 0 {
                     text += &format!(", {count} {what}");

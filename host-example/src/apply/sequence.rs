@@ -35,7 +35,7 @@ pub struct Run<'a> {
     pub skip_existing: bool,
     /// Memory of frames in flight.
     pub budget: &'a Budget,
-    /// Who is told.
+    /// Where progress is reported.
     pub report: &'a Report,
     /// Set when the run shall end early.
     pub stop: &'a Stop,
@@ -55,7 +55,7 @@ struct Done<'a> {
 }
 
 impl Run<'_> {
-    /// Does all frames. Frames that cannot be read or filtered are told of and left out; a run of one picture ends
+    /// Does all frames. Frames that cannot be read or filtered are reported and left out; a run of one picture ends
     /// with its error. `first` is the first frame, where it was opened before.
     ///
     /// # Errors
@@ -130,15 +130,15 @@ impl Run<'_> {
 
     fn write(&self, receive: &Receiver<Done<'_>>) -> Result<()> {
         for Done { ready: Ready { task, source, share }, filtered } in receive {
-            let mended = filtered.mended;
+            let replaced = filtered.replaced;
             write::write(&task.output, self.format, filtered.results, source)?;
             drop(share);
-            self.report.frame(task, &Outcome::Written(mended));
+            self.report.frame(task, &Outcome::Written(replaced));
         }
         Ok(())
     }
 
-    /// A frame of a sequence is told of; a picture by itself is the run.
+    /// A frame of a sequence is reported; a picture by itself ends the run.
     fn failed(&self, task: &Task, error: Error) -> Result<()> {
         if task.frame.is_none() {
             return Err(error);

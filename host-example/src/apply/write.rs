@@ -5,7 +5,7 @@ use std::path::Path;
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
 
 use super::exr::{Picture, fresh};
-use super::read::{Family, Source};
+use super::read::{ImageState, Source};
 use crate::error::{Error, Result};
 use crate::output;
 use crate::pixels::{Pixels, Precision, Samples};
@@ -46,17 +46,17 @@ impl Format {
         }
     }
 
-    /// What its numbers mean when they come from a picture of a family.
-    pub fn family(self, source: Family) -> Family {
+    /// What its numbers stand for when they come from a picture of another state.
+    pub fn state(self, source: ImageState) -> ImageState {
         match self {
-            Self::Png | Self::Jpeg => Family::Display,
+            Self::Png | Self::Jpeg => ImageState::DisplayReferred,
             Self::Tiff => source,
-            Self::Exr => Family::Light,
+            Self::Exr => ImageState::SceneReferred,
         }
     }
 }
 
-/// Writes the results of what `source` held, one for each of its pictures, in the meaning of `format`'s family.
+/// Writes the results of what `source` held, one for each of its pictures, in the image state of `format`.
 /// All of them go into an EXR file that came from one; of other files there is one picture.
 ///
 /// # Errors
@@ -77,7 +77,7 @@ pub fn write(path: &Path, format: Format, mut results: Vec<Pixels>, source: Sour
             output::write_beside(path, |file| fresh::write(file, &pixels))
         }
         Format::Png => {
-            // A float result has more to tell than 8 bits hold.
+            // A float result holds more than 8 bits can.
             let precision = match picture.pixels.precision() {
                 Precision::U8 => Precision::U8,
                 _ => Precision::U16,
@@ -88,27 +88,21 @@ pub fn write(path: &Path, format: Format, mut results: Vec<Pixels>, source: Sour
             output::write_beside(path, |file| {
                 let mut encoder = image::codecs::png::PngEncoder::new(file);
                 keep_profile(&mut encoder, source.profile);
-                told(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
+                as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
             })
         }
         Format::Tiff => {
-            let precision = match (source.family, picture.pixels.precision()) {
-                (Family::Light, _) => Precision::F32,
-                (Family::Display, Precision::U8) => Precision::U8,
-                (Family::Display, _) => Precision::U16,
+            let precision = match (source.state, picture.pixels.precision()) {
+                (ImageState::SceneReferred, _) => Precision::F32,
+                (ImageState::DisplayReferred, Precision::U8) => Precision::U8,
+                (ImageState::DisplayReferred, _) => Precision::U16,
             };
-            let mut pixels = pixels.converted(precision);
-            if precision == Precision::F32 && pixels.channels() == 1 {
-                let grey = pixels.to_f32().into_iter().flat_map(|v| [v; 3]).collect();
-                // Three samples for each that there was.
-                let (width, height) = (pixels.width(), pixels.height());
-                pixels = Pixels::new(width, height, 3, Samples::F32(grey)).unwrap_or(pixels);
-            }
+            let pixels = grey_as_rgb(pixels.converted(precision));
             let color = color_type(&pixels);
             output::write_beside(path, |file| {
                 let mut encoder = image::codecs::tiff::TiffEncoder::new(file);
                 keep_profile(&mut encoder, source.profile);
-                told(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
+                as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
             })
         }
         Format::Jpeg => {
@@ -117,10 +111,20 @@ pub fn write(path: &Path, format: Format, mut results: Vec<Pixels>, source: Sour
             output::write_beside(path, |file| {
                 let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(file, JPEG_QUALITY);
                 keep_profile(&mut encoder, source.profile);
-                told(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
+                as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
             })
         }
     }
+}
+
+/// Floats of one channel as three equal ones: TIFF files of grey floats are not written.
+fn grey_as_rgb(pixels: Pixels) -> Pixels {
+    if pixels.precision() != Precision::F32 || pixels.channels() != 1 {
+        return pixels;
+    }
+    let rgb = pixels.to_f32().into_iter().flat_map(|v| [v; 3]).collect();
+    // Three samples for each that there was.
+    Pixels::new(pixels.width(), pixels.height(), 3, Samples::F32(rgb)).unwrap_or(pixels)
 }
 
 /// EXR in the precision that the source deserves: 8 bits fit into halves, 16 do not.
@@ -139,7 +143,7 @@ fn keep_profile(encoder: &mut impl ImageEncoder, profile: Option<Vec<u8>>) {
     }
 }
 
-fn told(result: ImageResult<()>) -> std::result::Result<(), String> {
+fn as_text(result: ImageResult<()>) -> std::result::Result<(), String> {
     result.map_err(|e| e.to_string())
 }
 

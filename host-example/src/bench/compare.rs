@@ -33,13 +33,13 @@ impl Saved {
     /// # Errors
     /// [`Error::Input`] when the file cannot be read or is none.
     pub fn read(path: &Path) -> Result<Self> {
-        let mend = "give a file written by `isophote bench --save`";
-        let length = fs::metadata(path).map_err(|e| Error::file(path, e, mend))?.len();
+        let fix = "give a file written by `isophote bench --save`";
+        let length = fs::metadata(path).map_err(|e| Error::file(path, e, fix))?.len();
         if length > MOST_BYTES {
-            return Err(Error::file(path, "too long for a saved run", mend));
+            return Err(Error::file(path, "too long for a saved run", fix));
         }
-        let text = fs::read_to_string(path).map_err(|e| Error::file(path, e, mend))?;
-        Self::parse(&text).map_err(|problem| Error::file(path, problem, mend))
+        let text = fs::read_to_string(path).map_err(|e| Error::file(path, e, fix))?;
+        Self::parse(&text).map_err(|problem| Error::file(path, problem, fix))
     }
 
     fn parse(text: &str) -> std::result::Result<Self, String> {

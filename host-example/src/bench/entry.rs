@@ -13,7 +13,7 @@ pub struct Entry {
     pub seconds: f64,
     /// The whole call with the conversion of pixels in and out, where there is any.
     pub call_seconds: Option<f64>,
-    /// The passes; empty where they cannot be told apart.
+    /// The passes; empty where they are not timed apart.
     pub passes: Vec<PassEntry>,
 }
 

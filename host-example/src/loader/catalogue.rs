@@ -81,6 +81,11 @@ impl Kind {
         }
     }
 
+    /// Whether it can be written to a picture file.
+    pub const fn is_picture(self) -> bool {
+        matches!(self, Self::Color | Self::Scalar)
+    }
+
     /// For people.
     pub const fn name(self) -> &'static str {
         match self {

@@ -56,7 +56,7 @@ impl Library {
 }
 
 impl Graph {
-    /// Adds a node under a name of its own, and tells its index.
+    /// Adds a node under a name of its own, and returns its index.
     ///
     /// # Errors
     /// [`super::Refusal`] when there is no such node, or the name is taken.

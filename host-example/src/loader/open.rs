@@ -12,8 +12,8 @@ use crate::error::{Error, Result};
 /// Environment variable that names the library's file.
 const VARIABLE: &str = "ISOPHOTE_LIBRARY";
 
-/// How to mend most of what can be wrong.
-const MEND: &str = "build the library (cargo build -p isophote-plugin) or set ISOPHOTE_LIBRARY to its file";
+/// How to fix most of what can go wrong.
+const FIX: &str = "build the library (cargo build -p isophote-plugin) or set ISOPHOTE_LIBRARY to its file";
 
 /// The table of the library, and the file it came from.
 pub fn find() -> Result<(&'static IsophoteApi, PathBuf)> {
@@ -21,7 +21,7 @@ pub fn find() -> Result<(&'static IsophoteApi, PathBuf)> {
         if !path.is_file() {
             return Err(Error::failure(
                 format!("the library '{}' named by {VARIABLE} does not exist", path.display()),
-                MEND,
+                FIX,
             ));
         }
         return Ok((open(&path)?, path));
@@ -39,7 +39,7 @@ pub fn find() -> Result<(&'static IsophoteApi, PathBuf)> {
                 "the library {} was not found {places}in ../lib or among the system's",
                 Path::new(&name).display()
             ),
-            MEND,
+            FIX,
         )
     })?;
     let path = PathBuf::from(name);
@@ -53,13 +53,13 @@ pub fn open(path: &Path) -> Result<&'static IsophoteApi> {
     if is_cut(&absolute) {
         return Err(Error::failure(
             format!("'{}' cannot be loaded as a dynamic library: it is cut short", path.display()),
-            MEND,
+            FIX,
         ));
     }
     let library = load(absolute.as_os_str()).map_err(|e| {
         Error::failure(
             format!("'{}' cannot be loaded as a dynamic library: {}", path.display(), reason(&e)),
-            MEND,
+            FIX,
         )
     })?;
     table(library, path)
@@ -67,7 +67,7 @@ pub fn open(path: &Path) -> Result<&'static IsophoteApi> {
 
 fn load(name: &OsStr) -> std::result::Result<libloading::Library, libloading::Error> {
     // SAFETY: loading runs the library's initialisers. The file is the one that the user or the installation
-    // names as Isophote, whose initialisers do nothing; there is no way to tell beforehand.
+    // names as Isophote, whose initialisers do nothing; there is no way to know beforehand.
     unsafe { libloading::Library::new(name) }
 }
 
@@ -102,7 +102,7 @@ fn table(library: libloading::Library, path: &Path) -> Result<&'static IsophoteA
                 "'{}' is a dynamic library, but not Isophote: it has no function isophote_api",
                 path.display()
             ),
-            MEND,
+            FIX,
         ));
     };
     // SAFETY: the symbol is the library's entry, which takes any number.

@@ -26,7 +26,7 @@ pub struct Input<'a> {
 pub struct Control<'a> {
     /// Threads of the library; 0 for one per core.
     pub threads: u32,
-    /// Told the share of the work done.
+    /// Called with the share of the work done.
     pub progress: Option<&'a mut dyn FnMut(f32)>,
     /// Receives what each pass took; on the CPU only.
     pub measured: Option<&'a mut Vec<PassTime>>,
@@ -51,7 +51,7 @@ pub struct PassTime {
 #[derive(Clone, Copy, Debug)]
 pub struct Report {
     /// Samples that were NaN or infinite and were replaced.
-    pub mended: u64,
+    pub replaced: u64,
     /// Wall-clock time in seconds.
     pub seconds: f64,
 }
@@ -107,7 +107,7 @@ impl Graph {
             )
         };
         self.check(status)?;
-        Ok(Report { mended: report.replaced, seconds: report.seconds })
+        Ok(Report { replaced: report.replaced, seconds: report.seconds })
     }
 }
 

@@ -20,8 +20,8 @@ pub type Answer<T> = Result<T, Refusal>;
 
 impl Refusal {
     /// As the host's error. Devices, memory and mistakes of the library are failures; everything else is the
-    /// fault of the input at `place`, which `mend` puts right.
-    pub fn at(self, place: impl std::fmt::Display, mend: impl std::fmt::Display) -> Error {
+    /// fault of the input at `place`, which `fix` puts right.
+    pub fn at(self, place: impl std::fmt::Display, fix: impl std::fmt::Display) -> Error {
         match self.status {
             ISOPHOTE_NO_DEVICE => Error::failure(
                 self.message,
@@ -35,7 +35,7 @@ impl Refusal {
             ISOPHOTE_INVALID_HANDLE | ISOPHOTE_INTERNAL => {
                 Error::failure(self.message, "this is a mistake in the program; please report it")
             }
-            _ => Error::input(place, self.message, mend),
+            _ => Error::input(place, self.message, fix),
         }
     }
 }

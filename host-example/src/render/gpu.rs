@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::error::{Error, Result};
 
-/// What a machine without any adapter is told.
+/// What to install on a machine without any adapter.
 const NO_ADAPTER: &str = "install a graphics driver; a software one will do (on Debian: apt install mesa-vulkan-drivers libvulkan1)";
 
 /// A device with its queue and the errors it has reported.

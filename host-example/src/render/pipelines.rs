@@ -21,7 +21,7 @@ pub enum Pass {
     Geometry,
 }
 
-/// What tells one pipeline of a pass from another.
+/// What distinguishes the pipelines of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Variant {
     /// The pass.

@@ -45,20 +45,7 @@ impl Readback {
                 mapped_at_creation: false,
             }),
         };
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        encoder.copy_texture_to_buffer(
-            texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(pitch as u32),
-                    rows_per_image: None,
-                },
-            },
-            texture.size(),
-        );
-        gpu.queue.submit([encoder.finish()]);
+        copy(gpu, texture, &buffer, pitch);
         let slice = buffer.slice(..size);
         // Success shows in the mapping below.
         slice.map_async(wgpu::MapMode::Read, |_| {});
@@ -72,20 +59,40 @@ impl Readback {
                 )
             })?;
             for line in mapped.chunks_exact(pitch) {
-                let line = &line[..row];
-                match texture.format() {
-                    wgpu::TextureFormat::Rgba16Float => {
-                        data.extend(line.as_chunks::<2>().0.iter().map(|b| f16::from_le_bytes(*b).to_f32()));
-                    }
-                    wgpu::TextureFormat::Rgba8Unorm => {
-                        data.extend(line.iter().map(|b| f32::from(*b) / 255.0))
-                    }
-                    _ => data.extend(line.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b))),
-                }
+                decode(texture.format(), &line[..row], &mut data);
             }
         }
         buffer.unmap();
         self.buffer = Some(buffer);
         Ok(Picture { width, height, channels, data })
+    }
+}
+
+/// Copies a texture to a buffer whose rows are `pitch` bytes apart.
+fn copy(gpu: &Gpu, texture: &wgpu::Texture, buffer: &wgpu::Buffer, pitch: usize) {
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer,
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(pitch as u32),
+                rows_per_image: None,
+            },
+        },
+        texture.size(),
+    );
+    gpu.queue.submit([encoder.finish()]);
+}
+
+/// The numbers of one row.
+fn decode(format: wgpu::TextureFormat, line: &[u8], data: &mut Vec<f32>) {
+    match format {
+        wgpu::TextureFormat::Rgba16Float => {
+            data.extend(line.as_chunks::<2>().0.iter().map(|b| f16::from_le_bytes(*b).to_f32()));
+        }
+        wgpu::TextureFormat::Rgba8Unorm => data.extend(line.iter().map(|b| f32::from(*b) / 255.0)),
+        _ => data.extend(line.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b))),
     }
 }

@@ -1,4 +1,4 @@
-//! Frames of small scenes whose geometry buffer and motion can be told in advance. They need an adapter, a
+//! Frames of small scenes whose geometry buffer and motion are known in advance. They need an adapter, a
 //! software one included; without any they say so, and fail where `ISOPHOTE_REQUIRE_GPU` is set.
 
 use glam::{Mat4, Quat, Vec2, Vec3};

@@ -36,7 +36,7 @@ pub enum DecodeProblem {
 }
 
 impl Image {
-    /// Decodes PNG or JPEG, told apart by their first bytes.
+    /// Decodes PNG or JPEG, recognized by their first bytes.
     ///
     /// # Errors
     /// [`DecodeProblem`]: another format, or a damaged file.

@@ -70,11 +70,11 @@ impl Preset {
     /// [`Error::Input`] for what is no JSON, keys that are not known, naming the nearest, and values that no
     /// parameter can have.
     pub fn parse(path: &Path, text: &str) -> Result<Self> {
-        let mend = "correct the preset";
+        let fix = "correct the preset";
         let json: Value = serde_json::from_str(text)
             .map_err(|e| Error::file(path, format!("is no JSON: {e}"), "correct the file"))?;
         let Value::Object(mut file) = json else {
-            return Err(Error::file(path, "is no preset: an object is wanted", mend));
+            return Err(Error::file(path, "is no preset: an object is wanted", fix));
         };
         if let Some(key) = file.keys().find(|key| !KEYS.contains(&key.as_str())) {
             let known = nearest(key, KEYS.into_iter()).map_or_else(
@@ -96,7 +96,7 @@ impl Preset {
         };
         let params = match file.remove("parameters") {
             Some(Value::Object(params)) => params,
-            Some(_) => return Err(Error::file(path, "its parameters are no object", mend)),
+            Some(_) => return Err(Error::file(path, "its parameters are no object", fix)),
             None => Map::new(),
         };
         let params = params
@@ -161,16 +161,16 @@ fn track(place: &str, value: Value) -> Result<Track> {
             (BETWEEN, Some("step")) => Some(true),
             (BETWEEN, Some("linear")) => Some(false),
             (BETWEEN, _) => {
-                let mend = "write \"between\": \"linear\" or \"step\"";
-                return Err(Error::input(place, "does not say how values change between frames", mend));
+                let fix = "write \"between\": \"linear\" or \"step\"";
+                return Err(Error::input(place, "does not say how values change between frames", fix));
             }
             _ => {
                 let problem = format!("'{}' is no number of a frame", key.escape_default());
-                let mend = nearest(&key, [BETWEEN].into_iter()).map_or_else(
+                let fix = nearest(&key, [BETWEEN].into_iter()).map_or_else(
                     || "write keyframes such as {\"1001\": 2, \"1050\": 6}".to_owned(),
                     |near| format!("did you mean '{near}'?"),
                 );
-                return Err(Error::input(place, problem, mend));
+                return Err(Error::input(place, problem, fix));
             }
         };
     }
@@ -326,8 +326,8 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told() {
-        for (text, told) in [
+    fn messages_name_what_is_wrong() {
+        for (text, message) in [
             ("{", "is no JSON"),
             ("[]", "an object is wanted"),
             (r#"{"styl": "ink"}"#, "did you mean 'style'?"),
@@ -341,7 +341,7 @@ mod tests {
             (r#"{"style": "ink", "parameters": {"a": {"1": 2, "between": "smooth"}}}"#, "linear"),
         ] {
             let error = parse(text).unwrap_err();
-            assert!(error.contains(told) && !error.contains('\n'), "{text}: {error}");
+            assert!(error.contains(message) && !error.contains('\n'), "{text}: {error}");
         }
     }
 

@@ -73,7 +73,7 @@ impl Style {
     /// that is no picture, and parameters that do not exist or cannot have their value.
     pub fn load(library: &Library, name: &str, settings: &[Setting]) -> Result<Self> {
         let style = Self::any(library, name, settings)?;
-        if !matches!(style.kind, Kind::Color | Kind::Scalar) {
+        if !style.kind.is_picture() {
             return Err(Error::input(
                 name,
                 format!("yields a {}, which is no picture", style.kind.name()),
@@ -152,7 +152,7 @@ impl Style {
         Ok(())
     }
 
-    /// Sets a parameter of the node that is named, or of the only one that has it. Tells the index of the node
+    /// Sets a parameter of the node that is named, or of the only one that has it. Returns the index of the node
     /// and what it says about itself.
     ///
     /// # Errors
@@ -171,8 +171,8 @@ impl Style {
             named.push((node, graph.name(node).map_err(fail)?, graph.spec(node).map_err(fail)?));
         }
         let put = |(node, _, spec): &(u32, String, Node)| {
-            let mend = format!("`isophote nodes {}` lists its parameters", spec.id);
-            graph.set(*node, &setting.param, &setting.value).map_err(|e| e.at(place, mend))?;
+            let fix = format!("`isophote nodes {}` lists its parameters", spec.id);
+            graph.set(*node, &setting.param, &setting.value).map_err(|e| e.at(place, fix))?;
             Ok((*node, spec.clone()))
         };
         if let Some(wanted) = &setting.node {
@@ -257,12 +257,12 @@ fn open(library: &Library, style: &str) -> Result<Opened> {
 }
 
 fn read(path: &Path) -> Result<String> {
-    let mend = "name a graph file or a preset (.json), or a node";
+    let fix = "name a graph file or a preset (.json), or a node";
     let size = fs::metadata(path).map_or(0, |m| m.len());
     if size > MOST_BYTES {
-        return Err(Error::file(path, "is too large for a graph or a preset", mend));
+        return Err(Error::file(path, "is too large for a graph or a preset", fix));
     }
-    fs::read_to_string(path).map_err(|e| Error::file(path, format!("cannot be read: {e}"), mend))
+    fs::read_to_string(path).map_err(|e| Error::file(path, format!("cannot be read: {e}"), fix))
 }
 
 /// Feeds what a single node needs and no picture gives, such as a tensor, from the first node of the catalogue
@@ -276,7 +276,7 @@ fn fed(library: &Library, mut graph: Graph) -> Answer<Graph> {
                 && n.inputs.iter().all(|p| p.optional || is_picture(p))
                 && n.id != spec.id
         };
-        // Without one the input stays open, which the library tells when it plans.
+        // Without one the input stays open, which the library reports when it plans.
         let Some(feeder) = nodes.iter().find(makes) else { continue };
         let index = graph.add(port.id, feeder.id)?;
         for picture in feeder.inputs.iter().filter(|p| is_picture(p)) {

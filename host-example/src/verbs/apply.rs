@@ -25,29 +25,29 @@ use crate::stylize::style::{Setting, Style};
 /// Options of `apply`.
 #[derive(Args, Debug)]
 pub struct ApplyArgs {
-    /// The id of a node, or a graph file or preset (.json); left out with --preset.
+    /// The id of a node, or a graph file or preset (.json). Left out where --preset is given.
     pub style: PathBuf,
-    /// The picture: PNG, JPEG, TIFF, WebP, HDR or EXR; shot.####.exr, shot.@@@@.exr or shot.%04d.exr for a sequence.
+    /// The picture: PNG, JPEG, TIFF, WebP, HDR or EXR. A sequence: shot.####.exr, shot.@@@@.exr or shot.%04d.exr.
     pub input: PathBuf,
-    /// The result: .png, .jpg, .tif or .exr; may be the same file. Of a sequence with a place for the number too.
+    /// The result: .png, .jpg, .tif or .exr; may be the input itself. For a sequence with #### as well.
     #[arg(required_unless_present = "preset")]
     pub output: Option<PathBuf>,
     /// A preset file with the style and its parameters.
     #[arg(long, value_name = "FILE")]
     pub preset: Option<PathBuf>,
-    /// Frames of the sequence, such as 1001-1100x2,1200; without it all that are on disk.
+    /// Frames of the sequence, such as 1001-1100x2,1200 [default: all that are on disk].
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub frames: Option<FrameList>,
     /// What to do when frames of the sequence have no file.
     #[arg(long, value_enum, default_value_t = OnMissing::Fail)]
     pub on_missing: OnMissing,
-    /// Most memory, such as 4GiB; decides how many frames are in flight. At most 4GiB without.
+    /// Limit of memory, such as 8GiB, which decides how many frames are worked on at once [default: 4GiB].
     #[arg(long, value_name = "SIZE")]
     pub memory: Option<Bytes>,
-    /// Leaves results alone that are there already and whole.
+    /// Skips frames whose result is there already and complete.
     #[arg(long)]
     pub skip_existing: bool,
-    /// Says what would be done, and does nothing.
+    /// Prints what would be done, and does nothing.
     #[arg(long)]
     pub dry_run: bool,
     /// Prints a line of JSON for every frame.
@@ -56,27 +56,28 @@ pub struct ApplyArgs {
     /// Sets a parameter; node.id=value for one node of a graph. May be repeated.
     #[arg(long, value_name = "ID=VALUE")]
     pub set: Vec<Setting>,
-    /// Where the work is done; auto takes a graphics card if there is one, otherwise the CPU.
+    /// Where the filter runs.
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub backend: Backend,
-    /// What the numbers of the picture mean, and the result's; without it sRGB for files of integers, what
-    /// its chromaticities say or else linear for EXR, linear for other floats.
+    /// Colour space of the picture and of the result; without it sRGB for integers, linear for floats, and what
+    /// the chromaticities of an EXR file say.
     #[arg(long, value_enum)]
     pub space: Option<Space>,
-    /// The layer of an EXR file that is read and replaced; without it the main one.
+    /// The layer of an EXR file that is read and replaced [default: the main layer].
     #[arg(long, value_name = "LAYER")]
     pub layer: Option<String>,
-    /// The view of an EXR file with several; without it all views are filtered, each by itself.
+    /// The view of a multi-view EXR file [default: all views, each filtered by itself].
     #[arg(long, value_name = "VIEW")]
     pub view: Option<String>,
-    /// The channel of an EXR file that is the layer's alpha, or none; without it the layer's A.
+    /// The channel of an EXR file that is the layer's alpha, or none [default: the layer's A].
     #[arg(long, value_name = "CHANNEL")]
     pub alpha: Option<String>,
-    /// Adds the result to the EXR file as a new layer, and leaves the one that was read as it was.
+    /// Adds the result to the EXR file as a new layer of this name, and keeps the layer that was read.
     #[arg(long, value_name = "NEWLAYER")]
     pub into: Option<String>,
-    /// The layer of an EXR file that is a guide: normal=LAYER, depth=LAYER or object_id=LAYER; =none for
-    /// no such guide. Without it guides are found by names such as N, normal, Z, depth, P and id. May be repeated.
+    /// The layer of an EXR file that guides the filter: normal=LAYER, depth=LAYER or object_id=LAYER, or none
+    /// instead of a layer. Without it guides are found by names such as N, normal, Z, depth, P and id. May be
+    /// repeated.
     #[arg(long, value_name = "GUIDE=LAYER")]
     pub guide: Vec<GuideChoice>,
     /// Threads on the CPU; 0 for one per core.
@@ -143,7 +144,7 @@ fn check_complete(input: &Path, counts: &Counts, frames: usize, stop: &Stop) -> 
     if stop.is_requested() {
         return Err(Error::failure(
             format!("stopped after {} frames were written", counts.written),
-            "start again with --skip-existing to go on",
+            "start again with --skip-existing to resume",
         ));
     }
     if counts.failed > 0 {

@@ -20,38 +20,39 @@ use crate::render::gpu::Gpu;
 /// Sizes that are measured when none is given.
 const SIZES: [(u32, u32); 2] = [(1280, 720), (1920, 1080)];
 
-/// Options of `bench`. Times are medians of warm runs and leave out reading and writing of pixels.
+/// Options of `bench`.
 #[derive(Args, Debug)]
+#[command(after_help = "Times are medians of warm runs, without the conversion of pixels in and out.")]
 pub struct BenchArgs {
-    /// Everything, as JSON.
+    /// Prints JSON.
     #[arg(long)]
     json: bool,
-    /// Where to measure; on both without.
+    /// Where to measure [default: both].
     #[arg(long, value_enum)]
     backend: Option<BenchBackend>,
-    /// Size of the picture in pixels; without it 1280x720 and 1920x1080.
+    /// Size of the picture in pixels [default: 1280x720 and 1920x1080].
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
-    /// Only this node, with other values than the defaults where they follow, such as
-    /// oriented_bilateral,iterations=1. May be repeated.
+    /// Measures only this node, with parameters after commas, such as oriented_bilateral,iterations=1. May be
+    /// repeated.
     #[arg(long, value_name = "ID[,PARAM=VALUE]...")]
     node: Vec<String>,
-    /// Also writes what is measured to this file, for --compare.
+    /// Also writes the measurements to this file, for --compare.
     #[arg(long, value_name = "FILE")]
     save: Option<PathBuf>,
-    /// Sets every time against that of a run saved before: x0.50 is twice as fast. Load of the machine
-    /// changes times as much as code does, so that both runs should find it idle.
+    /// Compares with an earlier run, saved with --save: x0.50 is twice as fast. Both runs need an otherwise idle
+    /// machine.
     #[arg(long, value_name = "FILE")]
     compare: Option<PathBuf>,
-    /// Instead finishes a sequence of so many EXR frames (half floats, ZIP) on the CPU, from file to file, and
-    /// sets the time against that of filtering alone; cartoon at 1920x1080 without --node and --size.
+    /// Measures a sequence of so many EXR frames (half floats, ZIP) on the CPU instead, from file to file, and
+    /// compares it with filtering alone; cartoon at 1920x1080 unless --node and --size say otherwise.
     #[arg(long, value_name = "FRAMES", conflicts_with_all = ["save", "compare", "markdown", "backend"],
         value_parser = clap::value_parser!(u32).range(1..=10_000))]
     sequence: Option<u32>,
-    /// Prints a table in Markdown, beside what other programs take for the like where that was measured.
+    /// Prints a table in Markdown, beside the times of comparable programs where those are known.
     #[arg(long, conflicts_with = "json")]
     markdown: bool,
-    /// Runs whose median counts, after one that does not.
+    /// Timed runs, of which the median counts, after one that is not timed.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     runs: u32,
 }

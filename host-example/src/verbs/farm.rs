@@ -29,23 +29,23 @@ pub struct FarmArgs {
 /// What `farm` does.
 #[derive(Debug, Subcommand)]
 enum FarmCommand {
-    /// Writes an Open Job Description template (jobtemplate-2023-09) of an apply command.
+    /// Writes an Open Job Description template (jobtemplate-2023-09) for an apply command.
     Openjd(OpenJdArgs),
 }
 
 /// Options of `farm openjd`.
 #[derive(Args, Debug)]
 struct OpenJdArgs {
-    /// The template: .json; on standard output without.
+    /// The template file (.json) [default: standard output].
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Name of the job.
     #[arg(long)]
     name: Option<String>,
-    /// Frames of a task, by the extension TASK_CHUNKING; one without.
+    /// Frames per task, by the extension TASK_CHUNKING [default: 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     chunk: Option<u32>,
-    /// The command: apply with its arguments, after --.
+    /// The command after --: apply with its arguments.
     #[arg(last = true, required = true)]
     command: Vec<String>,
 }

@@ -12,9 +12,9 @@ const WIDTH: usize = 90;
 /// Options of `nodes`.
 #[derive(Args, Debug)]
 pub struct NodesArgs {
-    /// A node, to be shown with its parameters.
+    /// A node, to list its parameters.
     node: Option<String>,
-    /// Everything, as JSON.
+    /// Prints JSON.
     #[arg(long)]
     json: bool,
 }

@@ -12,16 +12,20 @@ use crate::output;
 use crate::stylize::preset::{self, Preset, Track};
 use crate::stylize::style::{Setting, Style};
 
+const AFTER_HELP: &str = "A parameter in the file may have keyframes instead of a value, such as \
+    \"sigma_d\": {\"1001\": 2, \"1050\": 6}; with \"between\": \"step\" among them each value holds until the \
+    next key.";
+
 /// Options of `preset`.
 #[derive(Args, Debug)]
+#[command(after_help = AFTER_HELP)]
 pub struct PresetArgs {
     /// What to do.
     #[command(subcommand)]
     command: PresetCommand,
 }
 
-/// What can be done to presets. Parameters in them may have keyframes instead of a value:
-/// `"sigma_d": {"1001": 2, "1050": 6}`, with `"between": "step"` for values that hold until the next key.
+/// What can be done with presets.
 #[derive(Debug, Subcommand)]
 enum PresetCommand {
     /// Writes a style with its parameters to a file.
@@ -33,10 +37,10 @@ enum PresetCommand {
         /// Sets a parameter; node.id=value for one node of a graph. May be repeated.
         #[arg(long, value_name = "ID=VALUE")]
         set: Vec<Setting>,
-        /// Writes the parameters that are not set too, so that other defaults would change nothing.
+        /// Also writes the parameters that are not set, so that later changes of defaults do not matter.
         #[arg(long)]
         all: bool,
-        /// Replaces the file if there is one.
+        /// Overwrites the file if it exists.
         #[arg(long)]
         force: bool,
     },
@@ -44,11 +48,11 @@ enum PresetCommand {
     Show {
         /// The preset.
         file: PathBuf,
-        /// With the values at this frame instead of keyframes.
+        /// Prints the values at this frame instead of the keyframes.
         #[arg(long, value_name = "N", allow_negative_numbers = true)]
         frame: Option<i64>,
     },
-    /// Tells whether presets can be used as they are, and what is wrong with those that cannot.
+    /// Checks whether presets can be used, and prints what is wrong with those that cannot.
     Check {
         /// The presets.
         #[arg(required = true)]
@@ -181,7 +185,7 @@ fn check(library: &Library, files: &[PathBuf]) -> Result<()> {
     }
     if wrong > 0 {
         let problem = format!("{wrong} of {} cannot be used", files.len());
-        return Err(Error::input("presets", problem, "correct what is told above"));
+        return Err(Error::input("presets", problem, "correct what is reported above"));
     }
     Ok(())
 }

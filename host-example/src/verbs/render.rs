@@ -145,12 +145,12 @@ fn choose_animation(args: &RenderArgs, scene: &Scene) -> Result<Option<usize>> {
         Some(name) => {
             let known: Vec<&str> = scene.animations.iter().map(|a| a.name.as_str()).collect();
             scene.find_animation(name).map(Some).ok_or_else(|| {
-                let mend = if known.is_empty() {
+                let fix = if known.is_empty() {
                     "the scene has no animations".to_owned()
                 } else {
                     format!("choose from {}", known.join(", "))
                 };
-                Error::input("--animation", format!("'{name}' is not an animation of the scene"), mend)
+                Error::input("--animation", format!("'{name}' is not an animation of the scene"), fix)
             })
         }
         None if args.animate && scene.animations.is_empty() => Err(Error::file(

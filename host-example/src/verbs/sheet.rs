@@ -8,22 +8,22 @@ use crate::error::{Error, Result};
 use crate::output;
 use crate::sheet::{arranged, cells};
 
-/// Options of `sheet`. Pictures are shown as displays show them: light is encoded for sRGB, and what is brighter
-/// than white is white.
+/// Options of `sheet`.
 #[derive(Args, Debug)]
+#[command(after_help = "Scene-linear pictures are encoded for sRGB; values above 1 are clipped.")]
 pub struct SheetArgs {
-    /// The sheet: .png.
+    /// The contact sheet: .png.
     sheet: PathBuf,
-    /// The pictures, in the order of the sheet; all views of EXR files.
+    /// The pictures, from left to right and from top to bottom; of multi-view EXR files all views.
     #[arg(required = true)]
     pictures: Vec<PathBuf>,
-    /// Pictures in a row; without it up to four.
+    /// Pictures in a row [default: up to 4].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     columns: Option<u32>,
     /// Width of each picture in pixels.
     #[arg(long, value_name = "PIXELS", default_value_t = 640, value_parser = clap::value_parser!(u32).range(16..=8192))]
     width: u32,
-    /// What stands under a picture instead of its name; may be given for each, in their order.
+    /// Label of a picture instead of its name. May be repeated, in the order of the pictures.
     #[arg(long, value_name = "TEXT")]
     label: Vec<String>,
 }

@@ -14,20 +14,20 @@ use crate::view::viewer::{Options, Viewer, usable_styles};
 pub struct ViewArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// A style for the keys 1, 2, ...: none, the id of a node or a graph file (.json); may be given several
-    /// times. Without it: none and every node of the group styles.
+    /// A style for the keys 1, 2, ...: none, the id of a node, or a graph file or preset (.json). May be repeated
+    /// [default: none and every node of the group styles].
     #[arg(long, value_name = "STYLE")]
     style: Vec<String>,
-    /// Sets a parameter of the styles; may be given several times.
+    /// Sets a parameter of the styles that have it. May be repeated.
     #[arg(long, value_name = "ID=VALUE")]
     set: Vec<Setting>,
     /// Size of the window in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
     size: (u32, u32),
-    /// Closes after so many frames.
+    /// Closes the window after so many frames.
     #[arg(long, value_name = "N")]
     frames: Option<u32>,
-    /// Prints adapter, frames and milliseconds of each style when the window is closed.
+    /// Prints the adapter, and the frames and milliseconds of each style, when the window is closed.
     #[arg(long)]
     report: bool,
 }

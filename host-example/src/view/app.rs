@@ -93,7 +93,7 @@ impl App {
         Ok(())
     }
 
-    /// Ends the viewer on an error, unless a new device may mend it.
+    /// Ends the viewer on an error, unless a new device may help.
     fn handle(&mut self, event_loop: &ActiveEventLoop, result: Result<()>) {
         let Err(error) = result else { return };
         let lost = self.stage.as_ref().is_some_and(Stage::is_lost);

@@ -101,6 +101,12 @@ impl NodeSpec {
         self.own_params.iter().chain(common)
     }
 
+    /// True for nodes that read a colour and need nothing else: those that are effects by themselves.
+    pub fn reads_colour_alone(&self) -> bool {
+        self.inputs.iter().any(|p| p.kind == ImageKind::Color)
+            && self.inputs.iter().all(|p| p.optional || p.kind == ImageKind::Color)
+    }
+
     /// True for nodes from colour to colour.
     pub fn has_mix(&self) -> bool {
         self.output.kind == ImageKind::Color && self.inputs.iter().any(|p| p.kind == ImageKind::Color)

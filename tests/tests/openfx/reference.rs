@@ -28,13 +28,9 @@ pub struct Expected {
 
 /// The effects of the registry.
 pub fn expected() -> Vec<Expected> {
-    let colour_alone = |n: &NodeSpec| {
-        n.inputs.iter().any(|p| p.kind == ImageKind::Color)
-            && n.inputs.iter().all(|p| p.optional || p.kind == ImageKind::Color)
-    };
     let is_effect = |n: &&'static NodeSpec| {
         n.id == "tensor_view"
-            || (matches!(n.output.kind, ImageKind::Color | ImageKind::Scalar) && colour_alone(n))
+            || (matches!(n.output.kind, ImageKind::Color | ImageKind::Scalar) && n.reads_colour_alone())
     };
     let nodes = isophote::registry::nodes().iter().copied().filter(is_effect);
     nodes.map(|node| Expected { node }).collect()

@@ -120,8 +120,7 @@ fn text(text: &str) -> CString {
 impl Effect {
     /// The effect that a node becomes, if it becomes one.
     fn of(node: &'static NodeSpec) -> Option<Self> {
-        let from_colour = node.inputs.iter().any(|p| p.kind == ImageKind::Color)
-            && node.inputs.iter().all(|p| p.optional || p.kind == ImageKind::Color);
+        let from_colour = node.reads_colour_alone();
         let find = |id| isophote::registry::find(id).ok();
         match node.output.kind {
             ImageKind::Color if from_colour => Self::new(Form::Colour, vec![node], node),
@@ -273,8 +272,7 @@ mod tests {
         let ids: BTreeSet<&CStr> = EFFECTS.iter().map(|e| e.identifier.as_c_str()).collect();
         assert_eq!(ids.len(), EFFECTS.len());
         for node in isophote::registry::nodes() {
-            let alone = node.inputs.iter().all(|p| p.optional || p.kind == ImageKind::Color);
-            if node.group == "styles" || (node.has_mix() && alone) {
+            if node.group == "styles" || (node.has_mix() && node.reads_colour_alone()) {
                 assert!(ids.contains(text(&format!("{PREFIX}{}", node.id)).as_c_str()), "{}", node.id);
             }
         }
