@@ -34,6 +34,11 @@ impl Error {
         Self::input(path.display(), problem, fix)
     }
 
+    /// An [`Error::Input`] about a picture that its decoder refuses.
+    pub fn malformed(path: &Path, kind: &str, problem: impl Display) -> Self {
+        Self::file(path, format!("is damaged and cannot be read as {kind}: {problem}"), "use an intact file")
+    }
+
     /// An [`Error::Input`] about anything that has a name.
     pub fn input(place: impl Display, problem: impl Display, fix: impl Display) -> Self {
         Self::Input { place: one_line(place), problem: one_line(problem), fix: one_line(fix) }

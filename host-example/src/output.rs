@@ -5,10 +5,8 @@ use std::fs;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, SmallVec, WritableImage,
-};
 use half::f16;
+use isophote_exr_edit::{Plane, create};
 
 use crate::apply::space::srgb_encode;
 use crate::error::{Error, Result};
@@ -105,23 +103,26 @@ fn save_png(path: &Path, picture: &Picture) -> Result<()> {
 /// # Errors
 /// [`Error::Input`] when the folder is missing or cannot be written.
 pub fn save_exr(path: &Path, picture: &Picture, names: &[&str], precision: Precision) -> Result<()> {
-    let channel = |(index, name): (usize, &&str)| {
-        let values = picture.data.iter().skip(index).step_by(picture.channels).copied();
-        let samples = match precision {
-            Precision::Half => FlatSamples::F16(values.map(f16::from_f32).collect()),
-            Precision::Float => FlatSamples::F32(values.collect()),
-        };
-        AnyChannel::new(*name, samples)
+    let image = create::Picture {
+        width: picture.width as usize,
+        height: picture.height as usize,
+        channels: planes(&picture.data, picture.channels, names, precision),
+        ..create::Picture::default()
     };
-    let channels: SmallVec<[_; 4]> = names.iter().take(picture.channels).enumerate().map(channel).collect();
-    let layer = Layer::new(
-        (picture.width as usize, picture.height as usize),
-        LayerAttributes::default(),
-        Encoding::SMALL_LOSSLESS,
-        AnyChannels::sort(channels),
-    );
-    let image = exr::prelude::Image::from_layer(layer);
-    write_beside(path, |file| image.write().to_buffered(file).map_err(|e| e.to_string()))
+    write_beside(path, |file| create::write(&image, file).map_err(|e| e.to_string()))
+}
+
+/// The first of `count` interleaved numbers a pixel as the channels of an EXR file, as many as have names.
+fn planes(numbers: &[f32], count: usize, names: &[&str], precision: Precision) -> Vec<(String, Plane)> {
+    let plane = |(index, name): (usize, &&str)| {
+        let values = numbers.iter().skip(index).step_by(count).copied();
+        let plane = match precision {
+            Precision::Half => Plane::Half(values.map(f16::from_f32).collect()),
+            Precision::Float => Plane::Float(values.collect()),
+        };
+        ((*name).to_owned(), plane)
+    };
+    names.iter().take(count).enumerate().map(plane).collect()
 }
 
 /// Whether a file could be written at this place; asked before any work is done.

@@ -128,26 +128,26 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<Source> {
     match bytes {
         [0x89, b'P', b'N', b'G', ..] => {
             let decoder = image::codecs::png::PngDecoder::new(Cursor::new(bytes));
-            picture(path, decoder.map_err(|e| malformed(path, "PNG", e))?, "PNG")
+            picture(path, decoder.map_err(|e| Error::malformed(path, "PNG", e))?, "PNG")
         }
         [0xff, 0xd8, 0xff, ..] => {
             if !jpeg::is_whole(bytes) {
-                return Err(malformed(path, "JPEG", "it ends before the picture does"));
+                return Err(Error::malformed(path, "JPEG", "it ends before the picture does"));
             }
             let decoder = image::codecs::jpeg::JpegDecoder::new(Cursor::new(bytes));
-            picture(path, decoder.map_err(|e| malformed(path, "JPEG", e))?, "JPEG")
+            picture(path, decoder.map_err(|e| Error::malformed(path, "JPEG", e))?, "JPEG")
         }
         [b'I', b'I', 42, 0, ..] | [b'M', b'M', 0, 42, ..] => {
             let decoder = image::codecs::tiff::TiffDecoder::new(Cursor::new(bytes));
-            picture(path, decoder.map_err(|e| malformed(path, "TIFF", e))?, "TIFF")
+            picture(path, decoder.map_err(|e| Error::malformed(path, "TIFF", e))?, "TIFF")
         }
         [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => {
             let decoder = image::codecs::webp::WebPDecoder::new(Cursor::new(bytes));
-            picture(path, decoder.map_err(|e| malformed(path, "WebP", e))?, "WebP")
+            picture(path, decoder.map_err(|e| Error::malformed(path, "WebP", e))?, "WebP")
         }
         [b'#', b'?', ..] => {
             let decoder = image::codecs::hdr::HdrDecoder::new(Cursor::new(bytes));
-            picture(path, decoder.map_err(|e| malformed(path, "HDR", e))?, "HDR")
+            picture(path, decoder.map_err(|e| Error::malformed(path, "HDR", e))?, "HDR")
         }
         [] => Err(Error::file(path, "is empty", "name a picture")),
         _ => Err(Error::file(
@@ -173,17 +173,12 @@ pub fn check_size(path: &Path, width: u64, height: u64) -> Result<()> {
     }
 }
 
-/// The error of a file that its decoder refuses.
-pub fn malformed(path: &Path, kind: &str, problem: impl std::fmt::Display) -> Error {
-    Error::file(path, format!("is damaged and cannot be read as {kind}: {problem}"), "use an intact file")
-}
-
 fn picture(path: &Path, mut decoder: impl ImageDecoder, kind: &str) -> Result<Source> {
     let (width, height) = decoder.dimensions();
     check_size(path, width.into(), height.into())?;
     let profile = decoder.icc_profile().unwrap_or_default();
-    let orientation = decoder.orientation().map_err(|e| malformed(path, kind, e))?;
-    let mut decoded = DynamicImage::from_decoder(decoder).map_err(|e| malformed(path, kind, e))?;
+    let orientation = decoder.orientation().map_err(|e| Error::malformed(path, kind, e))?;
+    let mut decoded = DynamicImage::from_decoder(decoder).map_err(|e| Error::malformed(path, kind, e))?;
     // Nothing but the pixels is kept, so what the camera noted of its attitude is done here.
     decoded.apply_orientation(orientation);
     let (width, height) = (decoded.width(), decoded.height());
@@ -199,7 +194,7 @@ fn picture(path: &Path, mut decoder: impl ImageDecoder, kind: &str) -> Result<So
         other => (4, Samples::U8(other.into_rgba8().into_raw())),
     };
     let pixels = Pixels::new(width, height, channels, samples)
-        .ok_or_else(|| malformed(path, kind, "it does not hold as many pixels as it says"))?;
+        .ok_or_else(|| Error::malformed(path, kind, "it does not hold as many pixels as it says"))?;
     let picture = Picture { pixels, guides: Vec::new(), chromaticities: None };
     let state = match picture.pixels.precision() {
         Precision::F16 | Precision::F32 => ImageState::SceneReferred,

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
 
-use super::exr::{Picture, fresh};
+use super::exr::{Picture, components};
 use super::read::{ImageState, Source};
 use crate::error::{Error, Result};
 use crate::output;
@@ -64,7 +64,8 @@ impl Format {
 pub fn write(path: &Path, format: Format, mut results: Vec<Pixels>, source: Source) -> Result<()> {
     if let (Format::Exr, Some(mut exr)) = (format, source.exr) {
         for (at, result) in results.drain(..).enumerate() {
-            exr.replace(at, &result);
+            exr.replace(at, &result)
+                .map_err(|problem| Error::file(path, problem, "choose another picture"))?;
         }
         return output::write_beside(path, |file| exr.write(file));
     }
@@ -72,10 +73,7 @@ pub fn write(path: &Path, format: Format, mut results: Vec<Pixels>, source: Sour
         return Err(Error::file(path, "would be empty", "choose another picture"));
     };
     match format {
-        Format::Exr => {
-            let pixels = as_precise(pixels, picture);
-            output::write_beside(path, |file| fresh::write(file, &pixels))
-        }
+        Format::Exr => write_exr(path, &pixels, picture),
         Format::Png => {
             // A float result holds more than 8 bits can.
             let precision = match picture.pixels.precision() {
@@ -128,12 +126,19 @@ fn grey_as_rgb(pixels: Pixels) -> Pixels {
 }
 
 /// EXR in the precision that the source deserves: 8 bits fit into halves, 16 do not.
-fn as_precise(pixels: Pixels, picture: &Picture) -> Pixels {
+fn write_exr(path: &Path, pixels: &Pixels, picture: &Picture) -> Result<()> {
     let precision = match picture.pixels.precision() {
-        Precision::U8 | Precision::F16 => Precision::F16,
-        Precision::U16 | Precision::F32 => Precision::F32,
+        Precision::U8 | Precision::F16 => output::Precision::Half,
+        Precision::U16 | Precision::F32 => output::Precision::Float,
     };
-    pixels.converted(precision)
+    let channels = pixels.channels();
+    let data = output::Picture {
+        width: pixels.width(),
+        height: pixels.height(),
+        channels: channels as usize,
+        data: pixels.to_f32(),
+    };
+    output::save_exr(path, &data, components(channels), precision)
 }
 
 fn keep_profile(encoder: &mut impl ImageEncoder, profile: Option<Vec<u8>>) {

@@ -4,15 +4,10 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
-use exr::prelude::{
-    AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes,
-    LineOrder, WritableImage,
-};
-use half::f16;
 use serde::Serialize;
 
 use crate::apply::backend::Backend;
-use crate::apply::exr::Selection;
+use crate::apply::exr::{Selection, components};
 use crate::apply::filter::{self, Filter};
 use crate::apply::memory::Budget;
 use crate::apply::read;
@@ -22,6 +17,7 @@ use crate::apply::tasks::Task;
 use crate::apply::write::Format;
 use crate::error::{Error, Result};
 use crate::loader::Library;
+use crate::output::{self, Picture, Precision};
 use crate::pixels::Pixels;
 use crate::stop::Stop;
 use crate::stylize::style::Style;
@@ -105,25 +101,13 @@ pub fn measure(
 }
 
 fn save(path: &Path, picture: &Pixels) -> Result<()> {
-    let (size, channels) =
-        ((picture.width() as usize, picture.height() as usize), picture.channels() as usize);
-    let numbers = picture.to_f32();
-    let channel = |(index, name): (usize, &&str)| {
-        let values = numbers.iter().skip(index).step_by(channels);
-        AnyChannel::new(*name, FlatSamples::F16(values.map(|v| f16::from_f32(*v)).collect()))
+    let data = Picture {
+        width: picture.width(),
+        height: picture.height(),
+        channels: picture.channels() as usize,
+        data: picture.to_f32(),
     };
-    let names = ["R", "G", "B", "A"];
-    let encoding = Encoding {
-        compression: Compression::ZIP16,
-        blocks: Blocks::ScanLines,
-        line_order: LineOrder::Increasing,
-    };
-    let channels = AnyChannels::sort(names.iter().take(channels).enumerate().map(channel).collect());
-    let layer = Layer::new(size, LayerAttributes::default(), encoding, channels);
-    Image::from_layer(layer)
-        .write()
-        .to_file(path)
-        .map_err(|e| Error::failure(e, "make room for temporary files"))
+    output::save_exr(path, &data, components(picture.channels()), Precision::Half)
 }
 
 /// Lets the system count the peak of this process anew, where it can.

@@ -2,8 +2,9 @@
 
 use std::str::FromStr;
 
-use super::Fault;
-use super::container::{Container, Sample};
+use isophote_exr_edit::{File, Sample};
+
+use super::fault::Fault;
 use super::names::{Group, Model, groups, is_matte, rank};
 
 /// What is read of a file, and where the result goes.
@@ -116,24 +117,24 @@ pub struct Source {
 }
 
 /// The pictures of a file that are asked for: one for every view that has the layer.
-pub fn choose(container: &Container, selection: &Selection) -> Result<Vec<Chosen>, Fault> {
-    let groups = groups(container);
+pub fn choose(exr: &File, selection: &Selection) -> Result<Vec<Chosen>, Fault> {
+    let groups = groups(exr);
     let mut found = Vec::new();
     for group in &groups {
-        let named = selection.layer.as_deref().is_some_and(|wanted| is_named(container, group, wanted));
+        let named = selection.layer.as_deref().is_some_and(|wanted| is_named(exr, group, wanted));
         let rank = if selection.layer.is_some() { named.then_some(0) } else { rank(group) };
-        if let (Some(rank), Some((model, colors))) = (rank, group.picture(container, named)) {
+        if let (Some(rank), Some((model, colors))) = (rank, group.picture(exr, named)) {
             found.push((rank, model, group.part, group, colors));
         }
     }
     found.sort_by_key(|(rank, model, part, ..)| (*rank, *model, *part));
     let Some((_, _, _, first, _)) = found.first() else {
         return Err(match &selection.layer {
-            Some(layer) => Fault::Unsupported {
+            Some(layer) => Fault::Choice {
                 problem: format!("has no layer '{layer}' with colours"),
-                mend: format!("choose from {}", layers(container, &groups)),
+                mend: format!("choose from {}", layers(exr, &groups)),
             },
-            None => Fault::Unsupported {
+            None => Fault::Choice {
                 problem: "has no layer with channels R, G and B of floats".into(),
                 mend: "name a layer by --layer, or a picture with colours".into(),
             },
@@ -153,15 +154,15 @@ pub fn choose(container: &Container, selection: &Selection) -> Result<Vec<Chosen
             group: (*group).clone(),
             model: *model,
             colors: colors.clone(),
-            alpha: alpha(container, group, selection)?,
-            guides: sources(container, &groups, group, selection)?,
+            alpha: alpha(exr, group, selection)?,
+            guides: sources(exr, &groups, group, selection)?,
         });
     }
     if chosen.is_empty() {
         let mut views: Vec<&str> = groups.iter().filter_map(|g| g.view.as_deref()).collect();
         views.dedup();
         let view = selection.view.as_deref().unwrap_or_default();
-        return Err(Fault::Unsupported {
+        return Err(Fault::Choice {
             problem: format!("does not show the layer in a view '{view}'"),
             mend: if views.is_empty() {
                 "leave --view out: the file has only one".into()
@@ -173,15 +174,15 @@ pub fn choose(container: &Container, selection: &Selection) -> Result<Vec<Chosen
     Ok(chosen)
 }
 
-fn is_named(container: &Container, group: &Group, wanted: &str) -> bool {
-    let part = &container.parts[group.part].name;
+fn is_named(exr: &File, group: &Group, wanted: &str) -> bool {
+    let part = &exr.parts()[group.part].name;
     group.layer == wanted
         || (!group.prefix.is_empty() && group.prefix == wanted)
         || (group.prefix.is_empty() && part == wanted)
 }
 
-fn layers(container: &Container, groups: &[Group]) -> String {
-    let names = groups.iter().filter(|g| g.picture(container, true).is_some());
+fn layers(exr: &File, groups: &[Group]) -> String {
+    let names = groups.iter().filter(|g| g.picture(exr, true).is_some());
     let list = unique(names.map(|g| g.layer.as_str()).filter(|l| !l.is_empty()));
     if list.is_empty() { "none: leave --layer out".into() } else { list }
 }
@@ -196,8 +197,8 @@ fn unique<'a>(names: impl Iterator<Item = &'a str>) -> String {
     list.join(", ")
 }
 
-fn alpha(container: &Container, group: &Group, selection: &Selection) -> Result<Option<usize>, Fault> {
-    let part = &container.parts[group.part];
+fn alpha(exr: &File, group: &Group, selection: &Selection) -> Result<Option<usize>, Fault> {
+    let part = &exr.parts()[group.part];
     let usable =
         |at: &usize| part.channels[*at].sample != Sample::Uint && part.channels[*at].sampling == (1, 1);
     match selection.alpha.as_deref() {
@@ -206,7 +207,7 @@ fn alpha(container: &Container, group: &Group, selection: &Selection) -> Result<
         Some(name) => {
             let own = group.members.iter().find(|(c, _)| c == name).map(|m| m.1);
             let any = || part.channels.iter().position(|c| c.name == name);
-            own.or_else(any).filter(usable).map(Some).ok_or_else(|| Fault::Unsupported {
+            own.or_else(any).filter(usable).map(Some).ok_or_else(|| Fault::Choice {
                 problem: format!("has no float channel '{name}' beside the layer's colours"),
                 mend: "name one of its channels by --alpha, or none".into(),
             })
@@ -216,7 +217,7 @@ fn alpha(container: &Container, group: &Group, selection: &Selection) -> Result<
 
 /// The guides that the style can use and that the file has, for the view of `picture`.
 fn sources(
-    container: &Container,
+    exr: &File,
     groups: &[Group],
     picture: &Group,
     selection: &Selection,
@@ -231,9 +232,9 @@ fn sources(
         let mut near: Vec<&Group> =
             groups.iter().filter(|g| g.view == picture.view || g.view.is_none()).collect();
         near.sort_by_key(|g| (g.part != picture.part, g.view != picture.view, g.prefix != picture.prefix));
-        let found = near.iter().find_map(|group| source(container, group, guide, name));
+        let found = near.iter().find_map(|group| source(exr, group, guide, name));
         let found = found.or_else(|| {
-            let has_camera = container.parts[picture.part].world_to_camera.is_some();
+            let has_camera = exr.parts()[picture.part].world_to_camera.is_some();
             (guide == Guide::Depth && name.is_none() && has_camera).then_some(())?;
             near.iter().find_map(|group| {
                 let channels =
@@ -244,7 +245,7 @@ fn sources(
         match (found, name) {
             (Some(source), _) => sources.push(source),
             (None, Some(name)) => {
-                return Err(Fault::Unsupported {
+                return Err(Fault::Choice {
                     problem: format!("has no layer or channel '{name}' that could be the {}", guide.id()),
                     mend: format!("name another by --guide {}=LAYER, or none", guide.id()),
                 });
@@ -253,7 +254,7 @@ fn sources(
         }
     }
     // Channels with fewer samples than pixels guide nothing.
-    sources.retain(|s| s.channels.iter().all(|c| container.parts[s.part].channels[*c].sampling == (1, 1)));
+    sources.retain(|s| s.channels.iter().all(|c| exr.parts()[s.part].channels[*c].sampling == (1, 1)));
     Ok(sources)
 }
 
@@ -262,8 +263,8 @@ fn xyz(group: &Group) -> Option<Vec<usize>> {
 }
 
 /// The channels of a guide in a group; `name` is the layer or channel that was asked for.
-fn source(container: &Container, group: &Group, guide: Guide, name: Option<&str>) -> Option<Source> {
-    let part = &container.parts[group.part];
+fn source(exr: &File, group: &Group, guide: Guide, name: Option<&str>) -> Option<Source> {
+    let part = &exr.parts()[group.part];
     let found = |channels: Vec<usize>| Source { guide, part: group.part, channels, position: false };
     let single = |components: &[&str]| {
         let known = components.iter().find_map(|c| group.member(c));
@@ -277,7 +278,7 @@ fn source(container: &Container, group: &Group, guide: Guide, name: Option<&str>
         if guide != Guide::Normal && channel.is_some() {
             return channel.map(|c| found(vec![c]));
         }
-        if !is_named(container, group, name) {
+        if !is_named(exr, group, name) {
             return None;
         }
         return match guide {

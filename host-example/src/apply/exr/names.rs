@@ -4,7 +4,7 @@
 //! ("Storing Multi-View Images in OpenEXR Files"); in files of several parts a part may name the layer and the
 //! view instead.
 
-use super::container::{Container, Sample};
+use isophote_exr_edit::{File, Part, Sample};
 
 /// Channels of one layer and view in one part.
 #[derive(Clone, Debug)]
@@ -51,8 +51,8 @@ impl Group {
 
     /// The channels of the group's colours, in order. `named` says that the layer was asked for, so that a
     /// single channel of any name is a grey picture.
-    pub fn picture(&self, container: &Container, named: bool) -> Option<(Model, Vec<usize>)> {
-        let part = &container.parts[self.part];
+    pub fn picture(&self, exr: &File, named: bool) -> Option<(Model, Vec<usize>)> {
+        let part = &exr.parts()[self.part];
         let full = |index: &usize| {
             part.channels[*index].sampling == (1, 1) && part.channels[*index].sample != Sample::Uint
         };
@@ -79,10 +79,10 @@ impl Group {
 }
 
 /// All groups of a file, in the order of its channels.
-pub fn groups(container: &Container) -> Vec<Group> {
+pub fn groups(exr: &File) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
-    let several = container.parts.len() > 1;
-    for (index, part) in container.parts.iter().enumerate() {
+    let several = exr.parts().len() > 1;
+    for (index, part) in exr.parts().iter().enumerate() {
         for (channel, described) in part.channels.iter().enumerate() {
             let mut words: Vec<&str> = described.name.split('.').collect();
             let component = words.pop().unwrap_or_default().to_owned();
@@ -117,7 +117,7 @@ pub fn groups(container: &Container) -> Vec<Group> {
 }
 
 /// The name of a part without that of its view.
-fn own_name(part: &super::container::Part) -> String {
+fn own_name(part: &Part) -> String {
     let bare = part.view.as_deref().and_then(|view| part.name.strip_suffix(view));
     bare.map_or(part.name.as_str(), |name| name.trim_end_matches(['.', '_', '-'])).to_owned()
 }
@@ -162,4 +162,13 @@ pub fn rank(group: &Group) -> Option<u32> {
 /// Whether a layer is a Cryptomatte, whose numbers are neither colours nor ids.
 pub fn is_matte(layer: &str) -> bool {
     layer.to_ascii_lowercase().contains("crypto")
+}
+
+/// Names of the components of a picture of so many channels.
+pub fn components(channels: u32) -> &'static [&'static str] {
+    match channels {
+        1 => &["Y"],
+        3 => &["R", "G", "B"],
+        _ => &["R", "G", "B", "A"],
+    }
 }

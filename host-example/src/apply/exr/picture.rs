@@ -1,9 +1,10 @@
 //! A picture and its guides out of a file's channels, and a result back into them.
 
+use isophote_exr_edit::{Channel, Decoded, Edit, Error, File, Part, Plane, Window};
+
 use super::choose::{Chosen, Guide, Selection, Source};
-use super::container::{Channel, Container, Part, Window};
-use super::names::Model;
-use super::planes::{Content, Decoded, Plane};
+use super::fault::Fault;
+use super::names::{Model, components};
 use crate::apply::primaries;
 use crate::pixels::{Pixels, Samples};
 
@@ -21,33 +22,35 @@ pub struct Picture {
     pub chromaticities: Option<[f32; 8]>,
 }
 
-/// Reads a picture; nothing when the memory of it has no whole number of pixels.
-pub fn read(container: &Container, decoded: &[Option<Decoded>], chosen: &Chosen) -> Option<Picture> {
-    let part = &container.parts[chosen.group.part];
-    let data = decoded[chosen.group.part].as_ref()?;
-    let plane = |channel: &usize| data.plane(part, *channel);
-    let mut planes: Vec<Plane> = chosen.colors.iter().map(plane).collect();
+/// Reads a picture.
+///
+/// # Errors
+/// [`Fault::File`] when its channels are of unequal size or take too much memory.
+pub fn read(exr: &File, decoded: &[Option<Decoded>], chosen: &Chosen) -> Result<Picture, Fault> {
+    let unequal = || Error::Damaged("its channels are of unequal size".into());
+    let part = &exr.parts()[chosen.group.part];
+    let data = decoded[chosen.group.part].as_ref().ok_or_else(unequal)?;
+    let mut planes: Vec<Plane> = chosen.colors.iter().map(|c| data.plane(*c)).collect::<Result<_, _>>()?;
     if chosen.model == Model::LuminanceChroma {
         let sampling = part.channels[chosen.colors[1]].sampling;
         let weights = primaries::luminance(part.chromaticities);
         planes = to_rgb(&planes, part.window, sampling, weights);
     }
-    if let Some(alpha) = &chosen.alpha {
+    if let Some(alpha) = chosen.alpha {
         // Grey with alpha has no form of its own.
         if let [grey] = planes.as_slice() {
             planes = vec![grey.clone(), grey.clone(), grey.clone()];
         }
-        planes.push(plane(alpha));
+        planes.push(data.plane(alpha)?);
     }
-    let guides = chosen.guides.iter().filter_map(|source| {
-        let pixels = guide(container, decoded, source, part)?;
-        Some((source.guide.id(), pixels))
-    });
-    Some(Picture {
-        pixels: interleaved(part.window, &planes)?,
-        guides: guides.collect(),
-        chromaticities: part.chromaticities,
-    })
+    let mut guides = Vec::with_capacity(chosen.guides.len());
+    for source in &chosen.guides {
+        if let Some(pixels) = guide(exr, decoded, source, part)? {
+            guides.push((source.guide.id(), pixels));
+        }
+    }
+    let pixels = interleaved(part.window, &planes).ok_or_else(unequal)?;
+    Ok(Picture { pixels, guides, chromaticities: part.chromaticities })
 }
 
 /// Samples a pixel that a result must have to go into the file.
@@ -60,58 +63,55 @@ pub fn result_channels(chosen: &Chosen, selection: &Selection, scalar: bool) -> 
     }
 }
 
-/// New content of the part that a picture came from: whole lists of channels and of what each holds.
-pub fn replaced(
+/// Puts a result into the edit of the part that its picture came from.
+///
+/// # Errors
+/// [`Error::Argument`] when it does not fit the part.
+pub fn replace(
+    edit: &mut Edit,
     part: &Part,
     chosen: &Chosen,
     selection: &Selection,
     result: &Pixels,
-    before: Option<(Vec<Channel>, Vec<Content>)>,
-) -> (Vec<Channel>, Vec<Content>) {
-    let (mut channels, mut contents) = before
-        .unwrap_or_else(|| (part.channels.clone(), (0..part.channels.len()).map(Content::Kept).collect()));
+) -> Result<(), Error> {
     let numbers = result.to_f32();
     let count = result.channels() as usize;
     let plane = |offset: usize| -> Vec<f32> { numbers.iter().skip(offset).step_by(count).copied().collect() };
     if let Some(layer) = &selection.into {
-        let names: &[&str] = match count {
-            1 => &["Y"],
-            3 => &["R", "G", "B"],
-            _ => &["R", "G", "B", "A"],
-        };
         let model = &part.channels[chosen.colors[0]];
-        for (offset, name) in names.iter().enumerate() {
+        for (offset, name) in components(result.channels()).iter().enumerate() {
             let name = into_name(part, chosen, layer, name);
-            let at = channels.partition_point(|c| c.name < name);
             let flags = if offset < 3 { model.flags } else { [0; 4] };
-            channels.insert(at, Channel { name, sample: model.sample, flags, sampling: (1, 1) });
-            contents.insert(at, Content::New(plane(offset)));
+            edit.insert(Channel { name, sample: model.sample, flags, sampling: (1, 1) }, plane(offset))?;
         }
-        return (channels, contents);
+        return Ok(());
     }
-    let mut put = |old: usize, values: Vec<f32>| {
-        let name = &part.channels[old].name;
-        if let Some(at) = channels.iter().position(|c| c.name == *name) {
-            contents[at] = Content::New(values);
-        }
-    };
+    let name = |channel: usize| part.channels[channel].name.as_str();
     let weights = primaries::luminance(part.chromaticities);
     match (chosen.model, chosen.colors.as_slice()) {
-        (Model::Rgb, colors) => colors.iter().enumerate().for_each(|(at, old)| put(*old, plane(at))),
+        (Model::Rgb, colors) => {
+            for (offset, color) in colors.iter().enumerate() {
+                edit.replace(name(*color), plane(offset))?;
+            }
+        }
         (Model::Grey, colors) => {
             let grey = if count == 1 { plane(0) } else { luminance(&numbers, count, weights) };
-            colors.iter().for_each(|old| put(*old, grey.clone()));
+            for color in colors {
+                edit.replace(name(*color), grey.clone())?;
+            }
         }
         (Model::LuminanceChroma, colors) => {
             let sampling = part.channels[colors[1]].sampling;
             let planes = to_chroma(&numbers, count, part.window, sampling, weights);
-            colors.iter().zip(planes).for_each(|(old, values)| put(*old, values));
+            for (color, values) in colors.iter().zip(planes) {
+                edit.replace(name(*color), values)?;
+            }
         }
     }
     if let (Some(alpha), 4) = (chosen.alpha, count) {
-        put(alpha, plane(3));
+        edit.replace(name(alpha), plane(3))?;
     }
-    (channels, contents)
+    Ok(())
 }
 
 /// Full name of a channel of a new layer.
@@ -146,14 +146,15 @@ fn interleaved(window: Window, planes: &[Plane]) -> Option<Pixels> {
 
 /// A guide over the window of the picture's part; nothing where it has no pixels or no number.
 fn guide(
-    container: &Container,
+    exr: &File,
     decoded: &[Option<Decoded>],
     source: &Source,
     picture: &Part,
-) -> Option<Pixels> {
-    let part = &container.parts[source.part];
-    let data = decoded[source.part].as_ref()?;
-    let planes: Vec<Vec<f32>> = source.channels.iter().map(|c| numbers(&data.plane(part, *c))).collect();
+) -> Result<Option<Pixels>, Error> {
+    let part = &exr.parts()[source.part];
+    let Some(data) = decoded[source.part].as_ref() else { return Ok(None) };
+    let plane = |channel: &usize| Ok::<_, Error>(numbers(&data.plane(*channel)?));
+    let planes: Vec<Vec<f32>> = source.channels.iter().map(plane).collect::<Result<_, _>>()?;
     let count = planes.len();
     let window = picture.window;
     let mut all = vec![0.0; window.width * window.height * count];
@@ -179,15 +180,16 @@ fn guide(
     }
     let size = (window.width as u32, window.height as u32);
     if source.position {
-        let camera = picture.world_to_camera?;
+        let Some(camera) = picture.world_to_camera else { return Ok(None) };
         // Row vectors; the camera looks along -z.
         let depth = all.as_chunks::<3>().0.iter().map(|p| {
             let z = p[0] * camera[2] + p[1] * camera[6] + p[2] * camera[10] + camera[14];
             if *p == [0.0; 3] { 0.0 } else { z.abs() }
         });
-        return Pixels::new(size.0, size.1, 1, Samples::F32(depth.collect()));
+        return Ok(Pixels::new(size.0, size.1, 1, Samples::F32(depth.collect())));
     }
-    Pixels::new(size.0, size.1, if source.guide == Guide::Normal { 3 } else { 1 }, Samples::F32(all))
+    let channels = if source.guide == Guide::Normal { 3 } else { 1 };
+    Ok(Pixels::new(size.0, size.1, channels, Samples::F32(all)))
 }
 
 /// As floats; integers that floats do not tell apart are folded into those that they do.

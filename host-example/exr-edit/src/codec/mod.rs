@@ -1,0 +1,121 @@
+//! Decompressing and compressing single chunks.
+
+mod b44;
+mod foreign;
+mod zip;
+
+use crate::error::{Error, Result};
+use crate::layout::{Block, Channel, Sample};
+use crate::part::Part;
+use foreign::{B44, B44A, PIZ, PXR24, RLE};
+
+/// Most bytes that a byte of any compression can stand for: deflate's 1032, and a quarter that PXR24 drops.
+const MOST_BYTES_PER_BYTE: usize = 1400;
+/// Every chunk may be larger by its headers.
+const SMALL: usize = 4096;
+
+/// Compressions by their number in a file.
+const NAMES: [&str; 12] =
+    ["none", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB", "HTJ2K256", "HTJ2K32"];
+const NONE: u8 = 0;
+const ZIPS: u8 = 2;
+const ZIP: u8 = 3;
+
+fn name(part: &Part) -> &'static str {
+    NAMES.get(usize::from(part.compression)).copied().unwrap_or("unknown")
+}
+
+/// Whether chunks of a part can be read and written.
+pub fn check(part: &Part) -> Result<()> {
+    if part.compression > B44A {
+        let problem = format!("is compressed by {}, which cannot be written without loss", name(part));
+        return Err(Error::unsupported(problem, "save it with ZIP or PIZ compression"));
+    }
+    let rows = |c: &Channel| matches!(c.sampling.1, 1 | 2 | 4);
+    if matches!(part.compression, PIZ | PXR24 | B44 | B44A) && !part.channels.iter().all(rows) {
+        let name = name(part);
+        let problem = format!("has a channel with every third or rarer row under {name}, which is not read");
+        return Err(Error::unsupported(problem, "save it with ZIP compression"));
+    }
+    Ok(())
+}
+
+/// Whether so many compressed bytes can stand for a block.
+pub fn check_length(part: &Part, block: &Block, length: usize) -> Result<()> {
+    if block.bytes(&part.channels) > length.saturating_mul(MOST_BYTES_PER_BYTE) + SMALL {
+        return Err(bad(part, "holds too few bytes"));
+    }
+    Ok(())
+}
+
+/// Bytes that decoding or encoding all chunks of a part takes, with these channels, beside what goes in and comes out:
+/// every thread works on one chunk at a time.
+pub fn working_memory(part: &Part, channels: &[Channel]) -> u64 {
+    let largest =
+        part.chunks.iter().map(|c| c.block.bytes(channels).max(c.block.bytes(&part.channels))).max();
+    let compressed = part.chunks.iter().map(|c| c.data.len()).max();
+    let tables = match part.compression {
+        NONE => 0,
+        // Tables of all 16-bit numbers, several of them.
+        PIZ => 6 << 20,
+        // Of deflate, which wants most.
+        _ => 512 << 10,
+    };
+    // Lists of channels as the codecs keep them.
+    let lists: usize = channels.iter().map(|c| 512 + c.name.len()).sum();
+    let one = 12 * largest.unwrap_or(0) + 2 * compressed.unwrap_or(0) + tables + lists;
+    one as u64 * rayon::current_num_threads().min(part.chunks.len()) as u64
+}
+
+/// The samples of a chunk, in the order of [`Block::runs`]. Its length was checked by [`check_length`].
+pub fn decode(part: &Part, block: &Block, data: &[u8]) -> Result<Vec<u8>> {
+    let size = block.bytes(&part.channels);
+    if data.len() == size {
+        return Ok(data.to_vec());
+    }
+    let raw = match part.compression {
+        ZIPS | ZIP => zip::unzip(data, size),
+        B44 | B44A => b44::decode(part, block, data),
+        RLE | PIZ | PXR24 => {
+            let (header, area) = foreign::header(part.compression, &part.channels, block, size)
+                .ok_or_else(|| bad(part, "has channels whose sampling is not read"))?;
+            foreign::decompress(&header, area, data)
+        }
+        _ => None,
+    };
+    raw.filter(|raw| raw.len() == size).ok_or_else(|| bad(part, "does not read"))
+}
+
+fn bad(part: &Part, what: &str) -> Error {
+    Error::damaged(format!("a chunk of {} compression {what}", name(part)))
+}
+
+/// Compresses the samples of a chunk. `old` holds the data that the file had, and for every channel
+/// where its samples come from in it, when they are unchanged.
+pub fn encode(
+    part: &Part,
+    channels: &[Channel],
+    block: &Block,
+    raw: Vec<u8>,
+    old: &[u8],
+    kept: &[Option<usize>],
+) -> Result<Vec<u8>> {
+    let failed = || Error::damaged(format!("a chunk cannot be compressed by {} again", name(part)));
+    let packed = match part.compression {
+        NONE => return Ok(raw),
+        ZIPS | ZIP => zip::zip(&raw),
+        // Floats of a chunk that was not worth compressing would lose the bits that PXR24 drops.
+        PXR24 if old.len() == block.bytes(&part.channels) && keeps_floats(part, kept) => return Ok(raw),
+        B44 | B44A => b44::join(part, channels, block, &raw, old, kept).ok_or_else(failed)?,
+        _ => {
+            let (header, area) =
+                foreign::header(part.compression, channels, block, raw.len()).ok_or_else(failed)?;
+            foreign::compress(&header, area, raw.clone()).ok_or_else(failed)?
+        }
+    };
+    Ok(if packed.len() < raw.len() { packed } else { raw })
+}
+
+fn keeps_floats(part: &Part, kept: &[Option<usize>]) -> bool {
+    kept.iter().flatten().any(|old| part.channels[*old].sample == Sample::Float)
+}

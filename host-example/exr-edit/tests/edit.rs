@@ -1,0 +1,92 @@
+//! What is not changed is kept: bytes of files without edits, samples of channels without new ones.
+
+mod support;
+
+use isophote_exr_edit::{Channel, Edit, Error, File, Limits, PartEdit, Plane, Sample};
+use support::{assets, encodings, file};
+
+fn parse(bytes: Vec<u8>) -> File {
+    File::parse(bytes, Limits::default()).expect("the file is whole")
+}
+
+/// Bits and not values, so that what is no number counts too.
+fn bits(plane: &Plane) -> Vec<u32> {
+    match plane {
+        Plane::Uint(v) => v.clone(),
+        Plane::Half(v) => v.iter().map(|s| u32::from(s.to_bits())).collect(),
+        Plane::Float(v) => v.iter().map(|s| s.to_bits()).collect(),
+    }
+}
+
+#[test]
+fn a_file_without_edits_keeps_its_bytes() {
+    let folders = ["ScanLines", "Tiles", "MultiResolution", "MultiView", "Beachball", "DisplayWindow", "v2"];
+    let others = folders.into_iter().flat_map(assets).filter(|p| p.extension().is_some_and(|e| e == "exr"));
+    let others = others.map(|path| std::fs::read(path).expect("the file can be read"));
+    for bytes in encodings().into_iter().map(|e| file(e, (37, 41), 1.0)).chain(others) {
+        let Ok(file) = File::parse(bytes.clone(), Limits::default()) else { continue };
+        let mut out = Vec::new();
+        file.write(&[], &mut out).unwrap();
+        // Some writers leave room between chunks; what is read is the same then.
+        if out.len() == bytes.len() {
+            assert!(out == bytes);
+        } else {
+            assert_eq!(parse(out).parts().len(), file.parts().len());
+        }
+    }
+}
+
+#[test]
+fn other_channels_keep_their_bits() {
+    for encoding in encodings() {
+        let before = parse(file(encoding, (37, 41), 1.0));
+        let part = &before.parts()[0];
+        let decoded = before.decode(0).unwrap();
+        let mut edit = Edit::of(part);
+        edit.replace("G", vec![2.0; 37 * 41]).unwrap();
+        let added = Channel { name: "a.new".into(), sample: Sample::Float, flags: [0; 4], sampling: (1, 1) };
+        edit.insert(added, vec![0.125; 37 * 41]).unwrap();
+        let mut out = Vec::new();
+        before.write(&[PartEdit { decoded: &decoded, edit: &edit }], &mut out).unwrap();
+
+        let after = parse(out);
+        let again = after.decode(0).unwrap();
+        let named = &after.parts()[0];
+        assert_eq!(named.channels.len(), part.channels.len() + 1);
+        for name in ["B", "R", "Z", "id"] {
+            let (old, new) = (part.channel(name).unwrap(), named.channel(name).unwrap());
+            let (old, new) = (decoded.plane(old).unwrap(), again.plane(new).unwrap());
+            assert!(bits(&old) == bits(&new), "{encoding:?}, {name}");
+        }
+        for (name, value) in [("G", 2.0), ("a.new", 0.125)] {
+            let plane = again.plane(named.channel(name).unwrap()).unwrap().to_f32();
+            assert!(plane.iter().all(|v| *v == value), "{encoding:?}, {name}");
+        }
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_refused() {
+    let first = parse(file(encodings()[3], (8, 8), 1.0));
+    let other = parse(file(encodings()[3], (9, 8), 1.0));
+    let mut edit = Edit::of(&first.parts()[0]);
+    let refused =
+        |result: Result<(), Error>| assert!(matches!(result, Err(Error::Argument(_))), "{result:?}");
+    refused(edit.replace("none", vec![0.0; 64]));
+    refused(edit.replace("R", vec![0.0; 63]));
+    let channel =
+        |name: &str, sampling| Channel { name: name.into(), sample: Sample::Half, flags: [0; 4], sampling };
+    refused(edit.insert(channel("R", (1, 1)), vec![0.0; 64]));
+    refused(edit.insert(channel("", (1, 1)), vec![0.0; 64]));
+    refused(edit.insert(channel("a\0b", (1, 1)), vec![0.0; 64]));
+    refused(edit.insert(channel("a", (0, 1)), vec![0.0; 64]));
+    refused(edit.insert(channel("a", (3, 1)), vec![0.0; 16]));
+    let decoded = first.decode(0).unwrap();
+    let twice = [PartEdit { decoded: &decoded, edit: &edit }; 2];
+    refused(first.write(&twice, &mut Vec::new()));
+    refused(other.write(&twice[..1], &mut Vec::new()));
+    let wrong = Edit::of(&other.parts()[0]);
+    refused(first.write(&[PartEdit { decoded: &decoded, edit: &wrong }], &mut Vec::new()));
+    assert!(matches!(first.decode(1), Err(Error::Argument(_))));
+    assert!(matches!(decoded.plane(9), Err(Error::Argument(_))));
+}

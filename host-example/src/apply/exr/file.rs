@@ -1,0 +1,161 @@
+//! A file with the pictures that were chosen in it, and their results back into it.
+
+use std::path::Path;
+
+use isophote_exr_edit::{Decoded, Edit, File, Limits, PartEdit};
+
+use super::choose::{self, Chosen, Selection};
+use super::fault::Fault;
+use super::picture::{self, Picture};
+use crate::error::Result;
+use crate::pixels::{MOST_PIXELS, Pixels};
+
+/// What one file may take at most, whatever it says of itself. How many files are in memory at the same time is
+/// decided by what they weigh; see [`Opened::weight`].
+const LIMITS: Limits = Limits { memory: 16 << 30, pixels: MOST_PIXELS };
+
+/// Whether all chunks of a file are there.
+pub fn is_whole(bytes: Vec<u8>) -> bool {
+    File::parse(bytes, LIMITS).is_ok()
+}
+
+/// A file taken apart, of which nothing is decoded yet.
+#[derive(Debug)]
+pub struct Opened {
+    exr: File,
+    selection: Selection,
+    chosen: Vec<Chosen>,
+}
+
+impl Opened {
+    /// Takes a file apart.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for damaged files, and when there is no such layer, view, alpha or guide.
+    pub fn new(path: &Path, bytes: Vec<u8>, selection: &Selection) -> Result<Self> {
+        let open = || -> std::result::Result<Self, Fault> {
+            let exr = File::parse(bytes, LIMITS)?;
+            let chosen = choose::choose(&exr, selection)?;
+            Ok(Self { exr, selection: selection.clone(), chosen })
+        };
+        open().map_err(|fault| fault.of(path))
+    }
+
+    /// Size of the largest picture.
+    pub fn size(&self) -> Option<(u32, u32)> {
+        let windows = self.chosen.iter().map(|c| self.exr.parts()[c.group.part].window);
+        let sizes = windows.map(|w| (w.width as u32, w.height as u32));
+        sizes.max_by_key(|(w, h)| u64::from(*w) * u64::from(*h))
+    }
+
+    /// Bytes of memory that the file and its pictures take from being decoded to being written, about.
+    pub fn weight(&self) -> u64 {
+        let mut parts: Vec<usize> = Vec::new();
+        let mut total = self.exr.length() as u64;
+        for picture in &self.chosen {
+            let part = &self.exr.parts()[picture.group.part];
+            let pixels = (part.window.width * part.window.height) as u64;
+            // As read, as result and as planes of floats; guides are floats.
+            total += pixels * 4 * (2 + 2 + 4 + 4) + pixels * 12 * picture.guides.len() as u64;
+            parts.extend(picture.guides.iter().map(|g| g.part).chain([picture.group.part]));
+        }
+        parts.sort_unstable();
+        parts.dedup();
+        for part in parts.iter().map(|p| &self.exr.parts()[*p]) {
+            // Decoded, and encoded again.
+            total += 2 * part.decoded_bytes();
+        }
+        total
+    }
+
+    /// Decodes the parts that are needed.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for damaged files and for kinds of files that cannot be written back.
+    pub fn decode(self, path: &Path) -> Result<ExrFile> {
+        ExrFile::of(self).map_err(|fault| fault.of(path))
+    }
+}
+
+/// A file with the pictures that were asked for.
+#[derive(Debug)]
+pub struct ExrFile {
+    exr: File,
+    selection: Selection,
+    chosen: Vec<Chosen>,
+    decoded: Vec<Option<Decoded>>,
+    /// What changes in each part.
+    edits: Vec<Option<Edit>>,
+}
+
+impl ExrFile {
+    fn of(Opened { exr, selection, chosen }: Opened) -> std::result::Result<Self, Fault> {
+        if let Some(layer) = &selection.into {
+            for picture in &chosen {
+                let part = &exr.parts()[picture.group.part];
+                let prefix = picture::into_name(part, picture, layer, "");
+                if part.channels.iter().any(|c| c.name.starts_with(&prefix)) {
+                    return Err(Fault::Choice {
+                        problem: format!("has a layer '{layer}' already"),
+                        mend: "choose another name for --into".into(),
+                    });
+                }
+                if prefix.len() > 250 {
+                    return Err(Fault::Choice {
+                        problem: format!("cannot hold a layer of the name '{layer}'"),
+                        mend: "choose another name for --into".into(),
+                    });
+                }
+            }
+        }
+        let mut decoded: Vec<Option<Decoded>> = exr.parts().iter().map(|_| None).collect();
+        for picture in &chosen {
+            let needed = picture.guides.iter().map(|g| g.part).chain([picture.group.part]);
+            for part in needed {
+                if decoded[part].is_none() {
+                    decoded[part] = Some(exr.decode(part)?);
+                }
+            }
+        }
+        let edits = exr.parts().iter().map(|_| None).collect();
+        Ok(Self { exr, selection, chosen, decoded, edits })
+    }
+
+    /// The pictures, one for each view that was asked for.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when channels are of unequal size.
+    pub fn pictures(&self, path: &Path) -> Result<Vec<Picture>> {
+        let read = |chosen| picture::read(&self.exr, &self.decoded, chosen);
+        let pictures: std::result::Result<Vec<Picture>, Fault> = self.chosen.iter().map(read).collect();
+        pictures.map_err(|fault| fault.of(path))
+    }
+
+    /// Samples a pixel that the result of a picture must have.
+    pub fn result_channels(&self, picture: usize, scalar: bool) -> u32 {
+        picture::result_channels(&self.chosen[picture], &self.selection, scalar)
+    }
+
+    /// Puts the result of a picture into its place.
+    ///
+    /// # Errors
+    /// The reason as text, when the result does not fit the file.
+    pub fn replace(&mut self, picture: usize, result: &Pixels) -> std::result::Result<(), String> {
+        let chosen = &self.chosen[picture];
+        let part = &self.exr.parts()[chosen.group.part];
+        let edit = self.edits[chosen.group.part].get_or_insert_with(|| Edit::of(part));
+        picture::replace(edit, part, chosen, &self.selection, result).map_err(|e| e.to_string())
+    }
+
+    /// The whole file with all results.
+    ///
+    /// # Errors
+    /// The reason as text: of the disk, or of a codec.
+    pub fn write(&self, out: &mut impl std::io::Write) -> std::result::Result<(), String> {
+        let both = self.decoded.iter().zip(&self.edits);
+        let edits: Vec<PartEdit<'_>> = both
+            .filter_map(|(decoded, edit)| Some(PartEdit { decoded: decoded.as_ref()?, edit: edit.as_ref()? }))
+            .collect();
+        self.exr.write(&edits, out).map_err(|e| e.to_string())
+    }
+}
