@@ -58,3 +58,27 @@ fn geometry_fragment(in: GeometryInput, @builtin(front_facing) front: bool) -> G
     let normal = safe_normalize(in.normal) * select(-1.0, 1.0, front);
     return GeometryOutput(vec4f(normal, 1.0), in.depth, f32(in.object_id), motion);
 }
+
+struct RestInput {
+    @builtin(position) clip: vec4f,
+    @location(0) rest: vec3f,
+    @location(1) uv0: vec2f,
+    @location(2) uv1: vec2f,
+    @location(3) alpha: f32,
+}
+
+// Where each point is before anything moves, without morph targets; a pass of its own, since few frames need it.
+@vertex
+fn rest_vertex(in: VertexInput) -> RestInput {
+    let position = vec4f(current_position(in, current_matrix(in)), 1.0);
+    let rest = (instances[in.instance].rest * vec4f(in.position, 1.0)).xyz;
+    return RestInput(frame.view_projection * position, rest, in.uv0, in.uv1, in.color.a);
+}
+
+@fragment
+fn rest_fragment(in: RestInput) -> @location(0) vec4f {
+    if CUTOUT == 1u && base_color(in.uv0, in.uv1, vec4f(1.0, 1.0, 1.0, in.alpha)).a < material.alpha_cutoff {
+        discard;
+    }
+    return vec4f(in.rest, 1.0);
+}

@@ -32,6 +32,8 @@ struct Frame {
 struct Instance {
     model: mat4x4f,
     previous_model: mat4x4f,
+    // From the space of the mesh to the scene before anything moves.
+    rest: mat4x4f,
     joints: u32,
     previous_joints: u32,
     weights: u32,

@@ -118,6 +118,21 @@ impl FrameList {
     pub fn frames(&self) -> &[i64] {
         &self.0
     }
+
+    /// Reads a list, or a number alone as that many frames from 1.
+    ///
+    /// # Errors
+    /// What is wrong with the text.
+    pub fn or_count(text: &str) -> std::result::Result<Self, String> {
+        match text.trim().parse::<usize>() {
+            Ok(0) => {
+                Err("no frames are too few; write a number such as 48, or a list such as 1001-1100".into())
+            }
+            Ok(count) if count > MOST_FRAMES => Err(format!("more than {MOST_FRAMES} frames are too many")),
+            Ok(count) => Ok(Self((1..=count as i64).collect())),
+            Err(_) => text.parse(),
+        }
+    }
 }
 
 impl FromStr for FrameList {

@@ -63,6 +63,11 @@ fn unknown_extension(path: &Path) -> Error {
     Error::file(path, "is not a kind of picture that is written", "name a .png or .exr file")
 }
 
+/// Whether a path names an EXR file.
+pub fn is_exr(path: &Path) -> bool {
+    extension(path) == "exr"
+}
+
 fn extension(path: &Path) -> String {
     path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase()
 }
@@ -103,26 +108,49 @@ fn save_png(path: &Path, picture: &Picture) -> Result<()> {
 /// # Errors
 /// [`Error::Input`] when the folder is missing or cannot be written.
 pub fn save_exr(path: &Path, picture: &Picture, names: &[&str], precision: Precision) -> Result<()> {
+    save_layers(path, &[Layer { picture, names, precision }], None)
+}
+
+/// Numbers of an EXR file: a picture with the full names of its channels.
+#[derive(Clone, Copy, Debug)]
+pub struct Layer<'a> {
+    /// The numbers; all layers of a file have the same size.
+    pub picture: &'a Picture,
+    /// A name for each number of a pixel, such as `N.X`.
+    pub names: &'a [&'a str],
+    /// How they are stored.
+    pub precision: Precision,
+}
+
+/// Saves several layers as one linear EXR file, compressed without loss. `world_to_camera` is the camera's matrix
+/// for row vectors, row by row.
+///
+/// # Errors
+/// [`Error::Input`] when the folder is missing or cannot be written, or layers do not fit together.
+pub fn save_layers(path: &Path, layers: &[Layer<'_>], world_to_camera: Option<[f32; 16]>) -> Result<()> {
+    let size = layers.first().map_or((0, 0), |layer| (layer.picture.width, layer.picture.height));
     let image = create::Picture {
-        width: picture.width as usize,
-        height: picture.height as usize,
-        channels: planes(&picture.data, picture.channels, names, precision),
+        width: size.0 as usize,
+        height: size.1 as usize,
+        channels: layers.iter().flat_map(planes).collect(),
+        world_to_camera,
         ..create::Picture::default()
     };
     write_beside(path, |file| create::write(&image, file).map_err(|e| e.to_string()))
 }
 
-/// The first of `count` interleaved numbers a pixel as the channels of an EXR file, as many as have names.
-fn planes(numbers: &[f32], count: usize, names: &[&str], precision: Precision) -> Vec<(String, Plane)> {
+/// The numbers of a layer as the channels of an EXR file, as many as have names.
+fn planes(layer: &Layer<'_>) -> Vec<(String, Plane)> {
+    let count = layer.picture.channels;
     let plane = |(index, name): (usize, &&str)| {
-        let values = numbers.iter().skip(index).step_by(count).copied();
-        let plane = match precision {
+        let values = layer.picture.data.iter().skip(index).step_by(count).copied();
+        let plane = match layer.precision {
             Precision::Half => Plane::Half(values.map(f16::from_f32).collect()),
             Precision::Float => Plane::Float(values.collect()),
         };
         ((*name).to_owned(), plane)
     };
-    names.iter().take(count).enumerate().map(plane).collect()
+    layer.names.iter().take(count).enumerate().map(plane).collect()
 }
 
 /// Whether a file could be written at this place; asked before any work is done.

@@ -22,18 +22,22 @@ use crate::stylize::style::Style;
 pub struct Options {
     /// Size of the pictures in pixels.
     pub size: (u32, u32),
-    /// Number of frames.
-    pub frames: usize,
+    /// Number of the first frame, and of frames up to the last.
+    pub range: (i64, u64),
     /// Whether the camera turns once around the scene over all frames.
     pub turntable: bool,
     /// From where the default camera and turntables see the scene.
     pub direction: Direction,
     /// The animation that plays.
     pub animation: Option<usize>,
-    /// Time of the first frame in seconds.
+    /// Time of frame 1 in seconds.
     pub start: f32,
     /// Frames per second.
     pub fps: f32,
+    /// Whether pictures are scene-referred, as they are before exposure and tone mapping.
+    pub scene_referred: bool,
+    /// Whether rest positions are rendered too.
+    pub rest_positions: bool,
 }
 
 /// A scene on a graphics device of its own.
@@ -43,6 +47,8 @@ pub struct Shot {
     pose: Pose,
     look: Look,
     camera: Camera,
+    /// Number of the frame drawn last, and what it was seen by.
+    drawn: Option<(i64, View)>,
     gpu: Gpu,
     renderer: Renderer,
     stylizer: Option<Stylizer>,
@@ -57,41 +63,71 @@ impl Shot {
     /// [`crate::error::Error::Failure`] without a device or when it fails.
     pub fn new(scene: Scene, style: Option<(&Library, Style)>, options: Options) -> Result<Self> {
         let gpu = Gpu::open()?;
-        let renderer = Renderer::new(&gpu.device, &gpu.queue, &scene, options.size)?;
+        let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &scene, options.size)?;
+        if options.rest_positions {
+            renderer.add_rest_positions();
+        }
         gpu.check()?;
         let mut stylizer = None;
         if let Some((library, style)) = style {
             let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
-            let stylizer = stylizer.insert(Stylizer::new(&kernels, library, style, options.size)?);
-            stylizer.bind(renderer.targets())?;
+            stylizer = Some(Stylizer::new(&kernels, library, style, options.size)?);
         }
         let pose = Pose::at_rest(&scene);
-        Ok(Self {
+        let mut shot = Self {
             look: Look::for_scene(&scene, &pose),
             camera: Camera::choose(&options, &scene),
             readback: Readback::default(),
+            drawn: None,
             options,
             scene,
             pose,
             gpu,
             renderer,
             stylizer,
-        })
+        };
+        shot.bind()?;
+        Ok(shot)
     }
 
-    /// Renders and stylizes frame `index`, which counts from 0.
+    /// Lets the style read the colour that is asked for.
+    fn bind(&mut self) -> Result<()> {
+        let targets = self.renderer.targets();
+        match &mut self.stylizer {
+            Some(stylizer) if self.options.scene_referred => stylizer.bind_scene_referred(targets),
+            Some(stylizer) => stylizer.bind(targets),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes the pose and the view of a frame, drawn or not.
+    fn go_to(&mut self, number: i64) -> View {
+        let Options { animation, start, fps, range: (first, count), .. } = self.options;
+        self.pose.update(&self.scene, animation, start + (number - 1) as f32 / fps);
+        self.camera.view(&self.scene, &self.pose, (number - first) as f32 / count as f32)
+    }
+
+    /// Renders and stylizes the frame of a number. It does not depend on those drawn before: its motion is that
+    /// from the frame of the number before it, and none in frame 1.
     ///
     /// # Errors
     /// [`crate::error::Error::Failure`] when the device fails.
-    pub fn draw(&mut self, index: usize) -> Result<Picture> {
-        let Options { animation, start, fps, frames, .. } = self.options;
-        self.pose.update(&self.scene, animation, start + index as f32 / fps);
-        let view = self.camera.view(&self.scene, &self.pose, index as f32 / frames as f32);
+    pub fn draw(&mut self, number: i64) -> Result<Picture> {
+        if number == 1 {
+            self.renderer.forget_motion();
+        } else if self.drawn.is_none_or(|(drawn, _)| drawn != number - 1) {
+            let view = self.go_to(number - 1);
+            self.renderer.pass_over(&self.scene, &self.pose, &view, &self.look);
+        }
+        let view = self.go_to(number);
+        self.drawn = Some((number, view));
+        let mut is_rebuilt = false;
         if let Some(stylizer) = &mut self.stylizer {
-            stylizer.at_frame(index as i64 + 1)?;
-            if stylizer.update()? {
-                stylizer.bind(self.renderer.targets())?;
-            }
+            stylizer.at_frame(number)?;
+            is_rebuilt = stylizer.update()?;
+        }
+        if is_rebuilt {
+            self.bind()?;
         }
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         self.renderer.encode(&mut encoder, &self.scene, &self.pose, &view, &self.look);
@@ -99,16 +135,25 @@ impl Shot {
             stylizer.encode(&mut encoder)?;
         }
         self.gpu.queue.submit([encoder.finish()]);
-        let result = self.stylizer.as_ref().map_or(&self.renderer.targets().color.view, Stylizer::output);
+        let targets = self.renderer.targets();
+        let plain = if self.options.scene_referred { &targets.radiance } else { &targets.color };
+        let result = self.stylizer.as_ref().map_or(&plain.view, Stylizer::output);
         self.readback.read(&self.gpu, result.texture())
     }
 
-    /// What the renderer knows of the pixels of the frame drawn last, as `choose` picks it.
+    /// What the frame drawn last was seen by.
+    pub fn view(&self) -> Option<&View> {
+        self.drawn.as_ref().map(|(_, view)| view)
+    }
+
+    /// What the renderer knows of the pixels of the frame drawn last, as `choose` picks it; nothing where that was
+    /// not rendered.
     ///
     /// # Errors
     /// [`crate::error::Error::Failure`] when the device fails.
-    pub fn read(&mut self, choose: impl FnOnce(&Targets) -> &Target) -> Result<Picture> {
-        self.readback.read(&self.gpu, &choose(self.renderer.targets()).texture)
+    pub fn read(&mut self, choose: impl FnOnce(&Targets) -> Option<&Target>) -> Result<Option<Picture>> {
+        let target = choose(self.renderer.targets());
+        target.map(|target| self.readback.read(&self.gpu, &target.texture)).transpose()
     }
 }
 

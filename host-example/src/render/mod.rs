@@ -11,6 +11,7 @@ pub(crate) mod layouts;
 pub mod look;
 pub(crate) mod pipelines;
 pub mod readback;
+mod rest;
 mod shadow;
 pub mod targets;
 #[cfg(test)]
@@ -27,7 +28,7 @@ use self::layouts::{Layouts, bind_buffer};
 use self::look::Look;
 use self::pipelines::{Pass, Pipelines, Variant};
 use self::shadow::{Cascades, ShadowMaps};
-use self::targets::Targets;
+use self::targets::{REST_FORMAT, Target, Targets};
 use self::textures::TextureStore;
 use self::tone_map::ToneMap;
 use self::uniforms::{FrameBlock, InstanceBlock, LightBlock};
@@ -52,6 +53,8 @@ pub struct Renderer {
     tone_map: ToneMap,
     joints: Vec<Option<u32>>,
     weights: Vec<u32>,
+    /// For every draw, from its mesh to the scene at rest.
+    rest: Vec<Mat4>,
     joint_count: usize,
     weight_count: usize,
     history: History,
@@ -127,6 +130,7 @@ impl Renderer {
             tone_map,
             joints,
             weights,
+            rest: rest::matrices(scene),
             joint_count,
             weight_count,
             history: History::default(),
@@ -146,16 +150,32 @@ impl Renderer {
     /// As [`Renderer::new`]; the old targets then stay.
     pub fn resize(&mut self, size: (u32, u32)) -> Result<()> {
         if size != (self.targets.width, self.targets.height) {
+            let has_rest = self.targets.rest.is_some();
             self.targets = Targets::new(&self.device, size.0, size.1)?;
+            if has_rest {
+                self.add_rest_positions();
+            }
             self.tone_map.bind(&self.device, &self.targets);
             self.forget_motion();
         }
         Ok(())
     }
 
+    /// Renders rest positions too from now on, in a pass of their own.
+    pub fn add_rest_positions(&mut self) {
+        let size = (self.targets.width, self.targets.height);
+        self.targets.rest = Some(Target::new(&self.device, "rest position", REST_FORMAT, 1, size));
+    }
+
     /// Makes the next frame the first of a sequence: its motion vectors are 0.
     pub fn forget_motion(&mut self) {
         self.history = History::default();
+    }
+
+    /// Makes a frame that is not rendered the one before the next: motion is told from it.
+    pub fn pass_over(&mut self, scene: &Scene, pose: &Pose, view: &View, look: &Look) {
+        let frame = self.write_buffers(scene, pose, view, look);
+        self.history.view_projection = Some(frame.view_projection);
     }
 
     /// Records one frame of `scene`, which must be the one given to [`Renderer::new`], in `pose`. Buffers are
@@ -173,12 +193,20 @@ impl Renderer {
             for pass in [Pass::Shadow, Pass::Depth, Pass::Surface, Pass::Geometry] {
                 self.pipelines.prepare(&self.device, self.variant(scene, draw, pass));
             }
+            if self.targets.rest.is_some() {
+                self.pipelines.prepare(&self.device, self.variant(scene, draw, Pass::Rest));
+            }
         }
         let eye = frame.eye.truncate();
         self.visible.update(scene, &self.primitives, pose, eye, frame.view_projection);
         self.shadow_passes(encoder, scene);
         self.surface_pass(encoder, scene);
-        self.geometry_pass(encoder, scene);
+        let targets = &self.targets;
+        let geometry = [&targets.normal, &targets.depth, &targets.object_id, &targets.motion];
+        self.geometry_pass(encoder, scene, Pass::Geometry, &geometry);
+        if let Some(rest) = &self.targets.rest {
+            self.geometry_pass(encoder, scene, Pass::Rest, &[rest]);
+        }
         self.tone_map.encode(encoder, &self.targets);
         self.history.view_projection = Some(frame.view_projection);
     }
@@ -201,6 +229,7 @@ impl Renderer {
             scratch.instances.push(InstanceBlock {
                 model,
                 previous_model: if first { model } else { previous },
+                rest: self.rest[index],
                 joints: joints.unwrap_or(0),
                 previous_joints: joints.unwrap_or(0) + self.joint_count as u32,
                 weights: self.weights[draw.node],
@@ -299,11 +328,17 @@ impl Renderer {
         }
     }
 
-    fn geometry_pass(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene) {
-        let targets = &self.targets;
-        let attachments = [&targets.normal, &targets.depth, &targets.object_id, &targets.motion]
-            .map(|target| Some(layouts::cleared(&target.view, wgpu::Color::TRANSPARENT)));
-        let depth = layouts::depth(&targets.geometry_depth.view, 0.0, wgpu::StoreOp::Discard);
+    /// One sample a pixel of what is nearest, into `targets`.
+    fn geometry_pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &Scene,
+        kind: Pass,
+        targets: &[&Target],
+    ) {
+        let attachments: Vec<_> =
+            targets.iter().map(|t| Some(layouts::cleared(&t.view, wgpu::Color::TRANSPARENT))).collect();
+        let depth = layouts::depth(&self.targets.geometry_depth.view, 0.0, wgpu::StoreOp::Discard);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("geometry"),
             color_attachments: &attachments,
@@ -313,7 +348,7 @@ impl Renderer {
         pass.set_bind_group(0, &self.buffers.bind_group, &[]);
         pass.set_bind_group(3, &self.shadow_maps.group, &[]);
         for &(_, index) in self.visible.solid.iter().chain(&self.visible.blended) {
-            self.draw(&mut pass, scene, index, Pass::Geometry);
+            self.draw(&mut pass, scene, index, kind);
         }
     }
 }

@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use super::layouts::Layouts;
 use super::targets::{
-    COLOR_FORMAT, DEPTH_FORMAT, LINEAR_DEPTH_FORMAT, MOTION_FORMAT, NORMAL_FORMAT, OBJECT_ID_FORMAT, SAMPLES,
+    COLOR_FORMAT, DEPTH_FORMAT, LINEAR_DEPTH_FORMAT, MOTION_FORMAT, NORMAL_FORMAT, OBJECT_ID_FORMAT,
+    REST_FORMAT, SAMPLES,
 };
 use crate::scene::{AlphaMode, Material, Vertex};
 
@@ -19,6 +20,8 @@ pub enum Pass {
     Surface,
     /// The geometry buffer.
     Geometry,
+    /// Rest positions.
+    Rest,
 }
 
 /// What distinguishes the pipelines of a pass.
@@ -45,7 +48,7 @@ impl Variant {
         match pass {
             Pass::Depth => Self { pass, alpha: 0, double_sided: material.double_sided, mirrored },
             Pass::Shadow => Self { pass, alpha: alpha.min(1), double_sided: true, mirrored: false },
-            Pass::Geometry => {
+            Pass::Geometry | Pass::Rest => {
                 Self { pass, alpha: alpha.min(1), double_sided: material.double_sided, mirrored }
             }
             Pass::Surface => Self { pass, alpha, double_sided: material.double_sided, mirrored },
@@ -144,15 +147,16 @@ impl Pipelines {
         });
         let blend = (variant.alpha == 2).then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
         let alpha_mode = vec![("ALPHA_MODE", f64::from(variant.alpha))];
+        let cutout = vec![("CUTOUT", f64::from(variant.alpha))];
         match variant.pass {
             Pass::Shadow => (&self.shadow, "shadow", vec![], vec![]),
             Pass::Depth => (&self.surface, "depth", vec![untouched], alpha_mode),
             Pass::Surface => (&self.surface, "surface", vec![target(COLOR_FORMAT, blend)], alpha_mode),
             Pass::Geometry => {
                 let formats = [NORMAL_FORMAT, LINEAR_DEPTH_FORMAT, OBJECT_ID_FORMAT, MOTION_FORMAT];
-                let cutout = vec![("CUTOUT", f64::from(variant.alpha))];
                 (&self.geometry, "geometry", formats.map(|f| target(f, None)).to_vec(), cutout)
             }
+            Pass::Rest => (&self.geometry, "rest", vec![target(REST_FORMAT, None)], cutout),
         }
     }
 

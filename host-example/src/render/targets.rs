@@ -15,6 +15,8 @@ pub const LINEAR_DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Flo
 pub const OBJECT_ID_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 /// Format of motion vectors.
 pub const MOTION_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
+/// Format of rest positions.
+pub const REST_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 /// Format of depth buffers and the shadow map.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
@@ -25,6 +27,35 @@ pub struct Target {
     pub texture: wgpu::Texture,
     /// The view of all of it.
     pub view: wgpu::TextureView,
+}
+
+impl Target {
+    pub(super) fn new(
+        device: &wgpu::Device,
+        label: &str,
+        format: wgpu::TextureFormat,
+        samples: u32,
+        (width, height): (u32, u32),
+    ) -> Self {
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: samples,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: if samples == 1 {
+                wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC
+            } else {
+                wgpu::TextureUsages::RENDER_ATTACHMENT
+            },
+            view_formats: &[],
+        });
+        let view = texture.create_view(&Default::default());
+        Self { texture, view }
+    }
 }
 
 /// All targets of one size. Those that are public can be sampled and copied from.
@@ -43,6 +74,9 @@ pub struct Targets {
     pub object_id: Target,
     /// Pixels from where the surface is to where it was one frame ago, x right and y down; 0 on the background.
     pub motion: Target,
+    /// Position in the scene before anything moves in x, y, z, where w is 1; all 0 on the background. Missing
+    /// until [`super::Renderer::add_rest_positions`] asks for it.
+    pub rest: Option<Target>,
     pub(super) multisampled: Target,
     pub(super) multisampled_depth: Target,
     pub(super) geometry_depth: Target,
@@ -66,26 +100,8 @@ impl Targets {
                 format!("give a width and height from 1 to {most}"),
             ));
         }
-        let make = |label: &str, format, samples| {
-            let texture = device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: samples,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: if samples == 1 {
-                    wgpu::TextureUsages::RENDER_ATTACHMENT
-                        | wgpu::TextureUsages::TEXTURE_BINDING
-                        | wgpu::TextureUsages::COPY_SRC
-                } else {
-                    wgpu::TextureUsages::RENDER_ATTACHMENT
-                },
-                view_formats: &[],
-            });
-            let view = texture.create_view(&Default::default());
-            Target { texture, view }
-        };
+        let make =
+            |label: &str, format, samples| Target::new(device, label, format, samples, (width, height));
         Ok(Self {
             color: make("color", COLOR_FORMAT, 1),
             radiance: make("radiance", COLOR_FORMAT, 1),
@@ -93,6 +109,7 @@ impl Targets {
             depth: make("depth", LINEAR_DEPTH_FORMAT, 1),
             object_id: make("object id", OBJECT_ID_FORMAT, 1),
             motion: make("motion", MOTION_FORMAT, 1),
+            rest: None,
             multisampled: make("multisampled", COLOR_FORMAT, SAMPLES),
             multisampled_depth: make("multisampled depth", DEPTH_FORMAT, SAMPLES),
             geometry_depth: make("geometry depth", DEPTH_FORMAT, 1),

@@ -87,6 +87,7 @@ fn view() -> View {
 /// Renders the scene at each time and yields the targets of the last frame.
 fn render(gpu: &Gpu, scene: &Scene, times: &[f32]) -> impl FnMut(&str) -> Picture {
     let mut renderer = Renderer::new(&gpu.device, &gpu.queue, scene, SIZE).unwrap();
+    renderer.add_rest_positions();
     let mut pose = Pose::default();
     for &time in times {
         pose.update(scene, Some(0), time);
@@ -104,6 +105,7 @@ fn render(gpu: &Gpu, scene: &Scene, times: &[f32]) -> impl FnMut(&str) -> Pictur
             "normal" => &targets.normal,
             "depth" => &targets.depth,
             "object_id" => &targets.object_id,
+            "rest" => targets.rest.as_ref().expect("rest positions were asked for"),
             _ => &targets.motion,
         };
         readback.read(&gpu, &target.texture).unwrap()
@@ -150,6 +152,31 @@ fn the_geometry_buffer_says_what_is_where() {
     assert_eq!(covered, 24);
 }
 
+/// Where the surface at every covered pixel of a frame at time 0.5 was at rest must be what `at_rest` says of
+/// where it is.
+fn assert_rest(gpu: &Gpu, scene: &Scene, what: &str, at_rest: impl Fn(Vec2) -> Vec2) {
+    let mut read = render(gpu, scene, &[0.5]);
+    let (rest, id) = (read("rest"), read("object_id"));
+    let mut covered = 0;
+    for y in 0..SIZE.1 {
+        for x in 0..SIZE.0 {
+            let found = pixel(&rest, x, y);
+            if pixel(&id, x, y)[0] == 0.0 {
+                assert_eq!(found, [0.0; 4], "{what}: the background at {x}, {y}");
+                continue;
+            }
+            covered += 1;
+            let world = Vec2::new(x as f32 + 0.5 - 32.0, 24.0 - y as f32 - 0.5) / 12.0;
+            let expected = at_rest(world).extend(0.0).extend(1.0);
+            assert!(
+                glam::Vec4::from_slice(found).abs_diff_eq(expected, 1e-4),
+                "{what}: {found:?} instead of {expected} at {x}, {y}"
+            );
+        }
+    }
+    assert!(covered > 100, "{what} shows {covered} pixels");
+}
+
 /// Motion of every covered pixel of a frame at time 0.5 after one at 0.25 must equal what `moved` says.
 fn assert_motion(gpu: &Gpu, scene: &Scene, what: &str, before: impl Fn(Vec2) -> Vec2) {
     let mut read = render(gpu, scene, &[0.25, 0.5]);
@@ -171,16 +198,18 @@ fn assert_motion(gpu: &Gpu, scene: &Scene, what: &str, before: impl Fn(Vec2) -> 
 }
 
 #[test]
-fn motion_follows_nodes_joints_and_morph_targets() {
+fn motion_and_rest_positions_follow_nodes_joints_and_morph_targets() {
     let Some(gpu) = gpu() else { return };
     let plain = vec![Node { mesh: Some(0), ..Node::default() }];
     let slide = [0.0, 0.0, 0.0, 1.0, -2.0, 0.0];
     let moving = scene(vec![square()], plain.clone(), vec![channel(0, Property::Translation, &slide)]);
     assert_motion(&gpu, &moving, "a node", |p| p - Vec2::new(0.25, -0.5));
+    assert_rest(&gpu, &moving, "a node", |p| p - Vec2::new(0.5, -1.0));
 
     let turn = [Quat::IDENTITY.to_array(), Quat::from_rotation_z(2.0).to_array()].concat();
     let turning = scene(vec![square()], plain.clone(), vec![channel(0, Property::Rotation, &turn)]);
     assert_motion(&gpu, &turning, "a turning node", |p| Vec2::from_angle(-0.5).rotate(p));
+    assert_rest(&gpu, &turning, "a turning node", |p| Vec2::from_angle(-1.0).rotate(p));
 
     let mut skinned = square();
     skinned.influence_sets = 2;
@@ -191,6 +220,7 @@ fn motion_follows_nodes_joints_and_morph_targets() {
     let mut skinned = scene(vec![skinned], nodes, vec![channel(2, Property::Translation, &slide)]);
     skinned.skins = vec![Skin { joints: vec![1, 2], inverse_bind: vec![Mat4::IDENTITY; 2] }];
     assert_motion(&gpu, &skinned, "a joint of half weight", |p| p - Vec2::new(0.125, -0.25));
+    assert_rest(&gpu, &skinned, "a joint of half weight", |p| p - Vec2::new(0.25, -0.5));
 
     let mut morphed = square();
     let delta = MorphDelta { position: [1.0, 0.0, 0.0], ..MorphDelta::default() };
@@ -198,6 +228,27 @@ fn motion_follows_nodes_joints_and_morph_targets() {
     let nodes = vec![Node { mesh: Some(0), weights: vec![0.0; 2], ..Node::default() }];
     let morphed = scene(vec![morphed], nodes, vec![channel(0, Property::Weights, &[0.0, 0.0, 0.0, 1.0])]);
     assert_motion(&gpu, &morphed, "a morph target", |p| p - Vec2::new(0.25, 0.0));
+    assert_rest(&gpu, &morphed, "a morph target", |p| p - Vec2::new(0.5, 0.0));
+}
+
+#[test]
+fn motion_is_the_same_after_a_frame_that_was_passed_over() {
+    let Some(gpu) = gpu() else { return };
+    let slide = [0.0, 0.0, 0.0, 1.0, -2.0, 0.0];
+    let plain = vec![Node { mesh: Some(0), ..Node::default() }];
+    let moving = scene(vec![square()], plain, vec![channel(0, Property::Translation, &slide)]);
+    let drawn = render(&gpu, &moving, &[0.25, 0.5])("motion");
+    let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &moving, SIZE).unwrap();
+    let mut pose = Pose::default();
+    pose.update(&moving, Some(0), 0.25);
+    renderer.pass_over(&moving, &pose, &view(), &Look::default());
+    pose.update(&moving, Some(0), 0.5);
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    renderer.encode(&mut encoder, &moving, &pose, &view(), &Look::default());
+    gpu.queue.submit([encoder.finish()]);
+    let passed = Readback::default().read(&gpu, &renderer.targets().motion.texture).unwrap();
+    assert!(passed.data.iter().any(|v| *v != 0.0));
+    assert_eq!(passed, drawn);
 }
 
 #[test]

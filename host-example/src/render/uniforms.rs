@@ -38,6 +38,7 @@ pub struct FrameBlock {
 pub struct InstanceBlock {
     pub model: Mat4,
     pub previous_model: Mat4,
+    pub rest: Mat4,
     pub joints: u32,
     pub previous_joints: u32,
     pub weights: u32,
@@ -76,7 +77,7 @@ pub struct MaterialBlock {
 }
 
 const _: () = assert!(size_of::<FrameBlock>() == 6 * 64 + 12 * 16);
-const _: () = assert!(size_of::<InstanceBlock>() == 160);
+const _: () = assert!(size_of::<InstanceBlock>() == 224);
 const _: () = assert!(size_of::<LightBlock>() == 64);
 const _: () = assert!(size_of::<MaterialBlock>() == 64 + 160);
 

@@ -20,7 +20,7 @@ use crate::loader::contract::{
 };
 use crate::loader::plan::Change;
 use crate::loader::{Library, Plan};
-use crate::render::targets::Targets;
+use crate::render::targets::{Target, Targets};
 
 /// A style for frames of one size, ready to be recorded.
 #[derive(Debug)]
@@ -119,14 +119,26 @@ impl Stylizer {
         Ok(())
     }
 
-    /// Reads these targets from now on, which must have the size given to [`Stylizer::new`]. The same ones
-    /// again cost nothing.
+    /// Reads these targets from now on, with the colour that is display-referred, which must have the size given
+    /// to [`Stylizer::new`]. The same ones again cost nothing.
     ///
     /// # Errors
     /// [`crate::error::Error::Failure`] when they are too small or the device refuses.
     pub fn bind(&mut self, targets: &Targets) -> Result<()> {
+        self.bind_with(&targets.color, targets)
+    }
+
+    /// As [`Stylizer::bind`], with the colour that is scene-referred; so is the result then.
+    ///
+    /// # Errors
+    /// As [`Stylizer::bind`].
+    pub fn bind_scene_referred(&mut self, targets: &Targets) -> Result<()> {
+        self.bind_with(&targets.radiance, targets)
+    }
+
+    fn bind_with(&mut self, color: &Target, targets: &Targets) -> Result<()> {
         let inputs = [
-            ("color", &targets.color.view),
+            ("color", &color.view),
             ("normal", &targets.normal.view),
             ("depth", &targets.depth.view),
             ("object_id", &targets.object_id.view),

@@ -1,20 +1,21 @@
 //! `isophote render`: a scene to a sequence of pictures.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::shared::{SceneArgs, parse_size};
+use crate::apply::read;
 use crate::error::{Error, Result};
-use crate::frames::Pattern;
+use crate::frames::{FrameList, Pattern};
 use crate::loader::Library;
-use crate::output::{self, Precision};
+use crate::output::{self, Layer, Picture, Precision};
 use crate::render::targets::{Target, Targets};
 use crate::scene::Scene;
 use crate::scene::camera::Direction;
 use crate::shot::{Options, Shot};
+use crate::stop::Stop;
 use crate::stylize::style::{Setting, Style};
 
 /// Options of `render`.
@@ -22,14 +23,18 @@ use crate::stylize::style::{Setting, Style};
 pub struct RenderArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// The picture: .png or .exr; with several frames, #### or an added .0001 stands for the number.
+    /// The picture: .png; or .exr with the scene-linear colour, normals, depth, object numbers, motion and rest
+    /// positions. out.####.exr, out.@@@@.exr or out.%04d.exr for a sequence; .#### is added where it lacks.
     out: PathBuf,
     /// Size of the picture in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
     size: (u32, u32),
-    /// Number of frames.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    frames: u32,
+    /// How many frames, from 1; or which, such as 1001-1100x2,1200.
+    #[arg(long, value_name = "N|LIST", default_value = "1", value_parser = FrameList::or_count, allow_hyphen_values = true)]
+    frames: FrameList,
+    /// Leaves pictures alone that are there already and whole.
+    #[arg(long)]
+    skip_existing: bool,
     /// Turns the camera once around the scene over all frames.
     #[arg(long)]
     turntable: bool,
@@ -39,7 +44,7 @@ pub struct RenderArgs {
     /// Which animation plays, by name or by number from 0; the first if not given.
     #[arg(long, value_name = "NAME")]
     animation: Option<String>,
-    /// Time of the first frame of the animation in seconds.
+    /// Time of frame 1 in the animation in seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true)]
     start: f32,
     /// Frames per second of the animation.
@@ -51,9 +56,9 @@ pub struct RenderArgs {
     /// Height of the default camera and turntables above the horizon in degrees, below 90.
     #[arg(long, value_name = "DEGREES", default_value_t = 16.0, allow_negative_numbers = true)]
     elevation: f32,
-    /// Also writes normal, depth, object_id and motion of each frame as EXR into this folder.
-    #[arg(long, value_name = "DIR")]
-    aov: Option<PathBuf>,
+    /// Exposes and tone-maps the colour of EXR files too, as PNG files and the window have it.
+    #[arg(long)]
+    tone_mapped: bool,
     /// How frames are stylized: none, the id of a node, or a graph file or preset (.json).
     #[arg(long, default_value = "none")]
     style: String,
@@ -76,22 +81,28 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     let scene = args.scene.load()?;
     let options = args.options(&scene)?;
     let mut shot = Shot::new(scene, style, options)?;
-    if let Some(folder) = &args.aov {
-        fs::create_dir_all(folder)
-            .map_err(|e| Error::file(folder, format!("cannot be made: {e}"), "name a writable folder"))?;
-    }
+    let frames = args.frames.frames();
     let pattern = match Pattern::new(&args.out)? {
-        None if args.frames == 1 => None,
+        None if frames.len() == 1 => None,
         _ => Some(Pattern::or_added(&args.out)?),
     };
-    let bar = progress_bar(args.frames);
-    for frame in 0..args.frames {
-        let number = i64::from(frame) + 1;
-        let picture = shot.draw(frame as usize)?;
+    let stop = Stop::on_signals();
+    let bar = progress_bar(frames.len());
+    for (done, &number) in frames.iter().enumerate() {
+        if stop.is_requested() {
+            return Err(Error::failure(
+                format!("stopped after {done} of {} frames", frames.len()),
+                "start again with --skip-existing to go on",
+            ));
+        }
         let file = pattern.as_ref().map_or_else(|| args.out.clone(), |pattern| pattern.file(number));
-        output::save(&file, &picture)?;
-        if let Some(folder) = &args.aov {
-            save_aovs(&mut shot, folder, number)?;
+        if !(args.skip_existing && read::is_whole(&file)) {
+            let picture = shot.draw(number)?;
+            if output::is_exr(&file) {
+                save_layers(&mut shot, &file, &picture)?;
+            } else {
+                output::save(&file, &picture)?;
+            }
         }
         bar.inc(1);
     }
@@ -125,9 +136,13 @@ impl RenderArgs {
     }
 
     fn options(&self, scene: &Scene) -> Result<Options> {
+        let is_exr = output::is_exr(&self.out);
+        let frames = self.frames.frames();
+        let first = frames.iter().min().copied().unwrap_or(1);
+        let last = frames.iter().max().copied().unwrap_or(1);
         Ok(Options {
             size: self.size,
-            frames: self.frames as usize,
+            range: (first, last.abs_diff(first) + 1),
             turntable: self.turntable,
             direction: Direction {
                 azimuth: Direction::default().azimuth + self.azimuth.to_radians(),
@@ -136,6 +151,8 @@ impl RenderArgs {
             animation: choose_animation(self, scene)?,
             start: self.start,
             fps: self.fps,
+            scene_referred: is_exr && !self.tone_mapped,
+            rest_positions: is_exr,
         })
     }
 }
@@ -162,30 +179,50 @@ fn choose_animation(args: &RenderArgs, scene: &Scene) -> Result<Option<usize>> {
     }
 }
 
-/// What the renderer knows of a pixel besides its colour: name of the file, target, channels, precision.
-type Aov = (&'static str, fn(&Targets) -> &Target, &'static [&'static str], Precision);
+/// What the renderer knows of a pixel beside its colour: target, names of channels, precision.
+type Guide = (fn(&Targets) -> Option<&Target>, &'static [&'static str], Precision);
 
-const AOVS: [Aov; 4] = [
-    ("normal", |targets| &targets.normal, &["N.X", "N.Y", "N.Z"], Precision::Half),
-    ("depth", |targets| &targets.depth, &["Z"], Precision::Float),
-    ("object_id", |targets| &targets.object_id, &["id"], Precision::Float),
-    ("motion", |targets| &targets.motion, &["motion.X", "motion.Y"], Precision::Float),
+/// Named as compositors and `apply` know them.
+const GUIDES: [Guide; 5] = [
+    (|targets| Some(&targets.normal), &["N.X", "N.Y", "N.Z"], Precision::Half),
+    (|targets| Some(&targets.depth), &["Z"], Precision::Float),
+    (|targets| Some(&targets.object_id), &["id"], Precision::Float),
+    (|targets| Some(&targets.motion), &["backward.u", "backward.v"], Precision::Float),
+    (|targets| targets.rest.as_ref(), &["Pref.X", "Pref.Y", "Pref.Z"], Precision::Float),
 ];
 
-fn save_aovs(shot: &mut Shot, folder: &Path, number: i64) -> Result<()> {
-    for (name, target, channels, precision) in AOVS {
-        let picture = shot.read(target)?;
-        output::save_exr(&folder.join(format!("{name}.{number:04}.exr")), &picture, channels, precision)?;
+/// Writes a frame with everything that is known of it into one file.
+fn save_layers(shot: &mut Shot, file: &Path, color: &Picture) -> Result<()> {
+    let (names, precision): (&[&str], _) = match color.channels {
+        1 => (&["Y"], Precision::Float),
+        _ => (&["R", "G", "B", "A"], Precision::Half),
+    };
+    let mut guides = Vec::with_capacity(GUIDES.len());
+    for (target, names, precision) in GUIDES {
+        if let Some(mut picture) = shot.read(target)? {
+            if names == ["backward.u", "backward.v"] {
+                // Compositors count rows from below.
+                picture.data.iter_mut().skip(1).step_by(2).for_each(|v| *v = 0.0 - *v);
+            }
+            guides.push((picture, names, precision));
+        }
     }
-    Ok(())
+    let mut layers = vec![Layer { picture: color, names, precision }];
+    layers.extend(guides.iter().map(|(picture, names, precision)| Layer {
+        picture,
+        names,
+        precision: *precision,
+    }));
+    // A matrix column by column is the same for row vectors row by row.
+    output::save_layers(file, &layers, shot.view().map(|view| view.world_to_view.to_cols_array()))
 }
 
 /// A bar on standard error, for sequences only, and none where no terminal listens.
-fn progress_bar(count: u32) -> ProgressBar {
+fn progress_bar(count: usize) -> ProgressBar {
     if count < 2 {
         return ProgressBar::hidden();
     }
-    let bar = ProgressBar::new(count.into());
+    let bar = ProgressBar::new(count as u64);
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} frame {pos} of {len}, {eta} left") {
         bar.set_style(style);
     }

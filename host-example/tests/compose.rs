@@ -1,0 +1,162 @@
+//! What `render` writes, `apply` reads: frames with their guides in one file.
+
+mod support;
+
+use std::path::Path;
+
+use exr::prelude::read_first_flat_layer_from_file;
+use support::{folder, isophote, listing, succeeds};
+
+/// Everything of a rendered frame, in the order of EXR files.
+const CHANNELS: [&str; 14] = [
+    "A",
+    "B",
+    "G",
+    "N.X",
+    "N.Y",
+    "N.Z",
+    "Pref.X",
+    "Pref.Y",
+    "Pref.Z",
+    "R",
+    "Z",
+    "backward.u",
+    "backward.v",
+    "id",
+];
+
+type Exr = exr::prelude::Image<exr::prelude::Layer<exr::prelude::AnyChannels<exr::prelude::FlatSamples>>>;
+
+fn read(path: &Path) -> Exr {
+    read_first_flat_layer_from_file(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+fn channel(image: &Exr, name: &str) -> Vec<f32> {
+    let list = &image.layer_data.channel_data.list;
+    let found = list.iter().find(|c| c.name.to_string() == name).unwrap_or_else(|| panic!("no {name}"));
+    found.sample_data.values_as_f32().collect()
+}
+
+fn render(folder: &Path, out: &str, more: &[&str]) {
+    let scene = support::cube(folder);
+    let mut command = isophote();
+    command.current_dir(folder).arg("render").arg(scene).arg(out).args(["--size", "96x64"]).args(more);
+    succeeds(&mut command);
+}
+
+fn apply(folder: &Path, arguments: &[&str]) {
+    let mut command = isophote();
+    succeeds(command.current_dir(folder).arg("apply").args(arguments).args(["--backend", "cpu"]));
+}
+
+#[test]
+fn a_frame_has_its_guides_under_names_that_compositors_know() {
+    let folder = folder();
+    render(folder.path(), "frame.exr", &[]);
+    let frame = read(&folder.path().join("frame.exr"));
+    let names: Vec<String> = frame.layer_data.channel_data.list.iter().map(|c| c.name.to_string()).collect();
+    assert_eq!(names, CHANNELS);
+    let get = |name: &str| channel(&frame, name);
+    let (id, z) = (get("id"), get("Z"));
+    let (normals, rest) = (["N.X", "N.Y", "N.Z"].map(get), ["Pref.X", "Pref.Y", "Pref.Z"].map(get));
+    let camera = frame.layer_data.attributes.world_to_camera.expect("the camera is told");
+    let (mut shown, mut nearest, mut farthest) = (0, f32::MAX, 0.0f32);
+    for at in 0..id.len() {
+        let [n, p] = [&normals, &rest].map(|v| [v[0][at], v[1][at], v[2][at]]);
+        if id[at] == 0.0 {
+            assert_eq!((z[at], n, p), (0.0, [0.0; 3], [0.0; 3]), "the background at {at}");
+            continue;
+        }
+        shown += 1;
+        assert_eq!(id[at], 1.0);
+        assert!((n.iter().map(|v| v * v).sum::<f32>() - 1.0).abs() < 2e-3, "{n:?} is no unit vector");
+        // The cube does not move, so that it is where it was at rest: on one of its sides, and as far from the
+        // camera as Z says.
+        let side = p.iter().fold(0.0f32, |most, v| most.max(v.abs()));
+        assert!((side - 1.0).abs() < 1e-4, "{p:?} is not on the cube");
+        let depth = -(p[0] * camera[2] + p[1] * camera[6] + p[2] * camera[10] + camera[14]);
+        assert!((z[at] - depth).abs() < 1e-3 * depth, "{} instead of {depth}", z[at]);
+        (nearest, farthest) = (nearest.min(z[at]), farthest.max(z[at]));
+    }
+    assert!(shown > 500, "the cube covers {shown} pixels");
+    assert!(farthest > nearest + 0.5, "all is {nearest} to {farthest} away");
+    assert!(get("A").iter().all(|a| *a == 1.0));
+}
+
+#[test]
+fn colours_are_scene_linear_unless_tone_mapped_ones_are_asked_for() {
+    let folder = folder();
+    render(folder.path(), "linear.exr", &[]);
+    render(folder.path(), "mapped.exr", &["--tone-mapped"]);
+    render(folder.path(), "mapped.png", &[]);
+    let [linear, mapped] = ["linear.exr", "mapped.exr"].map(|name| read(&folder.path().join(name)));
+    assert_ne!(channel(&linear, "R"), channel(&mapped, "R"));
+    assert_eq!(channel(&linear, "Z"), channel(&mapped, "Z"));
+    let png = image::open(folder.path().join("mapped.png")).expect("a picture was written").into_rgb8();
+    for (name, at) in [("R", 0), ("G", 1), ("B", 2)] {
+        for (pixel, value) in png.pixels().zip(channel(&mapped, name)) {
+            let encoded =
+                if value <= 0.003_130_8 { value * 12.92 } else { 1.055 * value.powf(1.0 / 2.4) - 0.055 };
+            assert!(
+                (encoded * 255.0 - f32::from(pixel[at])).abs() < 0.51,
+                "{name}: {value} is {}",
+                pixel[at]
+            );
+        }
+    }
+}
+
+#[test]
+fn frames_are_applied_with_their_guides() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    render(folder.path(), "shot.####.exr", &["--frames", "2", "--turntable"]);
+    render(folder.path(), "ours.####.exr", &["--frames", "2", "--turntable", "--style", "blueprint"]);
+    apply(folder.path(), &["blueprint", "shot.####.exr", "theirs.####.exr"]);
+    let none = ["--guide", "normal=none", "--guide", "depth=none", "--guide", "id=none"];
+    apply(folder.path(), &[&["blueprint", "shot.####.exr", "blind.####.exr"], &none[..]].concat());
+    for frame in ["0001", "0002"] {
+        let [shot, ours, theirs, blind] =
+            ["shot", "ours", "theirs", "blind"].map(|name| read(&path(&format!("{name}.{frame}.exr"))));
+        for name in ["R", "G", "B"] {
+            let [ours, theirs, blind] = [&ours, &theirs, &blind].map(|image| channel(image, name));
+            let far = |a: &[f32], b: &[f32]| a.iter().zip(b).filter(|(a, b)| (*a - *b).abs() > 0.01).count();
+            // The renderer's device and the library's CPU agree; soft steps may go the other way at a few pixels.
+            let apart = far(&ours, &theirs);
+            assert!(apart * 100 <= ours.len(), "{name} of frame {frame}: {apart} of {} differ", ours.len());
+            let guided = far(&theirs, &blind);
+            assert!(guided * 50 > ours.len(), "{name} of frame {frame}: guides change {guided} pixels");
+        }
+        for name in CHANNELS.iter().filter(|name| !["R", "G", "B", "A"].contains(name)) {
+            assert_eq!(channel(&shot, name), channel(&theirs, name), "{name} is left alone");
+            assert_eq!(channel(&shot, name), channel(&ours, name), "{name} is written with a style too");
+        }
+    }
+}
+
+#[test]
+fn any_frames_of_a_sequence_are_rendered_as_in_the_whole() {
+    let folder = folder();
+    let names = |start: &str| -> Vec<String> {
+        listing(folder.path()).into_iter().filter(|name| name.starts_with(start)).collect()
+    };
+    render(folder.path(), "all.%04d.exr", &["--frames", "1-5", "--turntable"]);
+    assert_eq!(names("all."), ["0001", "0002", "0003", "0004", "0005"].map(|n| format!("all.{n}.exr")));
+    render(folder.path(), "some.@@@.exr", &["--frames", "1-5x2", "--turntable"]);
+    assert_eq!(names("some."), ["001", "003", "005"].map(|n| format!("some.{n}.exr")));
+    let bytes = |name: &str| std::fs::read(folder.path().join(name)).expect("the frame was written");
+    for number in [1, 3, 5] {
+        let [all, some] = [format!("all.{number:04}.exr"), format!("some.{number:03}.exr")];
+        // Motion is from the frame before, also where that is not rendered.
+        assert_eq!(bytes(&all), bytes(&some), "frame {number}");
+    }
+    let motion = channel(&read(&folder.path().join("all.0003.exr")), "backward.u");
+    assert!(motion.iter().any(|v| v.abs() > 1.0), "a turning cube moves");
+    // What is whole stays, what is not is rendered again.
+    let whole = bytes("all.0002.exr");
+    std::fs::write(folder.path().join("all.0001.exr"), b"kept only if it is whole").expect("writable");
+    std::fs::write(folder.path().join("all.0004.exr"), &whole).expect("writable");
+    render(folder.path(), "all.%04d.exr", &["--frames", "1-5", "--turntable", "--skip-existing"]);
+    assert_eq!(bytes("all.0001.exr"), bytes("some.001.exr"));
+    assert_eq!(bytes("all.0004.exr"), whole, "a whole picture was rendered again");
+}
