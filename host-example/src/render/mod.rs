@@ -172,7 +172,7 @@ impl Renderer {
         self.history = History::default();
     }
 
-    /// Makes a frame that is not rendered the one before the next: motion is told from it.
+    /// Makes a frame that is not rendered the one before the next, which its motion starts from.
     pub fn pass_over(&mut self, scene: &Scene, pose: &Pose, view: &View, look: &Look) {
         let frame = self.write_buffers(scene, pose, view, look);
         self.history.view_projection = Some(frame.view_projection);
