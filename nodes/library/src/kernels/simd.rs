@@ -17,5 +17,6 @@ pub mod moment_buffer;
 pub mod neighbours;
 pub mod pixels;
 pub mod tile_copy;
+pub mod trace;
 pub mod upsampling;
 pub mod window_sum;

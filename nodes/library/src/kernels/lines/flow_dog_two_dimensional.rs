@@ -8,13 +8,14 @@
 use crate::kernels::lines::flow_dog_gradient::halfwidth;
 pub use crate::kernels::shaders::flow_dog_two_dimensional::Params;
 use crate::kernels::shared::coverage::LEAST_COVERAGE;
-use crate::kernels::shared::edge_threshold::{Xdog, dog_response, edge_threshold, edge_uncovered};
-use crate::kernels::shared::pixel_line::{PixelLine, error_function, most_steps};
+use crate::kernels::shared::edge_threshold::{Xdog, dog_response, edge_of_sums};
+use crate::kernels::shared::pixel_line::GaussianLines;
 use crate::kernels::shared::sampling::sample_linear2;
-use crate::kernels::shared::stream::{Integrator, Stream, StreamField};
+use crate::kernels::shared::stream::{FieldView, Integrator, Stream, half_length};
 use crate::kernels::shared::tensor::tangent;
-use crate::kernels::simd::pixels::{for_blocks, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, mask32x8, prelude::*};
+use crate::kernels::simd::pixels::{Block, for_blocks, write};
+use crate::kernels::simd::trace::Lines;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
@@ -23,7 +24,7 @@ crate::kernel!(flow_dog_two_dimensional {
     cost: |params| {
         let p: Params = bytemuck::pod_read_unaligned(params);
         let across = f64::from(p.halfwidth) * 0.88 * 70.0 + 100.0;
-        (2.0 * f64::from(radius(p.sigma)) + 1.0) * (across + 110.0)
+        (2.0 * f64::from(half_length(p.sigma)) + 1.0) * (across + 110.0)
     },
     tolerance: Tolerance {
         absolute: 2e-3,
@@ -53,11 +54,6 @@ impl Stepping {
     }
 }
 
-/// L = floor(2 sigma) (§ 2.9.3); a last bit must not decide whether a whole number is reached.
-fn radius(sigma: f32) -> f32 {
-    (2.0 * sigma + 1e-3).floor()
-}
-
 /// The edge image of (L alpha, alpha) on the field (E - G, F), for standard deviations `sigma_e` and `k`
 /// `sigma_e` pixels across and `sigma_m` along the lines. What `marked` is darker than `lightness` is added
 /// to the response, which is how guides draw lines.
@@ -83,87 +79,84 @@ pub fn edges(
         phi: xdog.phi,
     };
     // Along the line, across it, and one pixel for the bilinear sample.
-    let support = Support::Pixels(radius(sigma_m) as u32 + halfwidth as u32 + 2);
+    let support = Support::Pixels(half_length(sigma_m) as u32 + halfwidth as u32 + 2);
     plan.pass(&KERNEL, &[lightness, field, marked], &params, Class::Field, support)
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => both_ways(simd, pass, &params, band));
+    let filter = Filter {
+        lightness: &pass.inputs[0],
+        field: FieldView { tensors: pass.inputs[1] },
+        marked: &pass.inputs[2],
+        params: &params,
+    };
+    dispatch!(pass.level, simd => for_blocks::<1>(band, #[inline(always)] |block, target| {
+        let sums = filter.along(simd, &block);
+        write([edge_of_sums(sums, params.threshold, params.epsilon, params.phi)], target);
+    }));
 }
 
-#[inline(always)]
-fn both_ways<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
-    let field = &pass.inputs[1];
-    let around = Around { lightness: &pass.inputs[0], marked: &pass.inputs[2], params };
-    let stream = StreamField { tensors: *field, step: 1.0, integrator: Integrator::of(params.stepping) };
-    let limit = radius(params.sigma);
-    let falloff = -0.721_347_52 / (params.sigma * params.sigma).max(1e-6);
-    let inverse = std::f32::consts::FRAC_1_SQRT_2 / params.sigma.max(1e-3);
-    let by_pixels = params.stepping == Stepping::CabralLeedom.number();
-    for_blocks::<1>(
-        band,
-        #[inline(always)]
-        |block, target| {
-            let zero = f32x8::splat(simd, 0.0);
-            let [difference, f] = block.read(simd, field);
-            let [tx, ty] = tangent(difference, f, zero);
-            let [x, y] = block.centres(simd);
-            let mut sum = [zero; 2];
-            if !by_pixels || limit <= 0.0 {
-                around.add(simd, &mut sum, zero + 1.0, [x, y], [tx, ty]);
-            }
-            for side in [-1.0, 1.0] {
-                if by_pixels {
-                    let mut line = PixelLine::begin(x, y, [tx * side, ty * side]);
-                    let (mut u, mut passed) = (zero, zero);
-                    let mut active = u.simd_lt(limit);
-                    for _ in 0..most_steps(limit) {
-                        if !active.any_true() {
-                            break;
-                        }
-                        let h = line.aim(simd, field);
-                        let end = (u + h).min(limit);
-                        let reached = error_function(end * inverse);
-                        let weight = active.select(reached - passed, zero);
-                        let [px, py] = line.pixels();
-                        let middle = [px.to_float::<f32x8<S>>() + 0.5, py.to_float::<f32x8<S>>() + 0.5];
-                        let here = stream.tangent(simd, middle[0], middle[1]);
-                        around.add(simd, &mut sum, weight, middle, here);
-                        (u, passed) = (end, reached);
-                        active &= u.simd_lt(limit);
-                        active = line.cross(field, h, active);
-                    }
-                    continue;
-                }
-                let mut lines = [Stream::begin(x, y, [tx * side, ty * side])];
-                let mut active = mask32x8::splat(simd, true);
-                for u in 1..=limit as i32 {
-                    stream.advance(simd, &mut lines, [active]);
-                    let line = &lines[0];
-                    active &= stream.inside(line);
-                    let weight = f32x8::splat(simd, (falloff * (u * u) as f32).exp2());
-                    let here = stream.tangent(simd, line.x, line.y);
-                    around.add(simd, &mut sum, active.select(weight, zero), [line.x, line.y], here);
-                }
-            }
-            let [sum, norm] = sum;
-            let covered = norm.simd_gt(LEAST_COVERAGE);
-            let u = sum / covered.select(norm, zero + 1.0);
-            let edge = edge_threshold(u, params.threshold, params.epsilon, params.phi);
-            write([covered.select(edge, zero + edge_uncovered(params.threshold))], target);
-        },
-    );
-}
-
-/// What lies around a stream line.
-struct Around<'a> {
+/// What all blocks of a band share.
+struct Filter<'a> {
     lightness: &'a View<'a>,
+    field: FieldView<'a>,
     marked: &'a View<'a>,
     params: &'a Params,
 }
 
-impl Around<'_> {
+impl Filter<'_> {
+    /// Weighted sums of (u alpha, alpha) along the lines through a block, one side after the other.
+    #[inline(always)]
+    fn along<S: Simd>(&self, simd: S, block: &Block) -> [f32x8<S>; 2] {
+        let zero = f32x8::splat(simd, 0.0);
+        let (params, field) = (self.params, &self.field);
+        let [difference, f] = block.read(simd, &field.tensors);
+        let [tx, ty] = tangent(difference, f, zero);
+        let centre = block.centres(simd);
+        let by_pixels = params.stepping == Stepping::CabralLeedom.number();
+        let limit = half_length(params.sigma);
+        let mut sum = [zero; 2];
+        if !by_pixels || limit <= 0.0 {
+            self.add(simd, &mut sum, zero + 1.0, centre, [tx, ty]);
+        }
+        for side in [-1.0, 1.0] {
+            let direction = [tx * side, ty * side];
+            if by_pixels {
+                GaussianLines::new(simd, params.sigma).trace(
+                    simd,
+                    &field.tensors,
+                    centre,
+                    direction,
+                    #[inline(always)]
+                    |[x, y], weight| {
+                        let middle = [x.to_float::<f32x8<S>>() + 0.5, y.to_float::<f32x8<S>>() + 0.5];
+                        let here = field.tangent(simd, middle[0], middle[1]);
+                        self.add(simd, &mut sum, weight, middle, here);
+                    },
+                );
+                continue;
+            }
+            let falloff = -0.721_347_52 / (params.sigma * params.sigma).max(1e-6);
+            let line = [Stream::begin(centre[0], centre[1], direction)];
+            Lines::new(simd, field, Integrator::of(params.stepping), line).trace(
+                simd,
+                field,
+                [zero + 1.0],
+                limit as usize,
+                #[inline(always)]
+                |k, _, point| {
+                    let weight = f32x8::splat(simd, (falloff * ((k + 1) * (k + 1)) as f32).exp2());
+                    let [x, y] = point.place;
+                    let here = field.tangent(simd, x, y);
+                    self.add(simd, &mut sum, point.active.select(weight, zero), [x, y], here);
+                    point.active
+                },
+            );
+        }
+        sum
+    }
+
     /// Adds the response across the tangent at (x, y), (u alpha, alpha), times `weight`.
     #[inline(always)]
     fn add<S: Simd>(

@@ -1,6 +1,7 @@
 //! From the response of a difference of Gaussians to an edge image (§ 4.3, 4.4): 1 is paper, 0 is
 //! line. Twin of `shaders/shared/edge_threshold.wgsl`.
 
+use crate::kernels::shared::coverage::LEAST_COVERAGE;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 
@@ -76,6 +77,15 @@ pub fn edge_threshold<S: Simd>(u: f32x8<S>, kind: u32, epsilon: f32, phi: f32) -
 #[inline(always)]
 pub fn edge_uncovered(kind: u32) -> f32 {
     if kind == Threshold::None as u32 { 0.0 } else { 1.0 }
+}
+
+/// The edge image of weighted sums of (u alpha, alpha); paper where no covered pixel contributes.
+#[inline(always)]
+pub fn edge_of_sums<S: Simd>([sum, norm]: [f32x8<S>; 2], kind: u32, epsilon: f32, phi: f32) -> f32x8<S> {
+    let covered = norm.simd_gt(LEAST_COVERAGE);
+    let u = sum / covered.select(norm, f32x8::splat(sum.simd, 1.0));
+    let edge = edge_threshold(u, kind, epsilon, phi);
+    covered.select(edge, f32x8::splat(sum.simd, edge_uncovered(kind)))
 }
 
 /// D = base G_sigma + edge (G_sigma - G_k sigma) (4.9).

@@ -9,6 +9,7 @@
 //!
 //! Cost: a segment reads one tensor and takes about 60 operations; a pixel of length has up to 1.5.
 
+use crate::kernels::shared::stream::{acos, half_length};
 use crate::kernels::shared::tensor::tangent;
 use crate::kernels::simd::pixels::{fetch1, fetch4, offsets};
 use isophote_engine::View;
@@ -125,6 +126,73 @@ impl<S: Simd> PixelLine<S> {
     }
 }
 
+/// Lines with a Gaussian over their arc length, which is integrated over each segment (2.193).
+#[derive(Clone, Copy)]
+pub struct GaussianLines<S: Simd> {
+    /// Standard deviation, pixels.
+    pub sigma: f32x8<S>,
+    /// Length of each side.
+    pub limit: f32x8<S>,
+    /// Most segments of a side.
+    pub most_steps: i32,
+    /// A side ends at a boundary where it turns by more than the angle of this cosine.
+    pub least_turn: f32,
+    /// The arc length runs faster where lines turn (§ 6.3.2).
+    pub turns_count: bool,
+}
+
+impl<S: Simd> GaussianLines<S> {
+    /// Lines of the same length L = floor(2 sigma) wherever they turn.
+    #[inline(always)]
+    pub fn new(simd: S, sigma: f32) -> Self {
+        let limit = half_length(sigma);
+        Self {
+            sigma: f32x8::splat(simd, sigma),
+            limit: f32x8::splat(simd, limit),
+            most_steps: most_steps(limit),
+            least_turn: -1.0,
+            turns_count: false,
+        }
+    }
+
+    /// Follows one side of the lines through the centres (x, y) of pixels, towards `direction`: `visit` is called
+    /// with the columns and rows of the pixels that they run through, and the weights of these.
+    #[inline(always)]
+    pub fn trace(
+        &self,
+        simd: S,
+        field: &View<'_>,
+        [x, y]: [f32x8<S>; 2],
+        direction: [f32x8<S>; 2],
+        mut visit: impl FnMut([i32x8<S>; 2], f32x8<S>),
+    ) {
+        let zero = f32x8::splat(simd, 0.0);
+        // 1 / (sigma sqrt 2).
+        let inverse = f32x8::splat(simd, std::f32::consts::FRAC_1_SQRT_2) / self.sigma.max(1e-3);
+        let mut line = PixelLine::begin(x, y, direction);
+        let (mut u, mut passed) = (zero, zero);
+        let mut active = u.simd_lt(self.limit);
+        for _ in 0..self.most_steps {
+            if !active.any_true() {
+                break;
+            }
+            let h = line.aim(simd, field);
+            active &= line.turn.simd_ge(self.least_turn);
+            if self.turns_count {
+                // What the turn adds to the arc length lies between two segments.
+                u += (acos(line.turn) * self.limit / std::f32::consts::PI - h).max(zero);
+                passed = error_function(u * inverse);
+            }
+            let end = (u + h).min(self.limit);
+            let reached = error_function(end * inverse);
+            visit(line.pixels(), active.select((reached - passed).max(zero), zero));
+            (u, passed) = (end, reached);
+            active &= u.simd_lt(self.limit);
+            active = line.cross(field, h, active);
+        }
+    }
+}
+
 /// Unit minor eigenvectors of pixels, of either sign.
 #[inline(always)]
 fn orientation<S: Simd>(simd: S, field: &View<'_>, x: i32x8<S>, y: i32x8<S>) -> [f32x8<S>; 2] {
@@ -140,7 +208,7 @@ fn orientation<S: Simd>(simd: S, field: &View<'_>, x: i32x8<S>, y: i32x8<S>) -> 
 
 /// The error function of x >= 0, error below 2e-6 (Abramowitz and Stegun 7.1.28).
 #[inline(always)]
-pub fn error_function<S: Simd>(x: f32x8<S>) -> f32x8<S> {
+fn error_function<S: Simd>(x: f32x8<S>) -> f32x8<S> {
     let c = |v: f32| f32x8::splat(x.simd, v);
     let p = x.mul_add(c(0.000_043_063_8), c(0.000_276_567_2));
     let p = p.mul_add(x, c(0.000_152_014_3));

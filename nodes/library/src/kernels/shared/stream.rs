@@ -5,12 +5,13 @@
 //! cancel. A line is traced from its centre in one direction and then in the other. Lanes whose line
 //! has ended stay where they are while the others go on.
 //!
+//! [`trace`](crate::kernels::simd::trace) follows them.
+//!
 //! Cost: a step samples one tensor (Euler, two-step) or two (midpoint), bilinearly, and finds their axes; the
 //! first step of Euler's method and of the midpoint method saves one.
 
 use crate::kernels::shared::sampling::{sample_linear2, sample_linear4};
 use crate::kernels::shared::tensor::{tangent, tangent_along};
-use crate::kernels::simd::tile_copy::{Frame, Place, Surroundings, TWO};
 use isophote_engine::View;
 use isophote_engine::fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
 
@@ -21,7 +22,7 @@ pub enum Integrator {
     Euler = 0,
     /// The midpoint method, a second-order Runge-Kutta method (2.182).
     Midpoint = 1,
-    /// The midpoint method with the tangent here foreseen from those halfway through the last two steps: only
+    /// The midpoint method with the tangent here extrapolated from those halfway through the last two steps: only
     /// where the next one is taken depends on it, so that the method is of second order too, with one sample of
     /// the field a step instead of two. Its first step is the midpoint method's.
     TwoStep = 2,
@@ -39,7 +40,7 @@ impl Integrator {
 
     /// Whether a step depends on the field where it starts; the tangent at a line's beginning is known.
     #[inline(always)]
-    fn asks_here(self, begins: bool) -> bool {
+    fn reads_start(self, begins: bool) -> bool {
         !begins && self != Self::TwoStep
     }
 }
@@ -72,18 +73,80 @@ pub fn stretched<S: Simd>(steps: f32x8<S>, few: f32x8<S>) -> f32x8<S> {
     (steps + steps + 1.0) / (few + few + 1.0)
 }
 
-/// A tensor field and how its stream lines are stepped.
+/// L = floor(2 sigma), the length of a side of a line whose weights are a Gaussian (§ 2.9.3); a last bit must not
+/// decide whether a whole number is reached.
+pub fn half_length(sigma: f32) -> f32 {
+    (2.0 * sigma + 1e-3).floor()
+}
+
+/// An orientation field, as stream lines read it.
+pub trait Field<S: Simd> {
+    /// Eight positions, ready for reading there.
+    type Place: Copy;
+
+    /// The places of the absolute positions (x, y).
+    fn place(&self, x: f32x8<S>, y: f32x8<S>) -> Self::Place;
+
+    /// (E - G, F) at a place, which is all that orientation needs.
+    fn at(&self, simd: S, place: &Self::Place) -> [f32x8<S>; 2];
+
+    /// Lanes whose line lies inside the picture; all of them where none can have left it.
+    fn inside(&self, line: &Stream<S>) -> mask32x8<S>;
+
+    /// The lengths of the next steps, of which only the `active` lanes count.
+    fn lengths(&self, length: f32x8<S>, active: mask32x8<S>) -> f32x8<S>;
+}
+
+/// A field that is read in the picture itself.
 ///
 /// As long as steps are only taken up to an arc length of `radius`, every tensor is read within
 /// floor(radius) + 1 pixels of the centre in x and in y.
 #[derive(Clone, Copy, Debug)]
-pub struct StreamField<'a> {
+pub struct FieldView<'a> {
     /// Tensors (E, F, G, w), or as much of them as orientation needs, (E - G, F).
     pub tensors: View<'a>,
-    /// Step size h in pixels.
-    pub step: f32,
-    /// How lines are stepped.
-    pub integrator: Integrator,
+}
+
+impl FieldView<'_> {
+    /// Unit minor eigenvectors at (x, y), of either sign.
+    #[inline(always)]
+    pub fn tangent<S: Simd>(&self, simd: S, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
+        if self.tensors.channels() == 2 {
+            let [difference, f] = sample_linear2(simd, &self.tensors, x, y);
+            return tangent(difference, f, f32x8::splat(simd, 0.0));
+        }
+        let [e, f, g, _] = sample_linear4(simd, &self.tensors, x, y);
+        tangent(e, f, g)
+    }
+}
+
+impl<S: Simd> Field<S> for FieldView<'_> {
+    type Place = [f32x8<S>; 2];
+
+    #[inline(always)]
+    fn place(&self, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
+        [x, y]
+    }
+
+    #[inline(always)]
+    fn at(&self, simd: S, [x, y]: &[f32x8<S>; 2]) -> [f32x8<S>; 2] {
+        if self.tensors.channels() == 2 {
+            return sample_linear2(simd, &self.tensors, *x, *y);
+        }
+        let [e, f, g, _] = sample_linear4(simd, &self.tensors, *x, *y);
+        [e - g, f]
+    }
+
+    #[inline(always)]
+    fn inside(&self, line: &Stream<S>) -> mask32x8<S> {
+        in_bounds(self.tensors.full(), line.x, line.y)
+    }
+
+    /// Lines that have ended stay: what lies beyond their ends may not be there to be read.
+    #[inline(always)]
+    fn lengths(&self, length: f32x8<S>, active: mask32x8<S>) -> f32x8<S> {
+        active.select(length, f32x8::splat(length.simd, 0.0))
+    }
 }
 
 /// Eight lines, each traced in one direction.
@@ -97,7 +160,7 @@ pub struct Stream<S: Simd> {
     pub direction: [f32x8<S>; 2],
     /// Cosine of the angle between the last two steps, 0..=1 up to rounding.
     pub turn: f32x8<S>,
-    /// The tangent at the end of the last step, foreseen by the two-step method.
+    /// The tangent at the end of the last step, extrapolated by the two-step method.
     ahead: [f32x8<S>; 2],
     begins: bool,
 }
@@ -132,10 +195,10 @@ impl<S: Simd> Stream<S> {
         self.straight(h);
     }
 
-    /// Foresees the tangent at the end of a step before which `last` was the direction: the tangent of the
+    /// Extrapolates the tangent to the end of a step before which `last` was the direction: the tangent of the
     /// beginning for the first step, and of halfway through the step before for others.
     #[inline(always)]
-    fn foresee(&mut self, last: [f32x8<S>; 2], first: bool) {
+    fn extrapolate(&mut self, last: [f32x8<S>; 2], first: bool) {
         let share = if first { 1.0 } else { 0.5 };
         let [x, y] = self.direction;
         self.ahead = [(x - last[0]).mul_add(share, x), (y - last[1]).mul_add(share, y)];
@@ -150,96 +213,31 @@ impl<S: Simd> Stream<S> {
     }
 }
 
-impl StreamField<'_> {
-    /// Unit minor eigenvectors at (x, y), of either sign.
-    #[inline(always)]
-    pub fn tangent<S: Simd>(&self, simd: S, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
-        if self.tensors.channels() == 2 {
-            let [difference, f] = sample_linear2(simd, &self.tensors, x, y);
-            return tangent(difference, f, f32x8::splat(simd, 0.0));
-        }
-        let [e, f, g, _] = sample_linear4(simd, &self.tensors, x, y);
-        tangent(e, f, g)
-    }
-
-    /// (E - G, F) at (x, y), which is all that orientation needs.
-    #[inline(always)]
-    fn at<S: Simd>(&self, simd: S, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
-        if self.tensors.channels() == 2 {
-            return sample_linear2(simd, &self.tensors, x, y);
-        }
-        let [e, f, g, _] = sample_linear4(simd, &self.tensors, x, y);
-        [e - g, f]
-    }
-
-    /// Moves the `active` lanes of `N` times eight lines by one step.
-    ///
-    /// A step is a long chain of operations that wait for each other; independent ones, side by side,
-    /// take little longer than one.
-    #[inline(always)]
-    pub fn advance<S: Simd, const N: usize>(
-        &self,
-        simd: S,
-        lines: &mut [Stream<S>; N],
-        active: [mask32x8<S>; N],
-    ) {
-        let zero = f32x8::splat(simd, 0.0);
-        let mut lengths = [zero; N];
-        for i in 0..N {
-            lengths[i] = active[i].select(f32x8::splat(simd, self.step), zero);
-        }
-        self.advance_by(simd, lines, lengths);
-    }
-
-    /// Moves `N` times eight lines by one step of `lengths` pixels; lines that have ended take steps of none.
-    #[inline(always)]
-    pub fn advance_by<S: Simd, const N: usize>(
-        &self,
-        simd: S,
-        lines: &mut [Stream<S>; N],
-        lengths: [f32x8<S>; N],
-    ) {
-        let mut here = [[f32x8::splat(simd, 0.0); 2]; N];
-        if self.integrator.asks_here(lines[0].begins) {
-            for i in 0..N {
-                here[i] = self.at(simd, lines[i].x, lines[i].y);
-            }
-        }
-        step(
-            self.integrator,
-            lines,
-            lengths,
-            here,
-            #[inline(always)]
-            |x, y| self.at(simd, x, y),
-        );
-    }
-
-    /// Lanes whose line lies inside the picture.
-    #[inline(always)]
-    pub fn inside<S: Simd>(&self, line: &Stream<S>) -> mask32x8<S> {
-        holds(self.tensors.full(), line.x, line.y)
-    }
-}
-
-/// Moves lines by steps of length `h` from places where the field is `here`, which does not matter for their
-/// first step; `at` tells what it is elsewhere.
+/// Moves `N` times eight lines, which are at `places`, by one step of length `h`.
+///
+/// A step is a long chain of operations that wait for each other; independent ones, side by side, take little
+/// longer than one. So it goes in stages, and in loops short enough to be unrolled.
 #[inline(always)]
-fn step<S: Simd, const N: usize>(
+pub fn step<S: Simd, F: Field<S>, const N: usize>(
+    simd: S,
+    field: &F,
     integrator: Integrator,
     lines: &mut [Stream<S>; N],
+    places: &[F::Place; N],
     h: [f32x8<S>; N],
-    here: [[f32x8<S>; 2]; N],
-    at: impl Fn(f32x8<S>, f32x8<S>) -> [f32x8<S>; 2],
 ) {
     let begins = lines[0].begins;
-    let (mut tangents, mut field) = ([[h[0]; 2]; N], here);
-    // In stages, and in loops short enough to be unrolled: what waits in one line is filled by the same of the
-    // others.
+    let mut read = [[h[0]; 2]; N];
+    if integrator.reads_start(begins) {
+        for i in 0..N {
+            read[i] = field.at(simd, &places[i]);
+        }
+    }
     if integrator != Integrator::Euler {
-        if integrator.asks_here(begins) {
+        let mut tangents = [[h[0]; 2]; N];
+        if integrator.reads_start(begins) {
             for i in 0..N {
-                tangents[i] = tangent_along(here[i][0], here[i][1], lines[i].direction).0;
+                tangents[i] = tangent_along(read[i][0], read[i][1], lines[i].direction).0;
             }
         } else {
             for i in 0..N {
@@ -247,10 +245,10 @@ fn step<S: Simd, const N: usize>(
             }
         }
         for i in 0..N {
-            field[i] = lines[i].halfway(tangents[i], h[i]);
+            read[i] = lines[i].halfway(tangents[i], h[i]);
         }
         for i in 0..N {
-            field[i] = at(field[i][0], field[i][1]);
+            read[i] = field.at(simd, &field.place(read[i][0], read[i][1]));
         }
     }
     if begins && integrator == Integrator::Euler {
@@ -260,70 +258,23 @@ fn step<S: Simd, const N: usize>(
     } else if integrator == Integrator::TwoStep {
         for i in 0..N {
             let last = lines[i].direction;
-            lines[i].follow(field[i], h[i]);
-            lines[i].foresee(last, begins);
+            lines[i].follow(read[i], h[i]);
+            lines[i].extrapolate(last, begins);
         }
     } else {
         for i in 0..N {
-            lines[i].follow(field[i], h[i]);
+            lines[i].follow(read[i], h[i]);
         }
     }
 }
 
 /// Lanes whose position lies inside a picture of so many pixels.
 #[inline(always)]
-pub fn holds<S: Simd>([w, h]: [i32; 2], x: f32x8<S>, y: f32x8<S>) -> mask32x8<S> {
+pub fn in_bounds<S: Simd>([w, h]: [i32; 2], x: f32x8<S>, y: f32x8<S>) -> mask32x8<S> {
     let simd = x.simd;
     let (w, h) = (f32x8::splat(simd, w as f32), f32x8::splat(simd, h as f32));
     let zero = f32x8::splat(simd, 0.0);
     x.simd_ge(zero) & x.simd_lt(w) & y.simd_ge(zero) & y.simd_lt(h)
-}
-
-/// A tensor field around one tile, for many lines that are followed at once.
-#[derive(Clone, Copy, Debug)]
-pub struct NearField<'a> {
-    /// What part of the picture is held.
-    pub frame: &'a Frame,
-    /// (E - G, F).
-    pub tensors: &'a Surroundings<TWO>,
-    /// How lines are stepped.
-    pub integrator: Integrator,
-}
-
-impl NearField<'_> {
-    /// Moves `N` times eight lines by one step of `lengths` pixels from the places where they are, by the
-    /// arithmetic of [`StreamField::advance_by`].
-    ///
-    /// Lines that have ended may go on: every place can be read, and what they come to does not count.
-    #[inline(always)]
-    pub fn advance<S: Simd, const N: usize>(
-        &self,
-        simd: S,
-        lines: &mut [Stream<S>; N],
-        places: &[Place<S>; N],
-        lengths: [f32x8<S>; N],
-    ) {
-        let mut here = [[f32x8::splat(simd, 0.0); 2]; N];
-        if self.integrator.asks_here(lines[0].begins) {
-            for i in 0..N {
-                here[i] = self.at(simd, &places[i]);
-            }
-        }
-        step(
-            self.integrator,
-            lines,
-            lengths,
-            here,
-            #[inline(always)]
-            |x, y| self.at(simd, &Place::new(self.frame, x, y)),
-        );
-    }
-
-    /// (E - G, F) at a place.
-    #[inline(always)]
-    pub fn at<S: Simd>(&self, simd: S, place: &Place<S>) -> [f32x8<S>; 2] {
-        self.tensors.sample(simd, place)
-    }
 }
 
 /// Angle of a cosine in 0..=1, error below 7e-5 (Abramowitz and Stegun 4.4.45).
@@ -339,7 +290,6 @@ pub fn acos<S: Simd>(cosine: f32x8<S>) -> f32x8<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernels::simd::pixels::Block;
     use isophote_engine::Image;
     use isophote_engine::fearless_simd::{Level, dispatch};
 
@@ -360,15 +310,15 @@ mod tests {
     /// By how much lines of `steps` steps leave their circles, summed over eight radii.
     fn drift(integrator: Integrator, steps: usize) -> f32 {
         let image = circles();
-        let tensors = View::new(&image, [SIDE as i32; 2]);
-        let field = StreamField { tensors, step: 1.0, integrator };
+        let field = FieldView { tensors: View::new(&image, [SIDE as i32; 2]) };
         let middle = SIDE as f32 / 2.0;
         dispatch!(Level::new(), simd => {
             let start = f32x8::from_fn(simd, |lane| 10.0 + 3.0 * lane as f32);
             let (x, y) = (start + middle, f32x8::splat(simd, middle));
             let mut line = [Stream::begin(x, y, field.tangent(simd, x, y))];
             for _ in 0..steps {
-                field.advance(simd, &mut line, [mask32x8::splat(simd, true)]);
+                let place = [[line[0].x, line[0].y]];
+                step(simd, &field, integrator, &mut line, &place, [f32x8::splat(simd, 1.0)]);
             }
             let (x, y) = (line[0].x - middle, line[0].y - middle);
             let off = (x * x + y * y).sqrt() - start;
@@ -400,27 +350,6 @@ mod tests {
                 assert!(steps == 0 || (n + 1.0) * h > steps as f32 + 1e-2);
                 assert!((steps <= 3) == (h == 1.0));
             }
-        });
-    }
-
-    #[test]
-    fn ended_lanes_stay_where_they_are() {
-        let image = circles();
-        let field = StreamField {
-            tensors: View::new(&image, [SIDE as i32; 2]),
-            step: 1.0,
-            integrator: Integrator::Midpoint,
-        };
-        dispatch!(Level::new(), simd => {
-            let at = Block { x: 40, y: 9, len: 8 }.centres(simd);
-            let mut line = [Stream::begin(at[0], at[1], field.tangent(simd, at[0], at[1]))];
-            let active = line[0].x.simd_lt(f32x8::splat(simd, 44.0));
-            for _ in 0..3 {
-                field.advance(simd, &mut line, [active]);
-            }
-            let moved = ((line[0].x - at[0]) * (line[0].x - at[0]) + (line[0].y - at[1]) * (line[0].y - at[1])).sqrt();
-            assert!(moved.to_array()[..4].iter().all(|m| (2.8..=3.0001).contains(m)));
-            assert_eq!(moved.to_array()[4..], [0.0; 4]);
         });
     }
 

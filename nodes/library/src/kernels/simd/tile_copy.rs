@@ -125,6 +125,21 @@ impl<const VALUES: usize> Surroundings<VALUES> {
         }
     }
 
+    /// [`load`](Self::load), where the colours of an image of four channels are multiplied by their alpha.
+    pub fn load_covered(&mut self, view: &View<'_>, frame: &Frame) {
+        self.load(view, frame);
+        if Self::CHANNELS != 4 {
+            return;
+        }
+        let held = &mut self.data[..4 * frame.held.area() as usize];
+        // The product with 1 is exact: whether it is left out never shows.
+        if !is_opaque(held) {
+            for [r, g, b, alpha] in held.as_chunks_mut::<4>().0 {
+                (*r, *g, *b) = (*r * *alpha, *g * *alpha, *b * *alpha);
+            }
+        }
+    }
+
     /// Eight values from pixel `at` on, and from the pixel below it.
     #[inline(always)]
     pub fn both_rows<S: Simd>(&self, simd: S, at: u16) -> [f32x8<S>; 2] {
@@ -134,20 +149,6 @@ impl<const VALUES: usize> Surroundings<VALUES> {
             f32x8::from_slice(simd, &self.data[upper..upper + 8]),
             f32x8::from_slice(simd, &self.data[lower..lower + 8]),
         ]
-    }
-}
-
-impl Surroundings<FOUR> {
-    /// Copies what `frame` holds of a colour image and multiplies the colours by their alpha.
-    pub fn load_covered(&mut self, view: &View<'_>, frame: &Frame) {
-        self.load(view, frame);
-        let held = &mut self.data[..4 * frame.held.area() as usize];
-        // The product with 1 is exact: whether it is left out never shows.
-        if !is_opaque(held) {
-            for [r, g, b, alpha] in held.as_chunks_mut::<4>().0 {
-                (*r, *g, *b) = (*r * *alpha, *g * *alpha, *b * *alpha);
-            }
-        }
     }
 }
 

@@ -13,9 +13,10 @@ use crate::kernels::lines::orientation_field;
 pub use crate::kernels::shaders::flow_bilateral::Params;
 use crate::kernels::shared::coverage::Covered;
 use crate::kernels::shared::sampling::sample_linear4;
-use crate::kernels::shared::stream::{Integrator, Stream, StreamField, holds};
+use crate::kernels::shared::stream::{FieldView, Integrator, Stream, half_length, in_bounds};
 use crate::kernels::shared::tensor::tangent;
 use crate::kernels::simd::pixels::{Block, for_blocks_in_tiles, load_pixel, write};
+use crate::kernels::simd::trace::{Lines, Point, both_sides};
 use crate::kernels::smoothing::oriented_bilateral::Sampling;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::math::{Elementary, channels};
@@ -59,7 +60,7 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: &
         sigma_d: options.sigma_d,
         sigma_r: options.sigma_r,
         // Stream lines are cut early because they grow less accurate with length (§ 2.9.3).
-        radius: (2.0 * options.sigma_d + 1e-3).floor(),
+        radius: half_length(options.sigma_d),
         midpoint: u32::from(options.midpoint),
         manual: options.sampling as u32,
         centres: u32::from(options.centres),
@@ -81,16 +82,11 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         params,
         origins: pass.inputs[0],
         source: covered.as_ref().map_or(pass.inputs[0], |c| c.view(&pass.inputs[0])),
-        field: StreamField {
-            tensors: pass.inputs[1],
-            step: 1.0,
-            integrator: Integrator::of(params.midpoint),
-        },
+        field: FieldView { tensors: pass.inputs[1] },
         opaque: covered.as_ref().is_some_and(Covered::is_opaque),
     };
-    let last = band.window.x1 - 1;
     dispatch!(pass.level, simd => for_blocks_in_tiles::<4>(band, #[inline(always)] |block, target| {
-        write(filter.block(simd, block.x, block.y, last), target);
+        write(filter.block(simd, &block), target);
     }));
 }
 
@@ -100,7 +96,7 @@ struct Filter<'a> {
     origins: View<'a>,
     /// Colours times coverage for linear sampling, as they are for manual.
     source: View<'a>,
-    field: StreamField<'a>,
+    field: FieldView<'a>,
     /// All coverage is 1.
     opaque: bool,
 }
@@ -113,59 +109,60 @@ struct Origin<S: Simd> {
     range: f32,
 }
 
+/// Where eight lines are sampled.
+struct Tap<S: Simd> {
+    x: f32x8<S>,
+    y: f32x8<S>,
+    /// Pixels behind the point that the lines have come to.
+    back: f32x8<S>,
+    /// Lanes that are sampled.
+    sampled: mask32x8<S>,
+    /// Lanes whose line goes on: it ends with the first sample outside the picture.
+    goes_on: mask32x8<S>,
+}
+
 impl Filter<'_> {
     #[inline(always)]
-    fn block<S: Simd>(&self, simd: S, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
-        let params = &self.params;
-        let zero = f32x8::splat(simd, 0.0);
-        let [difference, f] = Block::until(last + 1, x, y).read(simd, &self.field.tensors);
-        let colour = Block::until(last + 1, x, y).read(simd, &self.origins);
+    fn block<S: Simd>(&self, simd: S, block: &Block) -> [f32x8<S>; 4] {
+        let (params, zero) = (&self.params, f32x8::splat(simd, 0.0));
+        let [difference, f] = block.read(simd, &self.field.tensors);
+        let colour = block.read(simd, &self.origins);
         let range = -0.721_347_52 / (params.sigma_r * params.sigma_r).max(1e-6);
         let domain = f32x8::splat(simd, -0.721_347_52 / (params.sigma_d * params.sigma_d).max(1e-6));
         let origin = Origin { colour, range };
         let at_crossings = params.centres != 0;
-
-        let [px, py] = Block::until(last + 1, x, y).centres(simd);
         let alpha = colour[3];
         let first = [colour[0] * alpha, colour[1] * alpha, colour[2] * alpha, alpha];
         let mut sum = if at_crossings { [zero; 4] } else { first };
-        let mut lines = Stream::both_sides(px, py, tangent(difference, f, zero));
-        let mut active = [mask32x8::splat(simd, true); 2];
+        let sides = both_sides(simd, block, tangent(difference, f, zero));
+        let mut lines = Lines::new(simd, &self.field, Integrator::of(params.midpoint), sides);
+        // The sample before, and how far away it lies.
         let (mut before, mut before_u) = ([first; 2], [zero; 2]);
-        let mut u = 1.0;
-        while u <= params.radius && (active[0] | active[1]).any_true() {
-            self.field.advance(simd, &mut lines, active);
-            for side in 0..2 {
-                let line = &lines[side];
-                let mut sampled = active[side];
-                let mut back = zero;
+        lines.trace_beyond(
+            simd,
+            &self.field,
+            [zero + 1.0; 2],
+            params.radius as usize,
+            #[inline(always)]
+            |k, side, point| {
+                let tap = self.tap(point, at_crossings);
+                let u = f32x8::splat(simd, (k + 1) as f32) - tap.back;
+                let value = self.weighted(simd, [tap.x, tap.y], &origin, domain * u * u);
                 if at_crossings {
-                    back = distance_back(line);
-                    sampled &= back.simd_lt(1.0);
-                    back = sampled.select(back, zero);
-                }
-                let sx = line.x - back * line.direction[0];
-                let sy = line.y - back * line.direction[1];
-                let inside = holds(self.field.tensors.full(), sx, sy);
-                active[side] &= inside | !sampled;
-                sampled &= inside;
-                let at = f32x8::splat(simd, u) - back;
-                let value = self.weighted(simd, [sx, sy], &origin, domain * at * at);
-                if at_crossings {
-                    let width = sampled.select((at - before_u[side]) * 0.5, zero);
+                    let width = tap.sampled.select((u - before_u[side]) * 0.5, zero);
                     for i in 0..4 {
                         sum[i] = width.mul_add(before[side][i] + value[i], sum[i]);
-                        before[side][i] = sampled.select(value[i], before[side][i]);
+                        before[side][i] = tap.sampled.select(value[i], before[side][i]);
                     }
-                    before_u[side] = sampled.select(at, before_u[side]);
+                    before_u[side] = tap.sampled.select(u, before_u[side]);
                 } else {
                     for i in 0..4 {
-                        sum[i] += sampled.select(value[i], zero);
+                        sum[i] += tap.sampled.select(value[i], zero);
                     }
                 }
-            }
-            u += 1.0;
-        }
+                tap.goes_on
+            },
+        );
         let seen = sum[3].simd_gt(f32x8::splat(simd, 1e-6));
         [
             seen.select(sum[0] / sum[3], colour[0]),
@@ -173,6 +170,23 @@ impl Filter<'_> {
             seen.select(sum[2] / sum[3], colour[2]),
             alpha,
         ]
+    }
+
+    /// Where a step of eight lines is sampled: at its end, or at the last crossing it has made.
+    #[inline(always)]
+    fn tap<S: Simd>(&self, point: &Point<S, [f32x8<S>; 2]>, at_crossings: bool) -> Tap<S> {
+        let (line, mut sampled) = (&point.line, point.active);
+        let mut back = f32x8::splat(line.x.simd, 0.0);
+        if at_crossings {
+            let distance = distance_back(line);
+            sampled &= distance.simd_lt(1.0);
+            back = sampled.select(distance, back);
+        }
+        let x = line.x - back * line.direction[0];
+        let y = line.y - back * line.direction[1];
+        let inside = in_bounds(self.field.tensors.full(), x, y);
+        let goes_on = point.active & (inside | !sampled);
+        Tap { x, y, back, sampled: sampled & inside, goes_on }
     }
 
     /// Samples times their domain and range weights and their coverage.

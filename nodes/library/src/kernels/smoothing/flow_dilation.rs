@@ -9,9 +9,10 @@
 pub use crate::kernels::shaders::flow_dilation::Params;
 use crate::kernels::shared::coverage::Covered;
 use crate::kernels::shared::sampling::sample_linear4;
-use crate::kernels::shared::stream::{Integrator, Stream, StreamField};
+use crate::kernels::shared::stream::{FieldView, Integrator};
 use crate::kernels::shared::tensor::{anisotropy, tangent};
-use crate::kernels::simd::pixels::{Block, write};
+use crate::kernels::simd::pixels::{Block, for_blocks, write};
+use crate::kernels::simd::trace::{Lines, both_sides};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
@@ -58,60 +59,60 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let covered = Covered::new(&pass.inputs[0], band, reach(&params));
     let source = covered.view(&pass.inputs[0]);
-    let field = StreamField { tensors: pass.inputs[1], step: 1.0, integrator: Integrator::Midpoint };
-    dispatch!(pass.level, simd => {
-        let window = band.window;
-        for y in window.y0..window.y1 {
-            for x in (window.x0..window.x1).step_by(8) {
-                let last = window.x1 - 1;
-                let own: [f32x8<_>; 4] = Block::until(last + 1, x, y).read(simd, &pass.inputs[0]);
-                let at = brightest(simd, &params, &field, &pass.inputs[2], Block::until(last + 1, x, y).centres(simd));
-                let [r, g, b, alpha] = sample_linear4(simd, &source, at[0], at[1]);
-                let seen = alpha.simd_ge(f32x8::splat(simd, 0.5));
-                let values = [
-                    seen.select(r / alpha, own[0]),
-                    seen.select(g / alpha, own[1]),
-                    seen.select(b / alpha, own[2]),
-                    own[3],
-                ];
-                write(values, &mut band.row_mut(0, y)[4 * (x - window.x0) as usize..]);
-            }
-        }
-    });
+    let field = FieldView { tensors: pass.inputs[1] };
+    dispatch!(pass.level, simd => for_blocks::<4>(
+        band,
+        #[inline(always)]
+        |block, target| {
+            let own: [_; 4] = block.read(simd, &pass.inputs[0]);
+            let at = brightest(simd, &params, &field, &pass.inputs[2], &block);
+            let [r, g, b, alpha] = sample_linear4(simd, &source, at[0], at[1]);
+            let seen = alpha.simd_ge(f32x8::splat(simd, 0.5));
+            let values = [
+                seen.select(r / alpha, own[0]),
+                seen.select(g / alpha, own[1]),
+                seen.select(b / alpha, own[2]),
+                own[3],
+            ];
+            write(values, target);
+        },
+    ));
 }
 
-/// The places of the greatest noise along the lines through (x, y): the pixel itself, then the side
+/// The places of the greatest noise along the lines through a block: the pixel itself, then the side
 /// against the tangent, then the other one, whichever is first.
 #[inline(always)]
 fn brightest<S: Simd>(
     simd: S,
     params: &Params,
-    field: &StreamField<'_>,
+    field: &FieldView<'_>,
     noise: &View<'_>,
-    [x, y]: [f32x8<S>; 2],
+    block: &Block,
 ) -> [f32x8<S>; 2] {
+    let [x, y] = block.centres(simd);
     let [e, f, g, _] = sample_linear4(simd, &field.tensors, x, y);
     let certain = anisotropy(e, f, g) + 1.0;
     let limit = certain * certain * (0.25 * params.length) + 1e-3;
-    let mut lines = Stream::both_sides(x, y, tangent(e, f, g));
     let own = sample_linear4(simd, noise, x, y)[0];
     let mut most = [own; 2];
     let mut place = [[x, y]; 2];
-    let mut active = [limit.simd_ge(1.0); 2];
-    let mut u = 1.0;
-    while (active[0] | active[1]).any_true() {
-        field.advance(simd, &mut lines, active);
-        for (side, line) in lines.iter().enumerate() {
-            active[side] &= field.inside(line);
+    let sides = both_sides(simd, block, tangent(e, f, g));
+    let mut lines = Lines::new(simd, field, Integrator::Midpoint, sides).only([limit.simd_ge(1.0); 2]);
+    lines.trace(
+        simd,
+        field,
+        [f32x8::splat(simd, 1.0); 2],
+        usize::MAX,
+        #[inline(always)]
+        |k, side, point| {
+            let line = &point.line;
             let value = sample_linear4(simd, noise, line.x, line.y)[0];
-            let better = active[side] & value.simd_gt(most[side]);
+            let better = point.active & value.simd_gt(most[side]);
             most[side] = better.select(value, most[side]);
             place[side] = [better.select(line.x, place[side][0]), better.select(line.y, place[side][1])];
-        }
-        u += 1.0;
-        let longer = limit.simd_ge(u);
-        active = [active[0] & longer, active[1] & longer];
-    }
+            point.active & limit.simd_ge((k + 2) as f32)
+        },
+    );
     let second = most[1].simd_gt(most[0]);
     [second.select(place[1][0], place[0][0]), second.select(place[1][1], place[0][1])]
 }

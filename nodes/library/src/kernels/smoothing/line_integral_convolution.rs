@@ -6,23 +6,28 @@
 
 use crate::kernels::lines::orientation_field;
 pub use crate::kernels::shaders::line_integral_convolution::Params;
-use crate::kernels::shared::coverage::{Covered, full_or};
+use crate::kernels::shared::coverage::full_or;
 use crate::kernels::shared::sampling::sample_linear4;
 use crate::kernels::shared::stream::{
-    FEW_STEPS, Integrator, NearField, Stream, StreamField, acos, few_steps, holds, stretched,
+    FEW_STEPS, FieldView, Integrator, Stream, acos, few_steps, half_length, stretched,
 };
 use crate::kernels::shared::tensor::{anisotropy, tangent};
-use crate::kernels::simd::pixels::{BLOCK, Block, for_blocks_in_tiles, write};
-use crate::kernels::simd::tile_copy::{FOUR, Frame, Place, Surroundings, TWO};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
-use isophote_engine::math::{Elementary, load4};
+use crate::kernels::simd::pixels::Block;
+use crate::kernels::simd::tile_copy::{FOUR, Surroundings};
+use crate::kernels::simd::trace::{AlongLines, FieldCopy, Inputs, Lines, along_lines, both_sides};
+use colour_taps::{ColourTaps, RUN, Sums};
+use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
+use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
+
+#[path = "line_integral_convolution/colour_taps.rs"]
+mod colour_taps;
 
 crate::kernel!(line_integral_convolution {
     cpu: run,
     cost: |params| {
         let p: Params = bytemuck::pod_read_unaligned(params);
-        let steps = 2.0 * f64::from(radius(p.sigma)) / f64::from(p.step * p.stretch);
+        let steps = 2.0 * f64::from(half_length(p.sigma)) / f64::from(p.step * p.stretch);
         steps * if p.integrator == Integrator::Midpoint as u32 { 130.0 } else { 80.0 }
     },
     tolerance: Tolerance {
@@ -70,7 +75,7 @@ pub fn color(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: 
         sigma: options.sigma,
         step: options.step.max(MIN_STEP),
         // What has few steps at most need not work out how many they are.
-        stretch: if radius(options.sigma) > FEW_STEPS * options.step { options.stretch } else { 1.0 },
+        stretch: if half_length(options.sigma) > FEW_STEPS * options.step { options.stretch } else { 1.0 },
         least_turn: least_turn(options.max_angle),
         integrator: options.integrator as u32,
         adapt: options.adapt as u32,
@@ -93,94 +98,203 @@ pub(crate) fn least_turn(max_angle: f32) -> f32 {
 /// Shorter steps cost much and gain nothing over rounding.
 const MIN_STEP: f32 = 0.1;
 
-/// L = floor(2 sigma) (§ 2.9.3); a last bit must not decide whether a whole number is reached.
-fn radius(sigma: f32) -> f32 {
-    (2.0 * sigma + 1e-3).floor()
-}
-
 /// The most pixels that are read to any side.
 ///
 /// Adaptation only shortens lines; a bilinear sample at distance L reads one pixel further.
 fn reach(params: &Params) -> i32 {
-    radius(params.sigma) as i32 + 1
+    half_length(params.sigma) as i32 + 1
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    let reach = reach(&params);
-    let lines = Lines { params, source: pass.inputs[0], tensors: pass.inputs[1], field: pass.inputs[2] };
-    // Which of two ways is taken depends on the parameters alone, not on where a pixel's tile lies.
-    if Frame::suits(reach) {
-        let mut tile = Tile::default();
-        for frame in Frame::tiles(band.window, reach) {
-            match Integrator::of(params.integrator) {
-                // Known to the compiler, the usual one has no part in its loops for what others need.
-                Integrator::TwoStep => {
-                    dispatch!(pass.level, simd => lines.fill(simd, Integrator::TwoStep, &frame, &mut tile, band));
-                }
-                other => dispatch!(pass.level, simd => lines.fill(simd, other, &frame, &mut tile, band)),
+    let inputs = Inputs {
+        source: pass.inputs[0],
+        field: pass.inputs[2],
+        integrator: Integrator::of(params.integrator),
+        reach: reach(&params),
+    };
+    let mut convolve =
+        Convolve { params, colour: pass.inputs[0], tensors: pass.inputs[1], taps: Box::default() };
+    along_lines(pass.level, &inputs, &mut convolve, band);
+}
+
+/// A weighted mean of colours along the lines.
+struct Convolve<'a> {
+    params: Params,
+    colour: View<'a>,
+    tensors: View<'a>,
+    taps: Box<ColourTaps>,
+}
+
+impl AlongLines<FOUR, 4> for Convolve<'_> {
+    #[inline(always)]
+    fn near<S: Simd>(
+        &mut self,
+        simd: S,
+        field: &FieldCopy<'_>,
+        integrator: Integrator,
+        colours: &Surroundings<FOUR>,
+        blocks: &[Block; 2],
+    ) -> [[f32x8<S>; 4]; 2] {
+        let (near, [a, b]) = self.begin(simd, &blocks[0]);
+        let (far, [c, d]) = self.begin(simd, &blocks[1]);
+        let steps = [near.length, near.length, far.length, far.length];
+        let mut arcs = [near, far];
+        let (first, second) = (near.first(), far.first());
+        let mut lines =
+            Lines::new(simd, field, integrator, [a, b, c, d]).only([first, first, second, second]);
+        let mut norm = [f32x8::splat(simd, 1.0); 2];
+        let mut sums = Sums::zero(simd);
+        let (carried, mut begins) = (!near.turns_count, true);
+        while lines.go_on() {
+            let mut counts = [i32x8::splat(simd, 0); 2];
+            if !begins && carried {
+                arcs[0].renew();
+                arcs[1].renew();
             }
+            begins = false;
+            lines.trace(
+                simd,
+                field,
+                steps,
+                RUN,
+                #[inline(always)]
+                |k, i, point| {
+                    let (block, side) = (i / 2, i % 2);
+                    let weight = if carried {
+                        arcs[block].equal_step(side)
+                    } else {
+                        arcs[block].step(side, &point.line)
+                    };
+                    let active = point.active & arcs[block].holds(side, &point.line);
+                    let weight = active.select(weight, f32x8::splat(simd, 0.0));
+                    norm[block] += weight;
+                    self.taps.put(k, i, weight, &point.place);
+                    counts[block] = active.select(i32x8::splat(simd, k as i32 + 1), counts[block]);
+                    active & arcs[block].goes_on(side)
+                },
+            );
+            self.taps.add_up(simd, colours, counts, &mut sums);
         }
-    } else {
-        let covered = Covered::new(&lines.source, band, reach);
-        dispatch!(pass.level, simd => lines.fill_far(simd, covered.view(&lines.source), band));
+        let [first, second] = sums.channels(simd);
+        [
+            mean(self.with_centre(simd, &blocks[0], first), norm[0]),
+            mean(self.with_centre(simd, &blocks[1], second), norm[1]),
+        ]
+    }
+
+    #[inline(always)]
+    fn far<S: Simd>(
+        &mut self,
+        simd: S,
+        field: &FieldView<'_>,
+        integrator: Integrator,
+        covered: &View<'_>,
+        block: &Block,
+    ) -> [f32x8<S>; 4] {
+        let (mut arcs, sides) = self.begin(simd, block);
+        let mut lines = Lines::new(simd, field, integrator, sides).only([arcs.first(); 2]);
+        let mut sum = block.read(simd, covered);
+        let mut norm = f32x8::splat(simd, 1.0);
+        lines.trace(
+            simd,
+            field,
+            [arcs.length; 2],
+            usize::MAX,
+            #[inline(always)]
+            |_, side, point| {
+                let weight = arcs.step(side, &point.line);
+                let active = point.active & arcs.holds(side, &point.line);
+                let weight = active.select(weight, f32x8::splat(simd, 0.0));
+                let tap = sample_linear4(simd, covered, point.line.x, point.line.y);
+                for c in 0..4 {
+                    sum[c] = weight.mul_add(tap[c], sum[c]);
+                }
+                norm += weight;
+                active & arcs.goes_on(side)
+            },
+        );
+        mean(sum, norm)
     }
 }
 
-/// What all blocks of a band share.
-struct Lines<'a> {
-    params: Params,
-    source: View<'a>,
-    tensors: View<'a>,
-    field: View<'a>,
+impl Convolve<'_> {
+    /// The lines through a block.
+    #[inline(always)]
+    fn begin<S: Simd>(&self, simd: S, block: &Block) -> (Arcs<S>, [Stream<S>; 2]) {
+        let [e, f, g, _] = block.read(simd, &self.tensors);
+        (Arcs::new(&self.params, e, f, g), both_sides(simd, block, tangent(e, f, g)))
+    }
+
+    /// Sums of weighted colours with those of the centres, whose weight is 1.
+    #[inline(always)]
+    fn with_centre<S: Simd>(&self, simd: S, block: &Block, mut sum: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
+        let [r, g, b, alpha] = block.read(simd, &self.colour);
+        let centre = [r * alpha, g * alpha, b * alpha, alpha];
+        for c in 0..4 {
+            sum[c] += centre[c];
+        }
+        sum
+    }
 }
 
-/// A tile and what lies around it.
-#[derive(Default)]
-struct Tile {
-    colors: Surroundings<FOUR>,
-    field: Surroundings<TWO>,
-    taps: Box<Taps>,
-}
-
-/// Steps between two visits to the colours: no more than the usual lines have.
-const RUN: usize = 12;
-
-/// By line, step and pixel, for both sides of two blocks.
-type PerTap<T> = [[[T; BLOCK]; RUN]; 4];
-
-/// Steps of four times eight lines whose colours are not added up yet.
-///
-/// First to trace and then to add up keeps the long chains of the one, where everything waits, from the
-/// many independent loads of the other, and both in registers.
-#[derive(Default)]
-struct Taps {
-    /// The pixels above and to the left of a tap.
-    at: PerTap<i32>,
-    /// Weights of the row above the tap.
-    above: PerTap<f32>,
-    /// Weights of the row below.
-    below: PerTap<f32>,
-    /// Shares of the column to the right.
-    right: PerTap<f32>,
-}
-
-/// The lines of eight pixels: how long they are and how their weights fall off.
+/// The arc lengths along both sides of eight lines, and the weights that fall off with them.
 #[derive(Clone, Copy)]
-struct Reach<S: Simd> {
+struct Arcs<S: Simd> {
     radius: f32x8<S>,
     falloff: f32x8<S>,
-    /// Length of their steps.
-    step: f32x8<S>,
-    /// Cosine of the most that they may turn in one of them.
+    /// Of a step.
+    length: f32x8<S>,
+    /// Cosine of the most that lines may turn in one of them.
     least_turn: f32x8<S>,
+    /// Whether the arc length runs faster where lines turn.
+    turns_count: bool,
+    /// How far each side has come.
+    u: [f32x8<S>; 2],
+    /// Over equal steps the Gaussian is carried from one to the next: the weight of the next step, by how much
+    /// that of the one after is less, and by how much that changes.
+    gaussian: f32x8<S>,
+    ratio: f32x8<S>,
+    growth: f32x8<S>,
 }
 
-impl<S: Simd> Reach<S> {
+impl<S: Simd> Arcs<S> {
+    /// Of lines through pixels with the tensors (e, f, g).
+    #[inline(always)]
+    fn new(params: &Params, e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> Self {
+        let mut sigma = f32x8::splat(e.simd, params.sigma);
+        if params.adapt == Adapt::Anisotropy as u32 {
+            let a = anisotropy(e, f, g) + 1.0;
+            sigma *= a * a * 0.25;
+        }
+        let radius = (sigma * 2.0 + 1e-3).floor();
+        let falloff = f32x8::splat(e.simd, -0.721_347_52) / (sigma * sigma).max(f32x8::splat(e.simd, 1e-6));
+        let (length, least_turn) = stretched_step(params, radius);
+        let gaussian = (falloff * length * length).exp2_falling();
+        let growth = gaussian * gaussian;
+        Self {
+            radius,
+            falloff,
+            length,
+            least_turn,
+            turns_count: params.adapt == Adapt::Angle as u32,
+            u: [f32x8::splat(e.simd, 0.0); 2],
+            gaussian,
+            ratio: growth * gaussian,
+            growth,
+        }
+    }
+
     /// The arc length that the last step does not exceed.
     #[inline(always)]
     fn limit(&self) -> f32x8<S> {
         self.radius + 1e-3
+    }
+
+    /// Lanes whose lines have a first step.
+    #[inline(always)]
+    fn first(&self) -> mask32x8<S> {
+        self.length.simd_le(self.limit())
     }
 
     /// The weights at arc length `u`.
@@ -188,265 +302,69 @@ impl<S: Simd> Reach<S> {
     fn weight(&self, u: f32x8<S>) -> f32x8<S> {
         (self.falloff * u * u).exp2_falling()
     }
-}
 
-impl Lines<'_> {
-    /// The lengths of lines through pixels with the tensors (e, f, g).
+    /// Finds the carried weights anew: roundings would grow by the square of the number of steps.
     #[inline(always)]
-    fn reach<S: Simd>(&self, e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> Reach<S> {
-        let mut sigma = f32x8::splat(e.simd, self.params.sigma);
-        if self.params.adapt == Adapt::Anisotropy as u32 {
-            let a = anisotropy(e, f, g) + 1.0;
-            sigma *= a * a * 0.25;
-        }
-        let radius = (sigma * 2.0 + 1e-3).floor();
-        let falloff = f32x8::splat(e.simd, -0.721_347_52) / (sigma * sigma).max(f32x8::splat(e.simd, 1e-6));
-        let one = f32x8::splat(e.simd, 1.0);
-        if self.params.stretch <= 1.0 {
-            let (step, least_turn) = (one * self.params.step, one * self.params.least_turn);
-            return Reach { radius, falloff, step, least_turn };
-        }
-        let steps = ((radius + 1e-3) * self.params.step.recip()).floor();
-        let stretch = stretched(steps, few_steps(steps, self.params.stretch));
-        // The cosine of so many times the angle whose cosine is c, exact for one and two times; no more than c,
-        // since -1 stands for any turn.
-        let c = one * self.params.least_turn;
-        let least_turn = c.min(one - stretch * ((one - c) * (one - c) + stretch * c * (one - c)));
-        Reach { radius, falloff, step: stretch * self.params.step, least_turn }
+    fn renew(&mut self) {
+        let next = self.u[0] + self.length;
+        self.gaussian = self.weight(next);
+        self.ratio = (self.falloff * self.length * (next + next + self.length)).exp2_falling();
     }
 
-    /// Arc length of the last step of a line.
+    /// The weights after a step of a side, where turns do not count: carried from the last step. The first side
+    /// comes first.
     #[inline(always)]
-    fn arc<S: Simd>(&self, line: &Stream<S>, reach: &Reach<S>) -> f32x8<S> {
-        if self.params.adapt == Adapt::Angle as u32 {
-            return reach.step.max(acos(line.turn) * reach.radius / std::f32::consts::PI);
+    fn equal_step(&mut self, side: usize) -> f32x8<S> {
+        let weight = self.gaussian;
+        if side == 0 {
+            self.u[0] += self.length;
+        } else {
+            self.u[1] = self.u[0];
+            self.gaussian *= self.ratio;
+            self.ratio *= self.growth;
         }
-        reach.step
+        weight
     }
 
-    /// One tile.
+    /// The weights after any step of a side.
     #[inline(always)]
-    fn fill<S: Simd>(
-        &self,
-        simd: S,
-        integrator: Integrator,
-        frame: &Frame,
-        tile: &mut Tile,
-        band: &mut Band<'_>,
-    ) {
-        let Tile { colors, field, taps } = tile;
-        colors.load_covered(&self.source, frame);
-        field.load(&self.field, frame);
-        let near = NearField { frame, tensors: field, integrator };
-        let edges = frame.meets_edges(self.source.full());
-        let last = frame.tile.x1 - 1;
-        let (start, end) =
-            ((frame.tile.x0 - band.window.x0) as usize, (frame.tile.x1 - band.window.x0) as usize);
-        for y in frame.tile.y0..frame.tile.y1 {
-            let row = &mut band.row_mut(0, y)[4 * start..4 * end];
-            for (i, target) in row.chunks_mut(8 * BLOCK).enumerate() {
-                let x = frame.tile.x0 + (2 * BLOCK * i) as i32;
-                let lines = [self.begun(simd, x, y, last), self.begun(simd, x + BLOCK as i32, y, last)];
-                let (sums, norms) = self.follow(simd, &near, lines, edges, colors, taps);
-                for (i, target) in target.chunks_mut(4 * BLOCK).enumerate() {
-                    let mut sum = load4(simd, &sums[i]);
-                    let [r, g, b, alpha] =
-                        Block::until(last + 1, x + (i * BLOCK) as i32, y).read(simd, &self.source);
-                    let centre = [r * alpha, g * alpha, b * alpha, alpha];
-                    for c in 0..4 {
-                        sum[c] += centre[c];
-                    }
-                    write(mean(sum, norms[i]), target);
-                }
-            }
-        }
-    }
-
-    /// Follows both sides of the lines through two blocks; the sums of their weighted colours without those of the
-    /// centres, and the sums of all weights.
-    #[inline(always)]
-    fn follow<S: Simd>(
-        &self,
-        simd: S,
-        field: &NearField<'_>,
-        [(near, [a, b]), (far, [c, d])]: [(Reach<S>, [Stream<S>; 2]); 2],
-        edges: bool,
-        colors: &Surroundings<FOUR>,
-        taps: &mut Taps,
-    ) -> ([[f32; 4 * BLOCK]; 2], [f32x8<S>; 2]) {
-        let (params, zero) = (&self.params, f32x8::splat(simd, 0.0));
-        let (reach, mut lines) = ([near, far], [a, b, c, d]);
-        let turns_count = params.adapt == Adapt::Angle as u32;
-        let (near, far) = (reach[0].step.simd_le(reach[0].limit()), reach[1].step.simd_le(reach[1].limit()));
-        let mut active = [near, near, far, far];
-        let mut places = [Place::new(field.frame, lines[0].x, lines[0].y); 4];
-        let mut u = [zero; 4];
-        let mut norm = [zero + 1.0; 2];
-        let mut totals = [[zero; 2]; 2 * BLOCK];
-        // Over equal steps the Gaussian is carried from one to the next.
-        let (mut gaussian, mut ratio, mut growth) = ([zero; 2], [zero; 2], [zero; 2]);
-        for i in 0..2 {
-            gaussian[i] = reach[i].weight(reach[i].step);
-            growth[i] = gaussian[i] * gaussian[i];
-            ratio[i] = growth[i] * gaussian[i];
-        }
-        let mut begins = true;
-        while (active[0] | active[1] | active[2] | active[3]).any_true() {
-            let mut counts = [i32x8::splat(simd, 0); 2];
-            if !begins && !turns_count {
-                // Anew after a run: roundings would grow by the square of the number of steps.
-                for i in 0..2 {
-                    let (step, next) = (reach[i].step, u[2 * i] + reach[i].step);
-                    gaussian[i] = reach[i].weight(next);
-                    ratio[i] = (reach[i].falloff * step * (next + next + step)).exp2_falling();
-                }
-            }
-            begins = false;
-            for k in 0..RUN {
-                field.advance(
-                    simd,
-                    &mut lines,
-                    &places,
-                    [reach[0].step, reach[0].step, reach[1].step, reach[1].step],
-                );
-                let mut weights = [zero; 4];
-                for i in 0..2 {
-                    // Both sides have come equally far unless turns count.
-                    let (a, b) = (2 * i, 2 * i + 1);
-                    if turns_count {
-                        u[a] += self.arc(&lines[a], &reach[i]);
-                        u[b] += self.arc(&lines[b], &reach[i]);
-                        (weights[a], weights[b]) = (reach[i].weight(u[a]), reach[i].weight(u[b]));
-                    } else {
-                        u[a] += reach[i].step;
-                        (u[b], weights[a], weights[b]) = (u[a], gaussian[i], gaussian[i]);
-                        gaussian[i] *= ratio[i];
-                        ratio[i] *= growth[i];
-                    }
-                }
-                for i in 0..4 {
-                    active[i] &=
-                        u[i].simd_le(reach[i / 2].limit()) & lines[i].turn.simd_ge(reach[i / 2].least_turn);
-                    if edges {
-                        active[i] &= holds(self.source.full(), lines[i].x, lines[i].y);
-                    }
-                    let weight = active[i].select(weights[i], zero);
-                    norm[i / 2] += weight;
-                    places[i] = Place::new(field.frame, lines[i].x, lines[i].y);
-                    let below = weight * places[i].below;
-                    places[i].at.store_slice(&mut taps.at[i][k]);
-                    (weight - below).store_slice(&mut taps.above[i][k]);
-                    below.store_slice(&mut taps.below[i][k]);
-                    places[i].right.store_slice(&mut taps.right[i][k]);
-                }
-                for i in 0..2 {
-                    let either = active[2 * i] | active[2 * i + 1];
-                    counts[i] = either.select(i32x8::splat(simd, k as i32 + 1), counts[i]);
-                }
-                for i in 0..4 {
-                    active[i] &= (u[i] + reach[i / 2].step).simd_le(reach[i / 2].limit());
-                }
-                if !(active[0] | active[1] | active[2] | active[3]).any_true() {
-                    break;
-                }
-            }
-            for i in 0..2 {
-                // As many for all: where the longest line ends is easier to predict than where each does.
-                let count = counts[i].reduce_max() as usize;
-                for lane in 0..BLOCK {
-                    add(simd, taps, colors, [2 * i, lane], count, &mut totals[i * BLOCK + lane]);
-                }
-            }
-        }
-        let mut sums = [[0.0; 4 * BLOCK]; 2];
-        for i in 0..2 * BLOCK {
-            let ((all, _), (left, right)) = (totals[i][0].split(), totals[i][1].split());
-            (all - left + right).store_slice(&mut sums[i / BLOCK][4 * (i % BLOCK)..][..4]);
-        }
-        (sums, norm)
-    }
-
-    /// Both sides of the lines through a block.
-    #[inline(always)]
-    fn begun<S: Simd>(&self, simd: S, x: i32, y: i32, last: i32) -> (Reach<S>, [Stream<S>; 2]) {
-        let [e, f, g, _] = Block::until(last + 1, x, y).read(simd, &self.tensors);
-        let [px, py] = Block::until(last + 1, x, y).centres(simd);
-        (self.reach(e, f, g), Stream::both_sides(px, py, tangent(e, f, g)))
-    }
-
-    /// A band whose lines reach too far for copies of what is around tiles.
-    #[inline(always)]
-    fn fill_far<S: Simd>(&self, simd: S, covered: View<'_>, band: &mut Band<'_>) {
-        let last = band.window.x1 - 1;
-        for_blocks_in_tiles::<4>(band, |block, target| {
-            write(self.far(simd, &covered, block.x, block.y, last), target)
-        });
-    }
-
-    /// Up to eight pixels anywhere.
-    #[inline(always)]
-    fn far<S: Simd>(&self, simd: S, covered: &View<'_>, x: i32, y: i32, last: i32) -> [f32x8<S>; 4] {
-        let (params, zero) = (&self.params, f32x8::splat(simd, 0.0));
-        let field = StreamField {
-            tensors: self.field,
-            step: params.step,
-            integrator: Integrator::of(params.integrator),
+    fn step(&mut self, side: usize, line: &Stream<S>) -> f32x8<S> {
+        self.u[side] += if self.turns_count {
+            self.length.max(acos(line.turn) * self.radius / std::f32::consts::PI)
+        } else {
+            self.length
         };
-        let (reach, mut lines) = self.begun(simd, x, y, last);
-        let mut sum: [f32x8<S>; 4] = Block::until(last + 1, x, y).read(simd, covered);
-        let mut norm = f32x8::splat(simd, 1.0);
-        let mut u = [zero; 2];
-        let mut active = [reach.step.simd_le(reach.limit()); 2];
-        while (active[0] | active[1]).any_true() {
-            field.advance_by(
-                simd,
-                &mut lines,
-                [active[0].select(reach.step, zero), active[1].select(reach.step, zero)],
-            );
-            for side in 0..2 {
-                let line = &lines[side];
-                u[side] += self.arc(line, &reach);
-                active[side] &= u[side].simd_le(reach.limit()) & field.inside(line);
-                active[side] &= line.turn.simd_ge(reach.least_turn);
-                let weight = active[side].select(reach.weight(u[side]), zero);
-                let [r, g, b, a] = sample_linear4(simd, covered, line.x, line.y);
-                sum = [
-                    weight.mul_add(r, sum[0]),
-                    weight.mul_add(g, sum[1]),
-                    weight.mul_add(b, sum[2]),
-                    weight.mul_add(a, sum[3]),
-                ];
-                norm += weight;
-                active[side] &= (u[side] + reach.step).simd_le(reach.limit());
-            }
-        }
-        mean(sum, norm)
+        self.weight(self.u[side])
+    }
+
+    /// Lanes that have come neither too far nor round too sharp a turn.
+    #[inline(always)]
+    fn holds(&self, side: usize, line: &Stream<S>) -> mask32x8<S> {
+        self.u[side].simd_le(self.limit()) & line.turn.simd_ge(self.least_turn)
+    }
+
+    /// Lanes that have a next step.
+    #[inline(always)]
+    fn goes_on(&self, side: usize) -> mask32x8<S> {
+        (self.u[side] + self.length).simd_le(self.limit())
     }
 }
 
-/// Adds up `count` steps to both sides of one pixel: the sums of left and right pixels, and the same times
-/// the shares of the right ones. The left ones' shares are what is missing to one.
+/// The length of a step of lines of `radius` pixels a side, and the cosine of the most that they may turn in
+/// one of them.
 #[inline(always)]
-fn add<S: Simd>(
-    simd: S,
-    taps: &Taps,
-    colors: &Surroundings<FOUR>,
-    [first, lane]: [usize; 2],
-    count: usize,
-    sums: &mut [f32x8<S>; 2],
-) {
-    let mut sides = [*sums, [f32x8::splat(simd, 0.0); 2]];
-    for k in 0..count.min(RUN) {
-        for (side, [all, right]) in sides.iter_mut().enumerate() {
-            let line = first + side;
-            let [above, below] = colors.both_rows(simd, taps.at[line][k][lane] as u16);
-            let above = above * taps.above[line][k][lane];
-            let pair = below.mul_add(f32x8::splat(simd, taps.below[line][k][lane]), above);
-            *all += pair;
-            *right = pair.mul_add(f32x8::splat(simd, taps.right[line][k][lane]), *right);
-        }
+fn stretched_step<S: Simd>(params: &Params, radius: f32x8<S>) -> (f32x8<S>, f32x8<S>) {
+    let one = f32x8::splat(radius.simd, 1.0);
+    if params.stretch <= 1.0 {
+        return (one * params.step, one * params.least_turn);
     }
-    *sums = [sides[0][0] + sides[1][0], sides[0][1] + sides[1][1]];
+    let steps = ((radius + 1e-3) * params.step.recip()).floor();
+    let stretch = stretched(steps, few_steps(steps, params.stretch));
+    // The cosine of so many times the angle whose cosine is c, exact for one and two times; no more than c,
+    // since -1 stands for any turn.
+    let c = one * params.least_turn;
+    let least_turn = c.min(one - stretch * ((one - c) * (one - c) + stretch * c * (one - c)));
+    (stretch * params.step, least_turn)
 }
 
 /// The colour and coverage of weighted sums of covered colours and of coverage.
