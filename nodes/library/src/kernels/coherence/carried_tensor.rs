@@ -14,7 +14,7 @@ use crate::kernels::simd::pixels::{eight, premultiply, read, write};
 use crate::kernels::simd::window_sum::{gaussian_radius, gaussian_table};
 use crate::kernels::smoothing::gaussian_blur;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 /// Entries of the table of weights, the centre included.
 const TAPS: usize = 12;
@@ -62,7 +62,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     }
 }
 
-/// Rows of one strip on their way through the pass.
+/// LineBuffer of one strip on their way through the pass.
 #[derive(Default)]
 struct Strip {
     colors: LineBuffer,
@@ -95,7 +95,7 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, r: usize, band
         strip.columns.resize(8 * wide, 0.0);
         strip.tensors.resize(3 * wide, 0.0);
         strip.ring.resize((2 * r + 1) * 3 * narrow, 0.0);
-        // Rows beyond the picture are its last ones.
+        // LineBuffer beyond the picture are its last ones.
         let row = |y: i32| y.clamp(0, height - 1);
         strip.next = row(window.y0 - reach) - 1;
         for y in window.y0 - reach..window.y1 + reach {
@@ -137,70 +137,20 @@ impl Strip {
         [x0, x1]: [i32; 2],
         y: i32,
     ) {
-        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        while self.next <= y + 1 {
-            let mut least = one;
-            self.colors.load_mapped(
-                simd,
-                &pass.inputs[0],
-                self.next,
-                #[inline(always)]
-                |pixels| {
-                    least = least.min(pixels[3]);
-                    premultiply(pixels)
-                },
-            );
-            self.opaque[self.next.rem_euclid(3) as usize] = least.simd_ge(one).all_true();
-            self.next += 1;
-        }
+        self.take_in(simd, &pass.inputs[0], y + 1);
         // The coverage of opaque rows has no gradient: its products are exact, and left out.
         let opaque = self.opaque == [true; 3];
         let channels = if opaque { 3 } else { 4 };
-        let len = self.colors.stride();
         for c in 0..channels {
-            let (above, _) = self.colors.row(y - 1, c).as_chunks::<8>();
-            let blocks = above.len();
-            let here = &self.colors.row(y, c).as_chunks::<8>().0[..blocks];
-            let below = &self.colors.row(y + 1, c).as_chunks::<8>().0[..blocks];
-            let (smoothed, derived) = self.columns[2 * c * len..2 * (c + 1) * len].split_at_mut(len);
-            let smoothed = &mut smoothed.as_chunks_mut::<8>().0[..blocks];
-            let derived = &mut derived.as_chunks_mut::<8>().0[..blocks];
-            for i in 0..blocks {
-                let (above, here, below) =
-                    (eight(simd, &above[i], 0), eight(simd, &here[i], 0), eight(simd, &below[i], 0));
-                let across = f32x8::splat(simd, params.smoothing[1]);
-                (above + below).mul_add(across, here * params.smoothing[0]).store_slice(&mut smoothed[i]);
-                ((below - above) * 0.5).store_slice(&mut derived[i]);
-            }
+            self.sum_columns(simd, params, y, c);
         }
+        let len = self.colors.stride();
         let earlier = &pass.inputs[1];
         let held = earlier.window();
         let row = earlier.offset(held.x0, y);
         let row = &earlier.data()[row..row + earlier.stride()];
-        let (mut dx, mut dy) = ([zero; 4], [zero; 4]);
         for i in (0..(x1 - x0) as usize).step_by(8) {
-            for c in 0..channels {
-                let columns = &self.columns[2 * c * len..2 * (c + 1) * len];
-                let (smoothed, derived) = (&columns[i..i + 10], &columns[len + i..len + i + 10]);
-                dx[c] = (eight(simd, smoothed, 2) - eight(simd, smoothed, 0)) * 0.5;
-                let sides = eight(simd, derived, 0) + eight(simd, derived, 2);
-                dy[c] = sides.mul_add(
-                    f32x8::splat(simd, params.smoothing[1]),
-                    eight(simd, derived, 1) * params.smoothing[0],
-                );
-            }
-            if !opaque {
-                let alpha = eight(simd, self.colors.row(y, 3), i + 1);
-                for c in 0..3 {
-                    let color = eight(simd, self.colors.row(y, c), i + 1);
-                    // The quotient rule without its division: coverage squared times the gradient of the colour.
-                    dx[c] = alpha * dx[c] - color * dx[3];
-                    dy[c] = alpha * dy[c] - color * dy[3];
-                }
-            }
-            let e = dx[0] * dx[0] + dx[1] * dx[1] + dx[2] * dx[2];
-            let f = dx[0] * dy[0] + dx[1] * dy[1] + dx[2] * dy[2];
-            let g = dy[0] * dy[0] + dy[1] * dy[1] + dy[2] * dy[2];
+            let [e, f, g] = self.tensor(simd, params, opaque, y, i);
             let d = (e - g) * 0.5;
             let lambda1 = (e + g) * 0.5 + (d * d + f * f).sqrt();
             let valid = lambda1.simd_gt(f32x8::splat(simd, params.threshold));
@@ -218,6 +168,78 @@ impl Strip {
                 tensor[c].store_slice(&mut self.tensors[c * len + i..c * len + i + 8]);
             }
         }
+    }
+
+    /// Takes in the rows of `view` up to `last`.
+    #[inline(always)]
+    fn take_in<S: Simd>(&mut self, simd: S, view: &View<'_>, last: i32) {
+        let one = f32x8::splat(simd, 1.0);
+        while self.next <= last {
+            let mut least = one;
+            self.colors.load_mapped(
+                simd,
+                view,
+                self.next,
+                #[inline(always)]
+                |pixels| {
+                    least = least.min(pixels[3]);
+                    premultiply(pixels)
+                },
+            );
+            self.opaque[self.next.rem_euclid(3) as usize] = least.simd_ge(one).all_true();
+            self.next += 1;
+        }
+    }
+
+    /// Smooths and derives channel `c` along the columns about row `y`.
+    #[inline(always)]
+    fn sum_columns<S: Simd>(&mut self, simd: S, params: &Params, y: i32, c: usize) {
+        let len = self.colors.stride();
+        let (above, _) = self.colors.row(y - 1, c).as_chunks::<8>();
+        let blocks = above.len();
+        let here = &self.colors.row(y, c).as_chunks::<8>().0[..blocks];
+        let below = &self.colors.row(y + 1, c).as_chunks::<8>().0[..blocks];
+        let (smoothed, derived) = self.columns[2 * c * len..2 * (c + 1) * len].split_at_mut(len);
+        let smoothed = &mut smoothed.as_chunks_mut::<8>().0[..blocks];
+        let derived = &mut derived.as_chunks_mut::<8>().0[..blocks];
+        for i in 0..blocks {
+            let (above, here, below) =
+                (eight(simd, &above[i], 0), eight(simd, &here[i], 0), eight(simd, &below[i], 0));
+            let across = f32x8::splat(simd, params.smoothing[1]);
+            (above + below).mul_add(across, here * params.smoothing[0]).store_slice(&mut smoothed[i]);
+            ((below - above) * 0.5).store_slice(&mut derived[i]);
+        }
+    }
+
+    /// E, F and G of eight gradients of row `y`, from column `i` of the strip on.
+    #[inline(always)]
+    fn tensor<S: Simd>(&self, simd: S, params: &Params, opaque: bool, y: i32, i: usize) -> [f32x8<S>; 3] {
+        let (zero, len) = (f32x8::splat(simd, 0.0), self.colors.stride());
+        let (mut dx, mut dy) = ([zero; 4], [zero; 4]);
+        for c in 0..if opaque { 3 } else { 4 } {
+            let columns = &self.columns[2 * c * len..2 * (c + 1) * len];
+            let (smoothed, derived) = (&columns[i..i + 10], &columns[len + i..len + i + 10]);
+            dx[c] = (eight(simd, smoothed, 2) - eight(simd, smoothed, 0)) * 0.5;
+            let sides = eight(simd, derived, 0) + eight(simd, derived, 2);
+            dy[c] = sides.mul_add(
+                f32x8::splat(simd, params.smoothing[1]),
+                eight(simd, derived, 1) * params.smoothing[0],
+            );
+        }
+        if !opaque {
+            let alpha = eight(simd, self.colors.row(y, 3), i + 1);
+            for c in 0..3 {
+                let color = eight(simd, self.colors.row(y, c), i + 1);
+                // The quotient rule without its division: coverage squared times the gradient of the colour.
+                dx[c] = alpha * dx[c] - color * dx[3];
+                dy[c] = alpha * dy[c] - color * dy[3];
+            }
+        }
+        [
+            dx[0] * dx[0] + dx[1] * dx[1] + dx[2] * dx[2],
+            dx[0] * dy[0] + dx[1] * dy[1] + dx[2] * dy[2],
+            dy[0] * dy[0] + dy[1] * dy[1] + dy[2] * dy[2],
+        ]
     }
 
     /// Repeats the first and last tensors of the picture in the columns beyond it.

@@ -14,7 +14,7 @@ pub use crate::kernels::shaders::directed_shock::Params;
 use crate::kernels::shared::tensor::axis;
 use crate::kernels::simd::pixels::{BLOCK, Block, fetch4, offsets, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance, View};
 use luma_taps::{Line, LumaTaps, STRIP};
 
 #[path = "directed_shock/flow_log.rs"]
@@ -65,8 +65,13 @@ pub fn sharpened(
     let Options { sigma, radius, scale, threshold } = *options;
     let sigma = sigma.max(LEAST_SIGMA);
     let params = Params { sigma, reach: flow_log::CUTOFF * sigma, radius, scale, threshold };
-    let support = steps(&params).max(flow_log::radius(params.reach));
-    plan.pass(&KERNEL, &[color, tensors, smooth], &params, Class::Colour, Support::Pixels(support as u32))
+    let support = Support::Pixels(reach(&params) as u32);
+    plan.pass(&KERNEL, &[color, tensors, smooth], &params, Class::Colour, support)
+}
+
+/// The most pixels that are read to any side.
+fn reach(params: &Params) -> i32 {
+    steps(params).max(flow_log::radius(params.reach))
 }
 
 /// Most steps to a side that an extremum is looked for.
@@ -88,7 +93,7 @@ fn strips<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
     let same = std::ptr::eq(color.data(), smooth.data());
     for x0 in (window.x0..window.x1).step_by(STRIP as usize) {
         let strip = Rect { x0, x1: (x0 + STRIP).min(window.x1), ..window };
-        smoothed.load(simd, smooth, strip, flow_log::radius(params.reach).max(radius), true);
+        smoothed.load(simd, smooth, strip, reach(params), true);
         // The luma of opaque pixels is the same, weighted by coverage or not.
         let shared = same && smoothed.is_opaque();
         if !shared {
@@ -198,19 +203,36 @@ fn extreme<S: Simd, const OPAQUE: bool, const ROWS: usize>(
             whole = [inside.select(best.offset[0], whole[0]), inside.select(best.offset[1], whole[1])];
         }
     }
-    let lanes = block.columns(simd);
-    let at = offsets(&pass.inputs[0], lanes + best.offset[0], best.offset[1] + block.y);
-    let [mut r, mut g, mut b, _] = fetch4(simd, &pass.inputs[0], at);
     let share = steps - steps.floor();
-    if (share.simd_gt(zero) & active).any_true() {
-        let at = offsets(&pass.inputs[0], lanes + whole[0], whole[1] + block.y);
-        let [near_r, near_g, near_b, _] = fetch4(simd, &pass.inputs[0], at);
-        let part = share.simd_gt(zero);
+    let partly = share.simd_gt(zero) & active;
+    let whole = partly.any_true().then_some(whole);
+    let [r, g, b] = moved(simd, &pass.inputs[0], block, best.offset, whole, share);
+    [r, g, b, if OPAQUE { one } else { alpha }]
+}
+
+/// The colours that lie `offset` from eight pixels; where the last step counts by a `share` above 0, and those at
+/// `whole` are given, the rest is theirs.
+#[inline(always)]
+fn moved<S: Simd>(
+    simd: S,
+    color: &View<'_>,
+    block: Block,
+    offset: [i32x8<S>; 2],
+    whole: Option<[i32x8<S>; 2]>,
+    share: f32x8<S>,
+) -> [f32x8<S>; 3] {
+    let columns = block.columns(simd);
+    let [mut r, mut g, mut b, _] =
+        fetch4(simd, color, offsets(color, columns + offset[0], offset[1] + block.y));
+    if let Some(whole) = whole {
+        let [near_r, near_g, near_b, _] =
+            fetch4(simd, color, offsets(color, columns + whole[0], whole[1] + block.y));
+        let part = share.simd_gt(f32x8::splat(simd, 0.0));
         r = part.select(near_r + (r - near_r) * share, r);
         g = part.select(near_g + (g - near_g) * share, g);
         b = part.select(near_b + (b - near_b) * share, b);
     }
-    [r, g, b, if OPAQUE { one } else { alpha }]
+    [r, g, b]
 }
 
 impl<S: Simd> Best<S> {

@@ -84,64 +84,75 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 #[inline(always)]
 fn breaks<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let [response, field, normal, depth, object_id] = pass.inputs else { return };
-    let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-    let has = |bit: u32| params.guides & bit != 0;
     for_blocks::<2>(
         band,
         #[inline(always)]
         |block, target| {
-            let orientation = block.read(simd, field);
-            let line = Across::new(simd, &block, orientation);
-            let first = -params.steps;
-            let start = line.nearest(first);
-            let mut normal_here = if has(1) { normals(simd, normal, start) } else { [zero; 3] };
-            let mut id_here = if has(4) { ids(simd, object_id, start) } else { zero };
-            let (mut depth_here, mut depth_next, mut bend_here) = (zero, zero, zero);
-            if has(2) {
-                depth_here = depths(simd, depth, start);
-                depth_next = depths(simd, depth, line.nearest(first + 1));
-                bend_here = depth_bend(depths(simd, depth, line.nearest(first - 1)), depth_here, depth_next);
-            }
-            let (mut narrow, mut wide) = ([zero; 3], [zero; 3]);
-            let (mut narrow_weights, mut wide_weights) = (zero, zero);
-            for k in first..params.steps {
-                let next = line.nearest(k + 1);
-                let mut found = [zero; 3];
-                if has(1) {
-                    let normal_next = normals(simd, normal, next);
-                    found[0] = normal_break(normal_here, normal_next);
-                    normal_here = normal_next;
-                }
-                if has(2) {
-                    let after = depths(simd, depth, line.nearest(k + 2));
-                    let bend_next = depth_bend(depth_here, depth_next, after);
-                    found[1] = ramp((bend_here.min(bend_next) - 0.02) * 10.0);
-                    (depth_here, depth_next, bend_here) = (depth_next, after, bend_next);
-                }
-                if has(4) {
-                    let id_next = ids(simd, object_id, next);
-                    found[2] = id_next.simd_eq(id_here).select(zero, one);
-                    id_here = id_next;
-                }
-                let d = line.step * (k as f32 + 0.5);
-                let near = d.abs().simd_le(params.halfwidth);
-                let n = near.select((d * params.narrow * d).exp(), zero);
-                let w = near.select((d * params.wide * d).exp(), zero);
-                for (i, found) in found.iter().enumerate() {
-                    narrow[i] = n.mul_add(*found, narrow[i]);
-                    wide[i] = w.mul_add(*found, wide[i]);
-                }
-                narrow_weights += n;
-                wide_weights += w;
-            }
-            let mut ridge = zero;
-            for (narrow, wide) in narrow.iter().zip(&wide) {
-                ridge = ridge.max(*narrow / narrow_weights - *wide / wide_weights);
-            }
+            let line = Across::new(simd, &block, block.read(simd, field));
+            let ridge = ridge(simd, [normal, depth, object_id], params, &line);
             let [u, alpha] = block.read(simd, response);
             write([u - ridge * params.amount * alpha, alpha], target);
         },
     );
+}
+
+/// By how much the breaks of any guide are stronger near eight pixels than around them.
+#[inline(always)]
+fn ridge<S: Simd>(
+    simd: S,
+    [normal, depth, object_id]: [&View<'_>; 3],
+    params: &Params,
+    line: &Across<S>,
+) -> f32x8<S> {
+    let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+    let has = |bit: u32| params.guides & bit != 0;
+    let first = -params.steps;
+    let start = line.nearest(first);
+    let mut normal_here = if has(1) { normals(simd, normal, start) } else { [zero; 3] };
+    let mut id_here = if has(4) { ids(simd, object_id, start) } else { zero };
+    let (mut depth_here, mut depth_next, mut bend_here) = (zero, zero, zero);
+    if has(2) {
+        depth_here = depths(simd, depth, start);
+        depth_next = depths(simd, depth, line.nearest(first + 1));
+        bend_here = depth_bend(depths(simd, depth, line.nearest(first - 1)), depth_here, depth_next);
+    }
+    let (mut narrow, mut wide) = ([zero; 3], [zero; 3]);
+    let (mut narrow_weights, mut wide_weights) = (zero, zero);
+    for k in first..params.steps {
+        let next = line.nearest(k + 1);
+        let mut found = [zero; 3];
+        if has(1) {
+            let normal_next = normals(simd, normal, next);
+            found[0] = normal_break(normal_here, normal_next);
+            normal_here = normal_next;
+        }
+        if has(2) {
+            let after = depths(simd, depth, line.nearest(k + 2));
+            let bend_next = depth_bend(depth_here, depth_next, after);
+            found[1] = ramp((bend_here.min(bend_next) - 0.02) * 10.0);
+            (depth_here, depth_next, bend_here) = (depth_next, after, bend_next);
+        }
+        if has(4) {
+            let id_next = ids(simd, object_id, next);
+            found[2] = id_next.simd_eq(id_here).select(zero, one);
+            id_here = id_next;
+        }
+        let d = line.step * (k as f32 + 0.5);
+        let near = d.abs().simd_le(params.halfwidth);
+        let n = near.select((d * params.narrow * d).exp(), zero);
+        let w = near.select((d * params.wide * d).exp(), zero);
+        for (i, found) in found.iter().enumerate() {
+            narrow[i] = n.mul_add(*found, narrow[i]);
+            wide[i] = w.mul_add(*found, wide[i]);
+        }
+        narrow_weights += n;
+        wide_weights += w;
+    }
+    let mut ridge = zero;
+    for (narrow, wide) in narrow.iter().zip(&wide) {
+        ridge = ridge.max(*narrow / narrow_weights - *wide / wide_weights);
+    }
+    ridge
 }
 
 #[inline(always)]

@@ -13,9 +13,8 @@
 pub use crate::kernels::shaders::anisotropic_kuwahara::Params;
 use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Polynomial, Response, Sector};
 use crate::kernels::shared::tensor::{anisotropy, tangent};
-use crate::kernels::simd::line_buffer::strips;
-use crate::kernels::simd::moment_buffer::{CHANNELS, MomentBuffer};
-use crate::kernels::simd::pixels::{Block, eight};
+use crate::kernels::simd::moment_buffer::{CHANNELS, MomentBuffer, for_rows};
+use crate::kernels::simd::pixels::{Block, eight, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 use std::f32::consts::FRAC_1_SQRT_2;
@@ -107,23 +106,22 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 #[inline(always)]
 fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let reach = reach(params.radius, params.elongation);
-    let mut planes = MomentBuffer::default();
     let mut taps = vec![Tap([[0.0; 8]; 20]); BATCH + 2 * reach as usize];
-    let (color, window) = (&pass.inputs[0], band.window);
-    for (x0, x1) in strips(window.x0, window.x1) {
-        planes.start(x0, x1, reach, 2 * reach + 1);
-        for y in window.y0 - reach..window.y0 + reach {
-            planes.load(simd, color, y);
-        }
-        for y in window.y0..window.y1 {
-            planes.load(simd, color, y + reach);
+    let color = &pass.inputs[0];
+    for_rows(
+        simd,
+        color,
+        reach,
+        band,
+        #[inline(always)]
+        |planes, [x0, x1], y, band| {
             let opaque = planes.is_opaque();
             for x in (x0..x1).step_by(8) {
                 let block = Block::until(x1, x, y);
                 let ellipses = Ellipses::new(simd, params, block.read(simd, &pass.inputs[1]));
                 let original = block.read(simd, color);
-                let place = Place { planes: &planes, x, y };
-                let (colour, deviation) = match (opaque, params.sectors == 8) {
+                let place = Place { planes, x, y };
+                let response = match (opaque, params.sectors == 8) {
                     (true, true) => {
                         filtered::<S, true, true>(simd, place, &ellipses, params, &mut taps, original)
                     }
@@ -137,11 +135,24 @@ fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                         filtered::<S, false, false>(simd, place, &ellipses, params, &mut taps, original)
                     }
                 };
-                block.write(colour, band, 0);
-                block.write([deviation], band, 1);
+                put_response(response, [x, x1.min(x + 8)], y, band);
             }
-        }
-    }
+        },
+    );
+}
+
+/// Writes the colours and the deviations of the pixels from `first` to before `end`.
+#[inline(always)]
+pub(super) fn put_response<S: Simd>(
+    (colour, deviation): ([f32x8<S>; 4], f32x8<S>),
+    [first, end]: [i32; 2],
+    y: i32,
+    band: &mut Band<'_>,
+) {
+    let x0 = band.window.x0;
+    let (first, end) = ((first - x0) as usize, (end - x0) as usize);
+    write(colour, &mut band.row_mut(0, y)[4 * first..4 * end]);
+    band.row_mut(1, y)[first..end].copy_from_slice(&deviation.to_array()[..end - first]);
 }
 
 /// Eight pixels of a row and the rows around them.
@@ -161,7 +172,7 @@ struct Ellipses<S: Simd> {
     shift: f32x8<S>,
     /// 1 / a, and (a c - b^2) / a^2.
     width: [f32x8<S>; 2],
-    /// Rows below the centre that hold a pixel of any.
+    /// LineBuffer below the centre that hold a pixel of any.
     rows: i32,
 }
 
@@ -301,6 +312,62 @@ fn gather<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
     out
 }
 
+/// Positions in eight unit discs along a row of pixels: in those of the even sectors, and turned by 45 degrees in
+/// those of the odd ones.
+///
+/// All lengths are taken times eta, which makes the weights polynomials with a leading factor of 1. That of the
+/// weights, eta squared, goes when they are normalised.
+struct Row<S: Simd> {
+    start: [f32x8<S>; 2],
+    step: [f32x8<S>; 2],
+    turned: [f32x8<S>; 2],
+    turned_step: [f32x8<S>; 2],
+    zeta: f32x8<S>,
+    /// What makes a squared distance of the sum of two polynomials: a factor and a summand.
+    shrink: f32,
+    middle: f32x8<S>,
+}
+
+impl<S: Simd> Row<S> {
+    #[inline(always)]
+    fn new(simd: S, ellipses: &Ellipses<S>, params: &Params, j: i32) -> Self {
+        let (scale, shrink) = (params.eta, -(params.eta * params.eta).recip());
+        let below_centre = scale * j as f32;
+        let start = [ellipses.along[1] * below_centre, ellipses.across[1] * below_centre];
+        let step = [ellipses.along[0] * scale, ellipses.across[0] * scale];
+        Self {
+            start,
+            step,
+            turned: [(start[0] + start[1]) * FRAC_1_SQRT_2, (start[1] - start[0]) * FRAC_1_SQRT_2],
+            turned_step: [(step[0] + step[1]) * FRAC_1_SQRT_2, (step[1] - step[0]) * FRAC_1_SQRT_2],
+            zeta: f32x8::splat(simd, params.zeta * params.eta),
+            shrink,
+            middle: f32x8::splat(simd, -2.0 * params.zeta * params.eta * shrink),
+        }
+    }
+
+    /// Per pair of opposite sectors the sum and the difference of their polynomials, and the squared distance from
+    /// the centre.
+    #[inline(always)]
+    fn pairs<const EIGHT: bool>(&self, simd: S, column: f32x8<S>) -> ([[f32x8<S>; 2]; 4], f32x8<S>) {
+        let Self { start, step, turned, turned_step, zeta, .. } = self;
+        let zero = f32x8::splat(simd, 0.0);
+        let v = [column.mul_add(step[0], start[0]), column.mul_add(step[1], start[1])];
+        let k0 = (-v[1]).mul_add(v[1], *zeta);
+        let k2 = (-v[0]).mul_add(v[0], *zeta);
+        let distance = (k0 + k2).mul_add(f32x8::splat(simd, self.shrink), self.middle);
+        let mut pairs = [[zero; 2]; 4];
+        pairs[0] = opposite(v[0], k0, zero);
+        pairs[2] = opposite(v[1], k2, zero);
+        if EIGHT {
+            let u = [column.mul_add(turned_step[0], turned[0]), column.mul_add(turned_step[1], turned[1])];
+            pairs[1] = opposite(u[0], (-u[1]).mul_add(u[1], *zeta), zero);
+            pairs[3] = opposite(u[1], (-u[0]).mul_add(u[0], *zeta), zero);
+        }
+        (pairs, distance)
+    }
+}
+
 /// Finds the weights of the pixels of row `j` from column `i` on, and pairs them with their opposites.
 #[inline(always)]
 fn weights<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
@@ -309,55 +376,35 @@ fn weights<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
     ellipses: &Ellipses<S>,
     params: &Params,
     [i, j]: [i32; 2],
-    row: &mut [Tap],
+    taps: &mut [Tap],
 ) {
     let Place { planes, x, y } = place;
     // What the row meets below, and above from its last pixel on.
-    let last = row.len() - 1;
+    let last = taps.len() - 1;
     let (mut below, mut above) = (planes.row(y + j), planes.row(y - j));
     let (near, far) = (planes.column(x + i), planes.column(x - i) - last);
     for channel in 0..CHANNELS {
         below[channel] = &below[channel][near..near + last + 8];
         above[channel] = &above[channel][far..far + last + 8];
     }
-    let zero = f32x8::splat(simd, 0.0);
-    // All lengths are taken times eta, which makes it a polynomial with a leading factor of 1. That of the
-    // weights, eta squared, goes when they are normalised.
-    let zeta = f32x8::splat(simd, params.zeta * params.eta);
-    let (scale, shrink) = (params.eta, -(params.eta * params.eta).recip());
-    let middle = f32x8::splat(simd, -2.0 * params.zeta * params.eta * shrink);
-    let below_centre = scale * j as f32;
-    let start = [ellipses.along[1] * below_centre, ellipses.across[1] * below_centre];
-    let step = [ellipses.along[0] * scale, ellipses.across[0] * scale];
-    let turned = [(start[0] + start[1]) * FRAC_1_SQRT_2, (start[1] - start[0]) * FRAC_1_SQRT_2];
-    let turned_step = [(step[0] + step[1]) * FRAC_1_SQRT_2, (step[1] - step[0]) * FRAC_1_SQRT_2];
+    let row = Row::new(simd, ellipses, params, j);
     // Whole numbers. To add up positions instead would round them by where the union begins.
     let mut column = f32x8::splat(simd, i as f32);
-    for (n, tap) in row.iter_mut().enumerate() {
-        let v = [column.mul_add(step[0], start[0]), column.mul_add(step[1], start[1])];
-        let k0 = (-v[1]).mul_add(v[1], zeta);
-        let k2 = (-v[0]).mul_add(v[0], zeta);
-        let distance = (k0 + k2).mul_add(f32x8::splat(simd, shrink), middle);
-        let (s0, d0) = opposite(v[0], k0, zero);
-        let (s2, d2) = opposite(v[1], k2, zero);
-        let mut sum = s0 + s2;
-        let (mut s1, mut d1, mut s3, mut d3) = (zero, zero, zero, zero);
-        if EIGHT {
-            let u = [column.mul_add(turned_step[0], turned[0]), column.mul_add(turned_step[1], turned[1])];
-            (s1, d1) = opposite(u[0], (-u[1]).mul_add(u[1], zeta), zero);
-            (s3, d3) = opposite(u[1], (-u[0]).mul_add(u[0], zeta), zero);
-            sum += s1 + s3;
-        }
+    for (n, tap) in taps.iter_mut().enumerate() {
+        let (pairs, distance) = row.pairs::<EIGHT>(simd, column);
         column += 1.0;
+        let mut sum = pairs[0][0] + pairs[2][0];
+        if EIGHT {
+            sum += pairs[1][0] + pairs[3][0];
+        }
         let inside = distance.simd_le(f32x8::splat(simd, INSIDE));
-        inside.select(gaussian(distance), zero).store_slice(&mut tap.0[NORM]);
+        inside.select(gaussian(distance), f32x8::splat(simd, 0.0)).store_slice(&mut tap.0[NORM]);
         // No sector may hold what lies outside the ellipse: 0 must not be divided by 0.
         sum.max(f32::MIN_POSITIVE).store_slice(&mut tap.0[TOTAL]);
-        let pairs = [(s0, d0), (s1, d1), (s2, d2), (s3, d3)];
         for k in 0..4 {
             if EIGHT || k % 2 == 0 {
-                pairs[k].0.store_slice(&mut tap.0[BOTH + k]);
-                pairs[k].1.store_slice(&mut tap.0[APART + k]);
+                pairs[k][0].store_slice(&mut tap.0[BOTH + k]);
+                pairs[k][1].store_slice(&mut tap.0[APART + k]);
             }
         }
         for channel in 0..if OPAQUE { 4 } else { 5 } {
@@ -372,10 +419,10 @@ fn weights<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
 /// Sum and difference of the polynomials (5.36) of two opposite sectors, from the component along the
 /// sector and zeta - eta times the square of that across it.
 #[inline(always)]
-fn opposite<S: Simd>(forward: f32x8<S>, k: f32x8<S>, zero: f32x8<S>) -> (f32x8<S>, f32x8<S>) {
+fn opposite<S: Simd>(forward: f32x8<S>, k: f32x8<S>, zero: f32x8<S>) -> [f32x8<S>; 2] {
     let (near, far) = ((k + forward).max(zero), (k - forward).max(zero));
     let near = near * near;
-    (far.mul_add(far, near), (-far).mul_add(far, near))
+    [far.mul_add(far, near), (-far).mul_add(far, near)]
 }
 
 /// exp(-3.125 x) for x in 0..=1 to 1e-6; the fourth power of a polynomial for a quarter of it.

@@ -9,13 +9,12 @@
 //! The shader reads them through workgroup memory, about (1 + elongation)^2 radius^2 / 4 loads a pixel, up to an
 //! elongation of 2.
 
-use crate::kernels::painting::anisotropic_kuwahara::{Options, reach};
+use crate::kernels::painting::anisotropic_kuwahara::{Options, put_response, reach};
 pub use crate::kernels::shaders::anisotropic_kuwahara_texture::Params;
 use crate::kernels::shared::sampled_sectors::{Table, sample, table};
 use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Response, Sector};
 use crate::kernels::shared::tensor::scalar::{anisotropy, tangent};
-use crate::kernels::simd::line_buffer::strips;
-use crate::kernels::simd::moment_buffer::{CHANNELS, MomentBuffer};
+use crate::kernels::simd::moment_buffer::{CHANNELS, MomentBuffer, for_rows};
 use crate::kernels::simd::pixels::Block;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -71,22 +70,21 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 fn filter<S: Simd, const N: usize>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let reach = reach(params.radius, params.elongation);
     let response = Response { threshold: params.threshold, q: params.q, floor: params.deviation_floor };
-    let mut planes = MomentBuffer::default();
-    let (color, window) = (&pass.inputs[0], band.window);
+    let color = &pass.inputs[0];
     let zero = f32x8::splat(simd, 0.0);
-    for (x0, x1) in strips(window.x0, window.x1) {
-        planes.start(x0, x1, reach, 2 * reach + 1);
-        for y in window.y0 - reach..window.y0 + reach {
-            planes.load(simd, color, y);
-        }
-        for y in window.y0..window.y1 {
-            planes.load(simd, color, y + reach);
+    for_rows(
+        simd,
+        color,
+        reach,
+        band,
+        #[inline(always)]
+        |planes, [x0, x1], y, band| {
             for x in (x0..x1).step_by(8) {
-                let block = Block::until(x1, x, y);
+                let end = x1.min(x + 8);
                 let mut gathered: Gathered = [[[0.0; 8]; 8]; CHANNELS + 1];
-                for (lane, x) in (x..x + block.len as i32).enumerate() {
+                for (lane, x) in (x..end).enumerate() {
                     let tensor = pass.inputs[1].pixel4(x, y);
-                    gather::<S, N>(simd, &planes, params, tensor, [x, y], lane, &mut gathered);
+                    gather::<S, N>(simd, planes, params, tensor, [x, y], lane, &mut gathered);
                 }
                 let mut sectors = [Sector::new([zero; 5], zero); N];
                 for (k, sector) in sectors.iter_mut().enumerate() {
@@ -96,12 +94,11 @@ fn filter<S: Simd, const N: usize>(simd: S, pass: &CpuPass<'_>, params: &Params,
                     }
                     *sector = Sector::new(sums, f32x8::from_slice(simd, &gathered[CHANNELS][k]));
                 }
-                let (colour, deviation) = response.of(&sectors, block.read(simd, color));
-                block.write(colour, band, 0);
-                block.write([deviation], band, 1);
+                let original = Block::until(x1, x, y).read(simd, color);
+                put_response(response.of(&sectors, original), [x, end], y, band);
             }
-        }
-    }
+        },
+    );
 }
 
 #[inline(always)]
@@ -109,20 +106,12 @@ fn gather<S: Simd, const N: usize>(
     simd: S,
     planes: &MomentBuffer,
     params: &Params,
-    [e, f, g, _]: [f32; 4],
+    tensor: [f32; 4],
     [x, y]: [i32; 2],
     lane: usize,
     out: &mut Gathered,
 ) {
-    let [tx, ty] = tangent(e, f, g);
-    let stretch = 1.0 + params.elongation * anisotropy(e, f, g);
-    let (long, short) = (1.0 / (params.radius * stretch), stretch / params.radius);
-    let (along, across) = ([tx * long, ty * long], [-ty * short, tx * short]);
-    let a = along[0] * along[0] + across[0] * across[0];
-    let b = along[0] * along[1] + across[0] * across[1];
-    let area = params.radius.powi(4).recip();
-    let rows = (INSIDE * a / area).sqrt() as i32;
-
+    let ellipse = Ellipse::new(params, tensor);
     // Towards and away: the second pixel of each pair counts for the opposite sectors.
     let mut towards = [f32x8::splat(simd, 0.0); CHANNELS];
     let mut away = towards;
@@ -133,16 +122,11 @@ fn gather<S: Simd, const N: usize>(
     }
     // Half of what both pixels of a pair add to the weights.
     let mut pairs = f32x8::splat(simd, 0.0);
-    for j in 0..=rows {
-        let dy = j as f32;
-        let half = (INSIDE * a - area * dy * dy).max(0.0).sqrt() / a;
-        let first = if j == 0 { 1 } else { (-b * dy / a - half - 1e-3).ceil() as i32 };
-        let last = (-b * dy / a + half + 1e-3).floor() as i32;
+    for j in 0..=ellipse.rows {
+        let [first, last] = ellipse.columns(j);
         let (below, above) = (planes.row(y + j), planes.row(y - j));
         for i in first..=last {
-            let dx = i as f32;
-            let u = dx.mul_add(along[0], dy * along[1]);
-            let v = dx.mul_add(across[0], dy * across[1]);
+            let [u, v] = ellipse.in_disc(i, j);
             if u * u + v * v > INSIDE {
                 continue;
             }
@@ -166,6 +150,50 @@ fn gather<S: Simd, const N: usize>(
     let (full, pairs) = (full.to_array(), pairs.to_array());
     for k in 0..N {
         out[CHANNELS][k][lane] = full[k] + pairs[opposite(k)];
+    }
+}
+
+/// The mapping S R_-phi (5.32) of one pixel for a disc of radius 1, and its ellipse
+/// a i^2 + 2 b i j + c j^2 <= 1.
+struct Ellipse {
+    along: [f32; 2],
+    across: [f32; 2],
+    a: f32,
+    b: f32,
+    /// a c - b^2.
+    area: f32,
+    /// LineBuffer below the centre that hold a pixel.
+    rows: i32,
+}
+
+impl Ellipse {
+    #[inline(always)]
+    fn new(params: &Params, [e, f, g, _]: [f32; 4]) -> Self {
+        let [tx, ty] = tangent(e, f, g);
+        let stretch = 1.0 + params.elongation * anisotropy(e, f, g);
+        let (long, short) = (1.0 / (params.radius * stretch), stretch / params.radius);
+        let (along, across) = ([tx * long, ty * long], [-ty * short, tx * short]);
+        let a = along[0] * along[0] + across[0] * across[0];
+        let b = along[0] * along[1] + across[0] * across[1];
+        let area = params.radius.powi(4).recip();
+        Self { along, across, a, b, area, rows: (INSIDE * a / area).sqrt() as i32 }
+    }
+
+    /// First and last columns of row `j` that hold a pixel, or all but do by rounding; of the centre's row those
+    /// to its right.
+    #[inline(always)]
+    fn columns(&self, j: i32) -> [i32; 2] {
+        let (a, b, dy) = (self.a, self.b, j as f32);
+        let half = (INSIDE * a - self.area * dy * dy).max(0.0).sqrt() / a;
+        let first = if j == 0 { 1 } else { (-b * dy / a - half - 1e-3).ceil() as i32 };
+        [first, (-b * dy / a + half + 1e-3).floor() as i32]
+    }
+
+    /// Where a pixel lies in the disc.
+    #[inline(always)]
+    fn in_disc(&self, i: i32, j: i32) -> [f32; 2] {
+        let (dx, dy) = (i as f32, j as f32);
+        [dx.mul_add(self.along[0], dy * self.along[1]), dx.mul_add(self.across[0], dy * self.across[1])]
     }
 }
 

@@ -14,8 +14,7 @@
 pub use crate::kernels::shaders::generalized_kuwahara::Params;
 use crate::kernels::shared::sampled_sectors::{sample, table};
 use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Response, Sector};
-use crate::kernels::simd::line_buffer::strips;
-use crate::kernels::simd::moment_buffer::{CHANNELS, MomentBuffer};
+use crate::kernels::simd::moment_buffer::{CHANNELS, for_rows};
 use crate::kernels::simd::pixels::{Block, eight, read, write};
 use block_convolution::{Convolution, Mask, block_side};
 use isophote_engine::fearless_simd::{Level, Simd, dispatch, f32x8, prelude::*};
@@ -129,15 +128,14 @@ fn spatial<S: Simd, const N: usize>(
     masks: &[Mask],
     band: &mut Band<'_>,
 ) {
-    let (window, reach, response) = (band.window, params.reach, params.response());
-    let mut planes = MomentBuffer::default();
-    for (x0, x1) in strips(window.x0, window.x1) {
-        planes.start(x0, x1, reach, 2 * reach + 1);
-        for y in window.y0 - reach..window.y0 + reach {
-            planes.load(simd, &pass.inputs[0], y);
-        }
-        for y in window.y0..window.y1 {
-            planes.load(simd, &pass.inputs[0], y + reach);
+    let (x_start, reach, response) = (band.window.x0, params.reach, params.response());
+    for_rows(
+        simd,
+        &pass.inputs[0],
+        reach,
+        band,
+        #[inline(always)]
+        |planes, [x0, x1], y, band| {
             let rows: Vec<[&[f32]; CHANNELS]> = (-reach..=reach).map(|j| planes.row(y + j)).collect();
             let opaque = planes.is_opaque();
             let zero = f32x8::splat(simd, 0.0);
@@ -158,13 +156,14 @@ fn spatial<S: Simd, const N: usize>(
                     if x >= x1 {
                         break;
                     }
-                    let block = Block::until(x1, x, y);
-                    let (colour, _) = response.of(sectors, block.read(simd, &pass.inputs[0]));
-                    block.write(colour, band, 0);
+                    let original = Block::until(x1, x, y).read(simd, &pass.inputs[0]);
+                    let (colour, _) = response.of(sectors, original);
+                    let (first, last) = ((x - x_start) as usize, (x1.min(x + 8) - x_start) as usize);
+                    write(colour, &mut band.row_mut(0, y)[4 * first..4 * last]);
                 }
             }
-        }
-    }
+        },
+    );
 }
 
 /// One sector of sixteen pixels. Opaque pixels need no sum of coverage: it is that of the weights.

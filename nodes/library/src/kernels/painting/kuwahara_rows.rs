@@ -75,8 +75,13 @@ impl Side {
 
     /// Pixels from the centre to the farthest weight.
     pub fn reach(&self) -> i32 {
-        self.first.abs().max(self.first + self.count as i32 - 1)
+        reach(self.first, self.count)
     }
+}
+
+/// Pixels from the centre to the farthest of `count` weights, of which the `first` is that of a pixel so far on.
+fn reach(first: i32, count: u32) -> i32 {
+    first.abs().max(first + count as i32 - 1)
 }
 
 /// Adds the pass. The outputs are the sums of (a r, a g, a b, a) to the left, the same to the right
@@ -100,8 +105,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 
 #[inline(always)]
 fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
-    let count = params.count as i32;
-    let reach = params.first.abs().max(params.first + count - 1);
+    let reach = reach(params.first, params.count);
     let window = band.window;
     let mut planes = MomentBuffer::default();
     let mut doubled = Vec::new();

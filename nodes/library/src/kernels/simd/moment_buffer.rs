@@ -2,14 +2,15 @@
 //! colours times coverage, their squares and the coverage, channel by channel, ready for vectors that start
 //! at any column.
 
+use crate::kernels::simd::line_buffer::strips;
 use crate::kernels::simd::pixels::read;
-use isophote_engine::View;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
+use isophote_engine::{Band, View};
 
 /// Channels of a row: a r, a g, a b, a (r^2 + g^2 + b^2), a.
 pub const CHANNELS: usize = 5;
 
-/// Rows of a strip of columns, clamped to the picture's edge.
+/// LineBuffer of a strip of columns, clamped to the picture's edge.
 #[derive(Debug, Default)]
 pub struct MomentBuffer {
     first: i32,
@@ -86,5 +87,29 @@ impl MomentBuffer {
             }
         }
         self.opaque[slot] = least.simd_ge(one).all_true();
+    }
+}
+
+/// Runs `f` on every row of a band, strip by strip, with what lies up to `reach` pixels around it: it is given the
+/// rows, the first column of the strip and the one after its last, and the row.
+#[inline(always)]
+pub fn for_rows<S: Simd>(
+    simd: S,
+    view: &View<'_>,
+    reach: i32,
+    band: &mut Band<'_>,
+    mut f: impl FnMut(&MomentBuffer, [i32; 2], i32, &mut Band<'_>),
+) {
+    let window = band.window;
+    let mut planes = MomentBuffer::default();
+    for (x0, x1) in strips(window.x0, window.x1) {
+        planes.start(x0, x1, reach, 2 * reach + 1);
+        for y in window.y0 - reach..window.y0 + reach {
+            planes.load(simd, view, y);
+        }
+        for y in window.y0..window.y1 {
+            planes.load(simd, view, y + reach);
+            f(&planes, [x0, x1], y, band);
+        }
     }
 }

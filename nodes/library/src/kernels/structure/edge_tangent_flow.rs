@@ -14,7 +14,7 @@
 
 pub use crate::kernels::shaders::edge_tangent_flow::Params;
 use crate::kernels::shared::tensor::axis;
-use crate::kernels::simd::line_buffer::{self, Row, STRIP, for_rows};
+use crate::kernels::simd::line_buffer::{self, LineBuffer, Row, STRIP, for_rows};
 use crate::kernels::simd::pixels::{BLOCK, eight, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -100,17 +100,33 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     dispatch!(pass.level, simd => rows(simd, pass, &params, band));
 }
 
+impl Params {
+    /// Spatial weight at a distance along an axis.
+    #[inline(always)]
+    fn weight(&self, i: i32) -> f32 {
+        self.weights[i as usize / 4][i as usize % 4]
+    }
+}
+
+/// The neighbours in one row.
+struct Span {
+    /// The row, from the centre's.
+    dy: i32,
+    /// How far they lie to either side.
+    half: i32,
+    /// Spatial weight of the row.
+    weight: f32,
+}
+
 #[inline(always)]
 fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let inverse = 1.0 / pass.inputs[1].pixel1(0, 0).max(f32::MIN_POSITIVE);
     let [reach_x, reach_y] = params.reach;
-    // Neighbours of a row: how far they lie to either side, and the weights.
-    let weight = |i: i32| params.weights[i as usize / 4][i as usize % 4];
     let half = |j: i32| (0..=reach_x).rev().find(|i| ((i * i + j * j) as f32) < params.limit);
-    let spans: Vec<(i32, i32, f32)> =
-        (-reach_y..=reach_y).filter_map(|j| half(j).map(|i| (j, i, weight(j.abs())))).collect();
+    let spans: Vec<Span> = (-reach_y..=reach_y)
+        .filter_map(|dy| half(dy).map(|half| Span { dy, half, weight: params.weight(dy.abs()) }))
+        .collect();
     let radius = reach_x.max(reach_y);
-    let zero = f32x8::splat(simd, 0.0);
     for_rows::<S, 4>(
         simd,
         &pass.inputs[0],
@@ -121,33 +137,48 @@ fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
         |Row { held, y, .. }, target| {
             for (block, pixels) in target.chunks_mut(4 * BLOCK).enumerate() {
                 let centre = radius as usize + BLOCK * block;
-                let (mut plain, mut strong) = ([zero; 3], [zero; 3]);
-                for &(j, half, wy) in &spans {
-                    let len = 2 * half as usize + 8;
-                    let first = centre - half as usize;
-                    let e = &held.row(y + j, 0)[first..first + len];
-                    let f = &held.row(y + j, 1)[first..first + len];
-                    let g = &held.row(y + j, 2)[first..first + len];
-                    let m = &held.row(y + j, 3)[first..first + len];
-                    for i in 0..=2 * half as usize {
-                        let w = f32x8::splat(simd, wy * weight((i as i32 - half).abs()));
-                        let by_magnitude = eight(simd, m, i) * w;
-                        let e = eight(simd, e, i);
-                        let f = eight(simd, f, i);
-                        let g = eight(simd, g, i);
-                        plain = [e.mul_add(w, plain[0]), f.mul_add(w, plain[1]), g.mul_add(w, plain[2])];
-                        strong = [
-                            e.mul_add(by_magnitude, strong[0]),
-                            f.mul_add(by_magnitude, strong[1]),
-                            g.mul_add(by_magnitude, strong[2]),
-                        ];
-                    }
-                }
+                let [plain, strong] = sums(simd, held, params, &spans, y, centre);
                 let own = line_buffer::pixels(simd, &held.channels(y), centre);
                 write(turned(simd, params, own, plain, strong, inverse), pixels);
             }
         },
     );
+}
+
+/// The weighted sums of the tensors around eight pixels, plain and by their magnitudes.
+#[inline(always)]
+fn sums<S: Simd>(
+    simd: S,
+    held: &LineBuffer,
+    params: &Params,
+    spans: &[Span],
+    y: i32,
+    centre: usize,
+) -> [[f32x8<S>; 3]; 2] {
+    let zero = f32x8::splat(simd, 0.0);
+    let (mut plain, mut strong) = ([zero; 3], [zero; 3]);
+    for &Span { dy, half, weight } in spans {
+        let len = 2 * half as usize + 8;
+        let first = centre - half as usize;
+        let e = &held.row(y + dy, 0)[first..first + len];
+        let f = &held.row(y + dy, 1)[first..first + len];
+        let g = &held.row(y + dy, 2)[first..first + len];
+        let m = &held.row(y + dy, 3)[first..first + len];
+        for i in 0..=2 * half as usize {
+            let w = f32x8::splat(simd, weight * params.weight((i as i32 - half).abs()));
+            let by_magnitude = eight(simd, m, i) * w;
+            let e = eight(simd, e, i);
+            let f = eight(simd, f, i);
+            let g = eight(simd, g, i);
+            plain = [e.mul_add(w, plain[0]), f.mul_add(w, plain[1]), g.mul_add(w, plain[2])];
+            strong = [
+                e.mul_add(by_magnitude, strong[0]),
+                f.mul_add(by_magnitude, strong[1]),
+                g.mul_add(by_magnitude, strong[2]),
+            ];
+        }
+    }
+    [plain, strong]
 }
 
 /// The centre's tensor after the pass.

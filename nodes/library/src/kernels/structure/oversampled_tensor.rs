@@ -109,7 +109,6 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
     let view = &pass.inputs[0];
     let r = radius as usize;
     let phases = [Weights::new(params, false), Weights::new(params, true)];
-    let zero = f32x8::splat(simd, 0.0);
     let mut rows = LineBuffer::default();
     // Column sums of one row: smoothed and derived, four channels each; and the row's tensors.
     let (mut columns, mut wide): (Vec<f32>, Vec<f32>) = (Vec::new(), Vec::new());
@@ -129,28 +128,8 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
             for (channel, sums) in columns.chunks_exact_mut(2 * len).enumerate() {
                 sum_columns(simd, &rows, &phases[(y & 1) as usize], r, row, channel, sums);
             }
-            let centres: [&[f32]; 4] = std::array::from_fn(|c| rows.row(row, c));
-            for i in 0..blocks {
-                let at = r + 8 * i;
-                let mut centre = [zero; 4];
-                for c in 0..4 {
-                    centre[c] = eight(simd, centres[c], at);
-                }
-                let mut both = [[zero; 4]; 2];
-                for phase in 0..2 {
-                    let mut gradients = [[zero; 2]; 4];
-                    for c in 0..4 {
-                        let sums = columns[2 * c * len..][..2 * len].split_at(len);
-                        gradients[c] = gradient(simd, &phases[phase], r, sums, 8 * i);
-                    }
-                    let (flags, scale, threshold) = (params.flags, params.scale, params.threshold);
-                    both[phase] = outer_product(simd, flags, scale, threshold, centre, gradients);
-                }
-                let (mut low, mut high) = ([zero; 4], [zero; 4]);
-                for c in 0..4 {
-                    (low[c], high[c]) = both[0][c].interleave(both[1][c]);
-                }
-                let block = &mut wide[64 * i..64 * i + 64];
+            for (i, block) in wide.chunks_exact_mut(64).enumerate() {
+                let [low, high] = pairs(simd, params, &phases, r, &rows, row, &columns, 8 * i);
                 write(low, &mut block[..32]);
                 write(high, &mut block[32..]);
             }
@@ -160,6 +139,40 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
                 .copy_from_slice(&wide[at(from, 2 * x0)..at(to, 2 * x0)]);
         }
     }
+}
+
+/// The tensors at both positions of eight pixels of row `y`, side by side, from column `at` of the strip on.
+#[inline(always)]
+fn pairs<S: Simd>(
+    simd: S,
+    params: &Params,
+    phases: &[Weights; 2],
+    radius: usize,
+    rows: &LineBuffer,
+    y: i32,
+    columns: &[f32],
+    at: usize,
+) -> [[f32x8<S>; 4]; 2] {
+    let (zero, len) = (f32x8::splat(simd, 0.0), rows.stride());
+    let mut centre = [zero; 4];
+    for c in 0..4 {
+        centre[c] = f32x8::from_slice(simd, &rows.row(y, c)[at + radius..at + radius + 8]);
+    }
+    let mut both = [[zero; 4]; 2];
+    for phase in 0..2 {
+        let mut gradients = [[zero; 2]; 4];
+        for c in 0..4 {
+            let sums = columns[2 * c * len..][..2 * len].split_at(len);
+            gradients[c] = gradient(simd, &phases[phase], radius, sums, at);
+        }
+        let (flags, scale, threshold) = (params.flags, params.scale, params.threshold);
+        both[phase] = outer_product(simd, flags, scale, threshold, centre, gradients);
+    }
+    let (mut low, mut high) = ([zero; 4], [zero; 4]);
+    for c in 0..4 {
+        (low[c], high[c]) = both[0][c].interleave(both[1][c]);
+    }
+    [low, high]
 }
 
 /// Smooths and derives along the columns: one channel around row `y`, first all smoothed, then all
