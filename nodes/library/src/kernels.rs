@@ -14,11 +14,25 @@ pub mod simd;
 
 include!(concat!(env!("OUT_DIR"), "/kernels.rs"));
 
-/// Declares `pub static KERNEL` from the CPU twin, the cost and the tolerance; the rest comes from
+/// Declares `pub static KERNEL` from the CPU twin, the cost for given parameters and the tolerance; the rest comes from
 /// the shader of the same stem.
 #[macro_export]
 macro_rules! kernel {
-    ($kernel:ident { cpu: $cpu:expr, cost: $cost:expr, tolerance: $tolerance:expr $(,)? }) => {
+    ($kernel:ident { cpu: $cpu:expr, cost: |_| $cost:expr, tolerance: $tolerance:expr $(,)? }) => {
+        $crate::kernel!(@ $kernel, $cpu, |_| $cost, $tolerance);
+    };
+    ($kernel:ident { cpu: $cpu:expr, cost: |$params:ident| $cost:expr, tolerance: $tolerance:expr $(,)? }) => {
+        $crate::kernel!(
+            @ $kernel,
+            $cpu,
+            |params| {
+                let $params: Params = bytemuck::pod_read_unaligned(params);
+                $cost
+            },
+            $tolerance
+        );
+    };
+    (@ $kernel:ident, $cpu:expr, $cost:expr, $tolerance:expr) => {
         /// The kernel, for plans.
         pub static KERNEL: isophote_engine::Kernel = isophote_engine::Kernel {
             name: stringify!($kernel),

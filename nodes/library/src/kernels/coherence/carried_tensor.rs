@@ -25,10 +25,7 @@ const OPERATOR: [f32; 2] = [162.32 / 256.0, 46.84 / 256.0];
 
 crate::kernel!(carried_tensor {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        120.0 + 12.0 * f64::from(p.radius)
-    },
+    cost: |p| 120.0 + 12.0 * f64::from(p.radius),
     tolerance: Tolerance {
         absolute: 2e-6,
         relative: 1e-4,

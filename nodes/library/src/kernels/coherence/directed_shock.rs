@@ -24,10 +24,7 @@ mod luma_taps;
 
 crate::kernel!(directed_shock {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        60.0 + 50.0 * f64::from(p.reach) + 60.0 * f64::from(p.radius * p.scale)
-    },
+    cost: |p| 60.0 + 50.0 * f64::from(p.reach) + 60.0 * f64::from(p.radius * p.scale),
     tolerance: Tolerance {
         absolute: 1e-6,
         relative: 1e-6,

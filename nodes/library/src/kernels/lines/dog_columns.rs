@@ -16,10 +16,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(dog_columns {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        4.0 * (f64::from(p.radius) + 1.0) + 25.0
-    },
+    cost: |p| 4.0 * (f64::from(p.radius) + 1.0) + 25.0,
     tolerance: Tolerance {
         absolute: 2e-3,
         relative: 1e-5,

@@ -11,10 +11,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support,
 
 crate::kernel!(edge_hysteresis {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        6.0 + 0.1 * f64::from(p.steps)
-    },
+    cost: |p| 6.0 + 0.1 * f64::from(p.steps),
     tolerance: Tolerance {
         absolute: 0.0,
         relative: 0.0,

@@ -16,10 +16,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(flow_dog_cabral_leedom {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        2.0 * 1.3 * f64::from(half_length(p.sigma)) * 100.0 + 50.0
-    },
+    cost: |p| 2.0 * 1.3 * f64::from(half_length(p.sigma)) * 100.0 + 50.0,
     tolerance: Tolerance {
         absolute: 2e-3,
         relative: 1e-3,

@@ -17,10 +17,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(flow_dog_gradient {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        f64::from(p.halfwidth) * 0.88 * 50.0 + 40.0
-    },
+    cost: |p| f64::from(p.halfwidth) * 0.88 * 50.0 + 40.0,
     tolerance: Tolerance {
         absolute: 2e-3,
         relative: 1e-4,

@@ -17,8 +17,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(flow_dog_tangent {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
+    cost: |p| {
         2.0 * f64::from(half_length(p.sigma))
             * if p.integrator == Integrator::Midpoint as u32 { 110.0 } else { 70.0 }
             + 30.0

@@ -21,8 +21,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(flow_dog_two_dimensional {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
+    cost: |p| {
         let across = f64::from(p.halfwidth) * 0.88 * 70.0 + 100.0;
         (2.0 * f64::from(half_length(p.sigma)) + 1.0) * (across + 110.0)
     },

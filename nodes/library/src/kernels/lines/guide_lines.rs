@@ -19,10 +19,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(guide_lines {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        f64::from(p.steps) * 2.0 * 60.0 + 60.0
-    },
+    cost: |p| f64::from(p.steps) * 2.0 * 60.0 + 60.0,
     tolerance: Tolerance {
         absolute: 1e-3,
         relative: 1e-4,

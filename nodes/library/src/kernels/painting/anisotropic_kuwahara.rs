@@ -21,8 +21,7 @@ use std::f32::consts::FRAC_1_SQRT_2;
 
 crate::kernel!(anisotropic_kuwahara {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
+    cost: |p| {
         let sums = if p.sectors == 8 { 55.0 } else { 32.0 };
         60.0 + std::f64::consts::PI * f64::from(p.radius).powi(2) * sums
     },

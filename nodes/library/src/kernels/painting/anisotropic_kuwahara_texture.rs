@@ -22,10 +22,7 @@ use std::f32::consts::FRAC_1_SQRT_2;
 
 crate::kernel!(anisotropic_kuwahara_texture {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        60.0 + std::f64::consts::PI * f64::from(p.radius).powi(2) * 90.0
-    },
+    cost: |p| 60.0 + std::f64::consts::PI * f64::from(p.radius).powi(2) * 90.0,
     tolerance: Tolerance {
         absolute: 2e-3,
         relative: 1e-3,

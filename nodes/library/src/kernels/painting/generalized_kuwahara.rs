@@ -28,10 +28,7 @@ mod block_convolution;
 
 crate::kernel!(generalized_kuwahara {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        60.0 + 7.0 / f64::from(p.scale).powi(2) * f64::from(p.sectors)
-    },
+    cost: |p| 60.0 + 7.0 / f64::from(p.scale).powi(2) * f64::from(p.sectors),
     tolerance: Tolerance {
         absolute: 2e-3,
         relative: 2e-3,

@@ -16,10 +16,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(kuwahara {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        60.0 + if p.flat_weights != 0 { 30.0 } else { 20.0 * f64::from(p.count) }
-    },
+    cost: |p| 60.0 + if p.flat_weights != 0 { 30.0 } else { 20.0 * f64::from(p.count) },
     tolerance: Tolerance {
         absolute: 1e-4,
         relative: 1e-4,

@@ -16,8 +16,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(kuwahara_rows {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
+    cost: |p| {
         if p.flat_weights != 0 { 30.0 + 10.0 * f64::from(p.count).log2() } else { 10.0 * f64::from(p.count) }
     },
     tolerance: Tolerance {

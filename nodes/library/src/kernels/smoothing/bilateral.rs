@@ -16,8 +16,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(bilateral {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
+    cost: |p| {
         let [x, y] = p.extent.map(|r| 2.0 * f64::from(r) + 1.0);
         22.0 * if x.min(y) > 1.0 { 0.785 * x * y } else { x * y } + 10.0
     },

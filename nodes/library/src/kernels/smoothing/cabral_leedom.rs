@@ -16,10 +16,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(cabral_leedom {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        2.0 * 1.3 * f64::from(half_length(p.sigma)) * 120.0 + 60.0
-    },
+    cost: |p| 2.0 * 1.3 * f64::from(half_length(p.sigma)) * 120.0 + 60.0,
     tolerance: Tolerance {
         absolute: 2e-3,
         relative: 1e-3,

@@ -15,10 +15,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(disc_extremum {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        3.0 * 3.2 * f64::from(p.limit) + 12.0
-    },
+    cost: |p| 3.0 * 3.2 * f64::from(p.limit) + 12.0,
     tolerance: Tolerance { absolute: 0.0, relative: 0.0, outliers: 0.0, reason: "comparisons are exact" },
 });
 

@@ -24,8 +24,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(flow_bilateral {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
+    cost: |p| {
         let field = if p.midpoint != 0 { 100.0 } else { 50.0 };
         2.0 * f64::from(p.radius) * (field + if p.manual != 0 { 120.0 } else { 50.0 })
     },

@@ -18,10 +18,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(flow_dilation {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        2.0 * f64::from(p.length.floor()) * 130.0 + 60.0
-    },
+    cost: |p| 2.0 * f64::from(p.length.floor()) * 130.0 + 60.0,
     tolerance: Tolerance {
         absolute: 2e-3,
         relative: 1e-3,

@@ -12,10 +12,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(gaussian_blur {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        4.0 * (f64::from(p.radius) + 1.0)
-    },
+    cost: |p| 4.0 * (f64::from(p.radius) + 1.0),
     tolerance: Tolerance {
         absolute: 1e-6,
         relative: 4e-6,

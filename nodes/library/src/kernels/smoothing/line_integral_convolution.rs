@@ -25,8 +25,7 @@ mod colour_taps;
 
 crate::kernel!(line_integral_convolution {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
+    cost: |p| {
         let steps = 2.0 * f64::from(half_length(p.sigma)) / f64::from(p.step * p.stretch);
         steps * if p.integrator == Integrator::Midpoint as u32 { 130.0 } else { 80.0 }
     },

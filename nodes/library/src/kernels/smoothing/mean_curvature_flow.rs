@@ -18,10 +18,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(mean_curvature_flow {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        if p.constraint > 0.0 { 140.0 } else { 100.0 }
-    },
+    cost: |p| if p.constraint > 0.0 { 140.0 } else { 100.0 },
     tolerance: Tolerance {
         absolute: 2e-6,
         relative: 1e-5,

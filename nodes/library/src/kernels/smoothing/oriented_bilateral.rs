@@ -17,10 +17,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support,
 
 crate::kernel!(oriented_bilateral {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        1.8 * f64::from(p.cutoff) * if p.manual != 0 { 50.0 } else { 35.0 }
-    },
+    cost: |p| 1.8 * f64::from(p.cutoff) * if p.manual != 0 { 50.0 } else { 35.0 },
     tolerance: Tolerance {
         absolute: 2e-3,
         relative: 2e-4,

@@ -16,10 +16,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(perona_malik {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        if p.exponential != 0 { 100.0 } else { 60.0 }
-    },
+    cost: |p| if p.exponential != 0 { 100.0 } else { 60.0 },
     tolerance: Tolerance {
         absolute: 1e-6,
         relative: 2e-6,

@@ -26,8 +26,7 @@ const MAX_REACH: i32 = TAPS as i32 - 1;
 
 crate::kernel!(edge_tangent_flow {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
+    cost: |p| {
         let [x, y] = p.reach.map(f64::from);
         7.0 * (2.0 * x + 1.0) * (2.0 * y + 1.0) + 50.0
     },

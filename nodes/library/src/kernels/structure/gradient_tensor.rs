@@ -26,8 +26,7 @@ type Table = [[f32; 4]; TAPS / 4];
 
 crate::kernel!(gradient_tensor {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
+    cost: |p| {
         let r = f64::from(p.radius);
         16.0 * r * (2.0 * r + 1.0) + 30.0
     },

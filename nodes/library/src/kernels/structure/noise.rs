@@ -14,10 +14,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(noise {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
-        15.0 * f64::from(p.count * p.count)
-    },
+    cost: |p| 15.0 * f64::from(p.count * p.count),
     tolerance: Tolerance {
         absolute: 1e-6,
         relative: 0.0,

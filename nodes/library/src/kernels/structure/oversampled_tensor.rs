@@ -24,8 +24,7 @@ type Table = [[f32; 4]; TAPS / 4];
 
 crate::kernel!(oversampled_tensor {
     cpu: run,
-    cost: |params| {
-        let p: Params = bytemuck::pod_read_unaligned(params);
+    cost: |p| {
         let taps = 2.0 * f64::from(p.radius) + 1.0;
         8.0 * taps * taps + 30.0
     },
