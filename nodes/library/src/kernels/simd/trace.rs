@@ -221,7 +221,9 @@ pub fn along_lines<const VALUES: usize, const OUT: usize>(
                 dispatch!(level, simd => near(simd, &field(edges), Integrator::TwoStep, &source, kernel, band));
             }
             (other, None) => dispatch!(level, simd => near(simd, &field(None), other, &source, kernel, band)),
-            (other, edges) => dispatch!(level, simd => near(simd, &field(edges), other, &source, kernel, band)),
+            (other, edges) => {
+                dispatch!(level, simd => near(simd, &field(edges), other, &source, kernel, band))
+            }
         }
     }
 }
