@@ -1,8 +1,8 @@
 //! Colour, alpha and bad pixels, for every node: what enters in a space leaves in it, nothing that is
 //! not finite spreads, flat pictures stay flat and opaque ones opaque, transparent pixels lend no colour.
 
+use isophote::colour_space::{ColourSpace, Encoding};
 use isophote::kernels::colour::{colour_export, colour_import, lightness};
-use isophote::request::ColourSpace;
 use isophote::spec::{ImageKind, NodeSpec};
 use isophote::{Graph, Request};
 use isophote_engine::{Class, Image, PlanBuilder, Rect};
@@ -165,8 +165,8 @@ fn every_space_is_left_as_it_was_entered() {
 fn converted(image: &Image, from: ColourSpace, to: ColourSpace) -> Image {
     let mut plan = PlanBuilder::new(image.width(), image.height()).unwrap();
     let input = plan.input("color", 4, Class::Colour);
-    let working = colour_import::import(&mut plan, input, from, true);
-    let out = colour_export::export(&mut plan, working, to, true);
+    let working = colour_import::pass(&mut plan, input, Encoding { space: from, premultiplied: true });
+    let out = colour_export::pass(&mut plan, working, Encoding { space: to, premultiplied: true });
     plan.output("output", out);
     run::whole(&plan.finish().unwrap(), &[("color", image.clone())])
 }
@@ -246,8 +246,8 @@ fn lightness_comes_straight_from_the_hosts_colour() {
         for (space, premultiplied) in ColourSpace::ALL.into_iter().flat_map(|s| [(s, false), (s, true)]) {
             let mut plan = PlanBuilder::new(48, 32).unwrap();
             let host = plan.input("color", 4, Class::Colour);
-            let working = colour_import::import(&mut plan, host, space, premultiplied);
-            let direct = lightness::of_color(&mut plan, working);
+            let working = colour_import::pass(&mut plan, host, Encoding { space, premultiplied });
+            let direct = lightness::pass(&mut plan, working);
             plan.output("output", direct);
             let plan = plan.finish().unwrap();
             assert!(plan.windows(all)[working.index()].is_empty(), "the working colour is computed too");
@@ -255,12 +255,12 @@ fn lightness_comes_straight_from_the_hosts_colour() {
 
             let mut plan = PlanBuilder::new(48, 32).unwrap();
             let host = plan.input("color", 4, Class::Colour);
-            let working = colour_import::import(&mut plan, host, space, premultiplied);
+            let working = colour_import::pass(&mut plan, host, Encoding { space, premultiplied });
             plan.output("output", working);
             let working = run::whole(&plan.finish().unwrap(), &[("color", picture.clone())]);
             let mut plan = PlanBuilder::new(48, 32).unwrap();
             let color = plan.input("color", 4, Class::Colour);
-            let around = lightness::of_color(&mut plan, color);
+            let around = lightness::pass(&mut plan, color);
             plan.output("output", around);
             let around = run::whole(&plan.finish().unwrap(), &[("color", working)]);
             for (a, b) in direct.data().iter().zip(around.data()) {

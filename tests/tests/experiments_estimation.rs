@@ -60,7 +60,7 @@ fn stored_in_bytes(tensor: &Image) -> Image {
 fn smoothed(tensor: &Image, rho: f32) -> Image {
     let mut plan = PlanBuilder::new(tensor.width(), tensor.height()).unwrap();
     let input = plan.input("tensor", 4, Class::Field);
-    let result = gaussian_blur::smooth(&mut plan, input, rho, Class::Field);
+    let result = gaussian_blur::pass(&mut plan, input, rho, Class::Field);
     plan.output("output", result);
     run::whole(&plan.finish().unwrap(), &[("tensor", tensor.clone())])
 }

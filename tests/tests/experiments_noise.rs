@@ -122,7 +122,7 @@ fn under_gaussian(sigma: f32, seed: u64) -> Vec<f64> {
     });
     let mut plan = PlanBuilder::new(400, 400).unwrap();
     let input = plan.input("tensor", 4, Class::Field);
-    let smoothed = gaussian_blur::smooth(&mut plan, input, sigma, Class::Field);
+    let smoothed = gaussian_blur::pass(&mut plan, input, sigma, Class::Field);
     plan.output("output", smoothed);
     let smoothed = run::whole(&plan.finish().unwrap(), &[("tensor", gradients)]);
     let margin = (3.0 * sigma).ceil() as i32;

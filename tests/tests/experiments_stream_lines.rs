@@ -69,7 +69,7 @@ fn stretched_steps_are_better_than_short_ones_of_first_order() {
         let mut plan = PlanBuilder::new(240, 160).unwrap();
         let color = plan.input("color", 4, Class::Colour);
         let tensor = plan.input("tensor", 4, Class::Field);
-        let out = line_integral_convolution::color(&mut plan, color, tensor, options);
+        let out = line_integral_convolution::pass(&mut plan, color, tensor, options);
         plan.output("output", out);
         let inputs = [("color", picture.clone()), ("tensor", tensors.clone())];
         run::whole(&plan.finish().unwrap(), &inputs)
@@ -108,7 +108,7 @@ fn long_lines_of_short_steps_weigh_as_the_gaussian() {
     let mut plan = PlanBuilder::new(400, 3).unwrap();
     let color = plan.input("color", 4, Class::Colour);
     let tensor = plan.input("tensor", 4, Class::Field);
-    let out = line_integral_convolution::color(&mut plan, color, tensor, &options);
+    let out = line_integral_convolution::pass(&mut plan, color, tensor, &options);
     plan.output("output", out);
     let smoothed = run::whole(&plan.finish().unwrap(), &[("color", picture), ("tensor", tensors)]);
     let weight = |distance: i32| f64::from(smoothed.pixel(200 + distance, 1)[0]);
@@ -182,9 +182,9 @@ fn cabral_leedom_integrates_the_gaussian_exactly_on_pixels() {
             let color = plan.input("color", 4, Class::Colour);
             let tensor = plan.input("tensor", 4, Class::Field);
             let out = if exactly {
-                cabral_leedom::color(&mut plan, color, tensor, &options)
+                cabral_leedom::pass(&mut plan, color, tensor, &options)
             } else {
-                line_integral_convolution::color(&mut plan, color, tensor, &options)
+                line_integral_convolution::pass(&mut plan, color, tensor, &options)
             };
             plan.output("output", out);
             let inputs = [("color", picture.clone()), ("tensor", tensors.clone())];

@@ -68,3 +68,29 @@ macro_rules! choice {
     };
 }
 pub(crate) use choice;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    choice! {
+        /// Ways to smooth.
+        enum Smoothing {
+            /// A mean over
+            /// a square.
+            Box = 3 ("box", "Box filter"),
+            /// A Gaussian.
+            Gaussian = 1 ("gaussian", "Gaussian"),
+        }
+    }
+
+    #[test]
+    fn options_keep_the_order_of_the_declaration_whatever_their_numbers() {
+        assert_eq!(Smoothing::ALL, [Smoothing::Box, Smoothing::Gaussian]);
+        assert_eq!(Smoothing::Gaussian as u32, 1);
+        assert_eq!([Smoothing::Box, Smoothing::Gaussian].map(|s| s.selected().index), [0, 1]);
+        let options = Smoothing::Box.selected().options;
+        assert_eq!(options.iter().map(|o| o.id).collect::<Vec<_>>(), ["box", "gaussian"]);
+        assert_eq!((options[0].label, options[0].doc), ("Box filter", "A mean over a square."));
+    }
+}

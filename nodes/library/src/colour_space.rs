@@ -13,6 +13,15 @@ pub enum ColourSpace {
     AcesCg = 2,
 }
 
+/// How a host's colour is encoded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Encoding {
+    /// Its space.
+    pub space: ColourSpace,
+    /// True when it is multiplied by alpha.
+    pub premultiplied: bool,
+}
+
 impl ColourSpace {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Srgb, Self::Linear, Self::AcesCg];

@@ -6,6 +6,10 @@
 //! `pub static KERNEL` ([`kernel!`](crate::kernel)). Its uniform block is written once, in the shader:
 //! [`shaders`] has it as a Rust struct, with a field `padding` where WGSL aligns the next one.
 //!
+//! A kernel's function `pass` adds it to a plan, together with the kernels that only prepare for it. It takes
+//! the plan, the images that the kernel reads and its settings, three or more as a struct, and returns the
+//! image that the kernel writes. Other ways to use a kernel have longer names, such as `pass_mean`.
+//!
 //! What kernels share stands in [`shared`], under the stems of `shaders/shared`. How the CPU reads and
 //! writes pixels is in [`simd`], how the GPU does in `shaders/gpu`; those two have no counterparts. What
 //! has a single user lies in a folder of its user's name.

@@ -249,3 +249,47 @@ impl Param {
         (self.default.form().expected)(self.range, self.options)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_of_every_type_go_through_text_numbers_and_json() {
+        let options: &[Choice] =
+            &[Choice { id: "a", label: "A", doc: "A." }, Choice { id: "b", label: "B", doc: "B." }];
+        let params = [
+            (Param::float("p", "P", 0.5, [0.0, 1.0]), "0.1", "0.1", Value::Float(0.1)),
+            (Param::int("p", "P", 2, [0, 9]), "7", "7", Value::Int(7)),
+            (Param::bool("p", "P", false), "on", "true", Value::Bool(true)),
+            (Param::choice("p", "P", Selection { index: 0, options }), "b", "\"b\"", Value::Choice(1)),
+            (
+                Param::color("p", "P", [0.0; 4]),
+                "#ff000033",
+                "[1.0,0.0,0.0,0.2]",
+                Value::Color([1.0, 0.0, 0.0, 0.2]),
+            ),
+        ];
+        for (param, text, json, value) in params {
+            assert_eq!(param.parse("n", text).unwrap(), value);
+            assert_eq!(param.check("n", value).unwrap(), value);
+            let form = value.form();
+            assert_eq!((form.json)(form.numbers, param.options).to_string(), json);
+            assert_eq!(param.nearest(form.numbers), value);
+            assert!(param.parse("n", "what").is_err() && param.parse("n", "").is_err());
+            let beyond = (form.value)([1e6; 4]);
+            assert_eq!(param.check("n", beyond).is_ok(), matches!(value, Value::Bool(_)), "{beyond:?}");
+            assert!(param.check("n", param.nearest([1e6; 4])).is_ok());
+        }
+    }
+
+    #[test]
+    fn numbers_are_taken_as_the_type_that_is_declared() {
+        let (float, int) = (Param::float("p", "P", 0.5, [0.0, 4.0]), Param::int("p", "P", 2, [0, 9]));
+        assert_eq!(float.check("n", Value::Int(3)).unwrap(), Value::Float(3.0));
+        assert_eq!(int.check("n", Value::Float(3.0)).unwrap(), Value::Int(3));
+        for bad in [Value::Float(3.5), Value::Float(f32::NAN), Value::Float(-1.0), Value::Bool(true)] {
+            assert!(int.check("n", bad).is_err(), "{bad:?}");
+        }
+    }
+}

@@ -1,6 +1,7 @@
 //! From a graph to a plan for one size, and from an edited graph to an edited plan.
 
 pub use crate::colour_space::ColourSpace;
+use crate::colour_space::Encoding;
 use crate::error::{Error, Result};
 use crate::graph::{Graph, GraphInput, Source};
 use crate::kernels::colour::{colour_export, colour_import, mix};
@@ -58,6 +59,12 @@ impl Request {
             premultiplied: true,
             guides: Guides { normal: false, depth: false, object_id: false },
         }
+    }
+}
+
+impl Request {
+    fn encoding(&self) -> Encoding {
+        Encoding { space: self.space, premultiplied: self.premultiplied }
     }
 }
 
@@ -199,7 +206,7 @@ fn describe(
             && amount < 1.0
             && let Some(original) = scratch.inputs[color]
         {
-            result = mix::blend(builder, original, result, amount);
+            result = mix::pass(builder, original, result, amount);
         }
         scratch.results[*index] = Some(result);
     }
@@ -207,7 +214,7 @@ fn describe(
         && let Some(result) = scratch.results[index]
     {
         let image = match kind {
-            ImageKind::Color => colour_export::export(builder, result, request.space, request.premultiplied),
+            ImageKind::Color => colour_export::pass(builder, result, request.encoding()),
             _ => result,
         };
         builder.output("output", image);
@@ -219,7 +226,7 @@ fn graph_input(builder: &mut PlanBuilder, input: GraphInput, request: &Request) 
     let kind = input.kind();
     let image = builder.input(input.id(), kind.channels(), kind.class());
     match input {
-        GraphInput::Color => colour_import::import(builder, image, request.space, request.premultiplied),
+        GraphInput::Color => colour_import::pass(builder, image, request.encoding()),
         _ => image,
     }
 }

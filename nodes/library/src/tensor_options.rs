@@ -148,8 +148,8 @@ impl TensorOptions {
 
     /// Standard deviation of the smoothing that gives a proxy the tensors of the full picture. A pixel of
     /// a proxy is a mean over several, and its operator reaches over several, so that gradients come
-    /// smoothed by that much more. Smoothed squares are as wide as squares of something smoother: of a
-    /// Gaussian edge, and of one that falls off exponentially, half of its variance is theirs.
+    /// smoothed by that much more. Tensors are squares of gradients: the square of a Gaussian edge, and of
+    /// one that falls off exponentially, has half of its variance, and so does what the smoothing adds.
     pub(crate) fn smoothing(&self) -> f32 {
         if self.scale >= 1.0 {
             return self.rho;

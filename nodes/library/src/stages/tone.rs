@@ -1,6 +1,6 @@
 //! Tones and saturation of styles.
 
-use crate::kernels::colour::tone_curve;
+use crate::kernels::colour::tone_curve::{self, Params};
 use crate::spec::{Param, Scope};
 use crate::stages::LOOK;
 use isophote_engine::ImageId;
@@ -28,6 +28,6 @@ pub(crate) fn curve(scope: &mut Scope<'_>, lab: ImageId) -> ImageId {
     if is_neutral(scope) {
         return lab;
     }
-    let (darks, lights) = (scope.float("darks"), scope.float("lights"));
-    tone_curve::tones(scope.plan, lab, darks, lights)
+    let params = Params { darks: scope.float("darks"), lights: scope.float("lights") };
+    tone_curve::pass(scope.plan, lab, &params)
 }

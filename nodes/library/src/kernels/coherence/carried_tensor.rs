@@ -37,7 +37,7 @@ crate::kernel!(carried_tensor {
 
 /// The tensor of `color`, smoothed by `rho` pixels, with tensors from `earlier` where sqrt(lambda1)
 /// before smoothing is not above `threshold`.
-pub fn tensor(plan: &mut PlanBuilder, color: ImageId, earlier: ImageId, rho: f32, threshold: f32) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, earlier: ImageId, rho: f32, threshold: f32) -> ImageId {
     let wanted = gaussian_radius(rho, 3.0);
     // Wider windows are smoothed by passes of their own.
     let radius = if wanted > MAX_RADIUS { 0 } else { wanted };
@@ -47,7 +47,7 @@ pub fn tensor(plan: &mut PlanBuilder, color: ImageId, earlier: ImageId, rho: f32
         Params { radius: radius as i32, threshold: threshold * threshold, smoothing: OPERATOR, weights };
     let support = Support::Pixels(radius + 1);
     let tensor = plan.pass(&KERNEL, &[color, earlier], &params, Class::Field, support);
-    if radius < wanted { gaussian_blur::smooth(plan, tensor, rho, Class::Field) } else { tensor }
+    if radius < wanted { gaussian_blur::pass(plan, tensor, rho, Class::Field) } else { tensor }
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {

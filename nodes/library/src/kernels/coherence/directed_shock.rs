@@ -52,7 +52,7 @@ pub struct Options {
 
 /// Sharpens `color` along the major eigenvectors of `tensors`, by the second derivative of `smooth`, which may
 /// be the same.
-pub fn sharpened(
+pub fn pass(
     plan: &mut PlanBuilder,
     color: ImageId,
     tensors: ImageId,

@@ -20,7 +20,7 @@ crate::kernel!(laplacian {
 });
 
 /// The Laplacian of a colour, in its unit per square pixel.
-pub fn of_color(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
     plan.pass(&KERNEL, &[color], &(), Class::Field, Support::Pixels(1))
 }
 

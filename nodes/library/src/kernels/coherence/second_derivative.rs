@@ -22,7 +22,7 @@ crate::kernel!(second_derivative {
 
 /// The second derivative of a colour along the major eigenvectors of `tensors`, in its unit per square
 /// pixel.
-pub fn of_color(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId) -> ImageId {
     plan.pass(&KERNEL, &[color, tensors], &(), Class::Field, Support::Pixels(1))
 }
 

@@ -26,7 +26,7 @@ crate::kernel!(shock_step {
 const STEEPNESS: f32 = 1e4;
 
 /// Moves `color` by `time_step`, by the sign of `detector`, channel by channel.
-pub fn step(plan: &mut PlanBuilder, color: ImageId, detector: ImageId, time_step: f32) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, detector: ImageId, time_step: f32) -> ImageId {
     let params = Params { time_step, steepness: STEEPNESS };
     plan.pass(&KERNEL, &[color, detector], &params, Class::Colour, Support::Pixels(1))
 }

@@ -41,7 +41,7 @@ pub struct Sheet {
 }
 
 /// Draws `edges` (1 = paper, 0 = line) on a sheet shaded after (L alpha, alpha).
-pub fn draw(plan: &mut PlanBuilder, lightness: ImageId, edges: ImageId, sheet: &Sheet) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, edges: ImageId, sheet: &Sheet) -> ImageId {
     let params = Params {
         line: sheet.line,
         paper: sheet.paper,

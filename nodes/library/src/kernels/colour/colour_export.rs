@@ -2,7 +2,7 @@
 //!
 //! Cost: three powers per pixel.
 
-use crate::colour_space::ColourSpace;
+use crate::colour_space::{ColourSpace, Encoding};
 pub use crate::kernels::shaders::colour_export::Params;
 use crate::kernels::shared::colour::{LINEAR_TO_ACESCG, srgb_decode, transform};
 use crate::kernels::simd::pixels::{map_pixels, premultiply};
@@ -21,8 +21,8 @@ crate::kernel!(colour_export {
 });
 
 /// Adds the pass.
-pub fn export(plan: &mut PlanBuilder, image: ImageId, space: ColourSpace, premultiplied: bool) -> ImageId {
-    let params = Params { space: space as u32, premultiplied: premultiplied.into() };
+pub fn pass(plan: &mut PlanBuilder, image: ImageId, host: Encoding) -> ImageId {
+    let params = Params { space: host.space as u32, premultiplied: host.premultiplied.into() };
     plan.pass(&KERNEL, &[image], &params, Class::Colour, Support::Pixels(0))
 }
 

@@ -4,7 +4,7 @@
 //!
 //! Cost: three powers and a division per pixel.
 
-use crate::colour_space::ColourSpace;
+use crate::colour_space::{ColourSpace, Encoding};
 pub use crate::kernels::shaders::colour_import::Params;
 use crate::kernels::shared::colour::{ACESCG_TO_LINEAR, srgb_encode, transform};
 use crate::kernels::shared::host_colour::plain;
@@ -24,12 +24,12 @@ crate::kernel!(colour_import {
 });
 
 /// Adds the pass.
-pub fn import(plan: &mut PlanBuilder, image: ImageId, space: ColourSpace, premultiplied: bool) -> ImageId {
-    let params = Params { space: space as u32, premultiplied: premultiplied.into() };
+pub fn pass(plan: &mut PlanBuilder, image: ImageId, host: Encoding) -> ImageId {
+    let params = Params { space: host.space as u32, premultiplied: host.premultiplied.into() };
     plan.pass(&KERNEL, &[image], &params, Class::Colour, Support::Pixels(0))
 }
 
-/// The host's image that `color` was made from by [`import`], and how; none for any other image. What it
+/// The host's image that `color` was made from by [`pass`], and how; none for any other image. What it
 /// is for: a kernel that needs other values of the host's colour than the working ones takes them from
 /// there, and the pass is left out if nobody else reads it.
 pub fn imported(plan: &PlanBuilder, color: ImageId) -> Option<(ImageId, Params)> {

@@ -15,14 +15,8 @@ crate::kernel!(composite_lines {
 
 /// Draws the `edges` (1 = paper, 0 = line) over `color`. The alpha of `line` is the opacity of lines,
 /// that of `paper` how much of the picture the paper covers.
-pub fn composite(
-    plan: &mut PlanBuilder,
-    color: ImageId,
-    edges: ImageId,
-    line: [f32; 4],
-    paper: [f32; 4],
-) -> ImageId {
-    plan.pass(&KERNEL, &[color, edges], &Params { line, paper }, Class::Colour, Support::Pixels(0))
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, edges: ImageId, params: &Params) -> ImageId {
+    plan.pass(&KERNEL, &[color, edges], params, Class::Colour, Support::Pixels(0))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {

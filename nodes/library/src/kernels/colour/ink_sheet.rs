@@ -58,7 +58,7 @@ pub struct Sheet {
 
 /// Draws a `response` (units of L) on a sheet, shaded and tinted after `color`; the first channel of
 /// `strokes`, 0..=1, roughens it.
-pub fn draw(
+pub fn pass(
     plan: &mut PlanBuilder,
     response: ImageId,
     color: ImageId,

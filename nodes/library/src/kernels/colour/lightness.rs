@@ -31,7 +31,7 @@ crate::kernel!(lightness {
 });
 
 /// (L alpha, alpha) of a working colour.
-pub fn of_color(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
     let (image, params) = match colour_import::imported(plan, color) {
         Some((image, colour_import::Params { space, premultiplied })) => {
             (image, Params { source_space: HOST, space, premultiplied })
@@ -42,7 +42,7 @@ pub fn of_color(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
 }
 
 /// (L alpha, alpha) of a Lab image.
-pub fn of_lab(plan: &mut PlanBuilder, lab: ImageId) -> ImageId {
+pub fn pass_lab(plan: &mut PlanBuilder, lab: ImageId) -> ImageId {
     let params = Params { source_space: LAB, space: 0, premultiplied: 0 };
     plan.pass(&KERNEL, &[lab], &params, Class::Field, Support::Pixels(0))
 }

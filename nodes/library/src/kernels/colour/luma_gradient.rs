@@ -19,7 +19,7 @@ crate::kernel!(luma_gradient {
 });
 
 /// The magnitude, luma per pixel.
-pub fn magnitude(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
     plan.pass(&KERNEL, &[color], &(), Class::Field, Support::Pixels(1))
 }
 

@@ -12,7 +12,7 @@ crate::kernel!(mix {
 });
 
 /// (1 - amount) first + amount second.
-pub fn blend(plan: &mut PlanBuilder, first: ImageId, second: ImageId, amount: f32) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, first: ImageId, second: ImageId, amount: f32) -> ImageId {
     plan.pass(&KERNEL, &[first, second], &Params { amount }, Class::Colour, Support::Pixels(0))
 }
 

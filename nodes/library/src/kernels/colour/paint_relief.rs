@@ -28,7 +28,7 @@ pub struct Relief {
 }
 
 /// Lights `lab` by `heights`, whose first channel is 0..=1.
-pub fn lit(plan: &mut PlanBuilder, lab: ImageId, heights: ImageId, relief: &Relief) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, lab: ImageId, heights: ImageId, relief: &Relief) -> ImageId {
     let (sin, cos) = relief.angle.to_radians().sin_cos();
     // y points down.
     let light = [relief.shine * cos, -relief.shine * sin];

@@ -38,7 +38,7 @@ pub enum Steepness {
 
 /// Quantizes the L of a Lab image softly to `bins` levels per 100 units:
 /// q + d/2 tanh(phi (L - q)), q the middle of the bin of L, d = 100 / `bins`.
-pub fn quantize(plan: &mut PlanBuilder, lab: ImageId, bins: i32, steepness: Steepness) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, lab: ImageId, bins: i32, steepness: Steepness) -> ImageId {
     let bins = bins.max(1) as f32;
     let mut params = Params {
         width: 100.0 / bins,

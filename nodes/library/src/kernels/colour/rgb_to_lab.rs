@@ -21,7 +21,7 @@ crate::kernel!(rgb_to_lab {
 });
 
 /// Adds the pass; `chroma` is the factor on the colour axes a and b.
-pub fn to_lab(plan: &mut PlanBuilder, image: ImageId, chroma: f32) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, image: ImageId, chroma: f32) -> ImageId {
     plan.pass(&KERNEL, &[image], &Params { chroma }, Class::Colour, Support::Pixels(0))
 }
 

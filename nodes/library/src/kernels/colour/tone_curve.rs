@@ -16,8 +16,8 @@ crate::kernel!(tone_curve {
 
 /// L + 90 t (1 - t) (`darks` (1 - t) + `lights` t), t = L / 100 clamped to 0..=1: monotonic for
 /// arguments in -1..=1, since the slope is at least 0.1 everywhere.
-pub fn tones(plan: &mut PlanBuilder, lab: ImageId, darks: f32, lights: f32) -> ImageId {
-    plan.pass(&KERNEL, &[lab], &Params { darks, lights }, Class::Colour, Support::Pixels(0))
+pub fn pass(plan: &mut PlanBuilder, lab: ImageId, params: &Params) -> ImageId {
+    plan.pass(&KERNEL, &[lab], params, Class::Colour, Support::Pixels(0))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {

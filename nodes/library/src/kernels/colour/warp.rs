@@ -24,9 +24,8 @@ crate::kernel!(warp {
 
 /// Samples `color` `amount` pixels per unit of the gradient of `field`'s first channel against it, at
 /// most `limit` pixels away.
-pub fn against(plan: &mut PlanBuilder, color: ImageId, field: ImageId, amount: f32, limit: f32) -> ImageId {
-    let params = Params { amount, limit };
-    plan.pass(&KERNEL, &[color, field], &params, Class::Colour, Support::Pixels(reach(&params) as u32))
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, field: ImageId, params: &Params) -> ImageId {
+    plan.pass(&KERNEL, &[color, field], params, Class::Colour, Support::Pixels(reach(params) as u32))
 }
 
 /// A sample this far away reads one pixel further.

@@ -39,7 +39,7 @@ pub struct Wash {
 }
 
 /// Paints `color`; `blurred` is the same, smoothed by the width of the dark borders.
-pub fn painted(plan: &mut PlanBuilder, color: ImageId, blurred: ImageId, wash: &Wash) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, blurred: ImageId, wash: &Wash) -> ImageId {
     let params = Params {
         inverse_scale: 1.0 / wash.scale,
         pigment: wash.pigment,

@@ -14,7 +14,7 @@ crate::kernel!(darken_by_lines {
 });
 
 /// (L alpha, alpha) with L multiplied by the `edges` (1 = paper, 0 = line).
-pub fn darken(plan: &mut PlanBuilder, lightness: ImageId, edges: ImageId) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, edges: ImageId) -> ImageId {
     plan.pass(&KERNEL, &[lightness, edges], &(), Class::Field, Support::Pixels(0))
 }
 

@@ -26,10 +26,22 @@ crate::kernel!(dog_columns {
     },
 });
 
+/// What a difference of Gaussians is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Standard deviation of the narrower Gaussian, pixels.
+    pub sigma: f32,
+    /// Ratio of the two standard deviations.
+    pub k: f32,
+    /// Weights and threshold.
+    pub xdog: Xdog,
+}
+
 /// The edge image of (L alpha, alpha): difference of Gaussians of standard deviations `sigma` and
 /// `k` `sigma` pixels, weighted and thresholded as `xdog` says.
-pub fn edges(plan: &mut PlanBuilder, lightness: ImageId, sigma: f32, k: f32, xdog: &Xdog) -> ImageId {
-    let rows = dog_rows::rows(plan, lightness, sigma, k);
+pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, options: &Options) -> ImageId {
+    let Options { sigma, k, xdog } = *options;
+    let rows = dog_rows::pass(plan, lightness, sigma, k);
     let (radius, narrow, wide) = dog_rows::tables(sigma, k);
     let params = Params {
         radius: radius as i32,

@@ -31,7 +31,7 @@ pub fn tables(sigma: f32, k: f32) -> (u32, GaussianTable, GaussianTable) {
 
 /// Smooths the rows of (L alpha, alpha) by standard deviations `sigma` and `k` `sigma` pixels; gives
 /// (L alpha, alpha) of the one and of the other.
-pub fn rows(plan: &mut PlanBuilder, lightness: ImageId, sigma: f32, k: f32) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, sigma: f32, k: f32) -> ImageId {
     let (radius, narrow, wide) = tables(sigma, k);
     let params = Params { radius: radius as i32, padding: Default::default(), narrow, wide };
     plan.pass(&KERNEL, &[lightness], &params, Class::Field, Support::Pixels(radius))

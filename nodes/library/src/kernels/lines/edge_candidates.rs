@@ -36,9 +36,21 @@ crate::choice::choice! {
 /// Values nearer to each other than this ratio count as equal: decided by rounding, lines would be ragged.
 const TIE: f32 = 1.0005;
 
+/// What edges are asked for; heights in units of L.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// What makes an edge.
+    pub method: Method,
+    /// Height from which on an edge may continue a stronger one.
+    pub low: f32,
+    /// Height from which on an edge is drawn by itself.
+    pub high: f32,
+}
+
 /// The candidates of a gradient image (see `edge_gradient`); heights in units of L. For
 /// [`Method::Magnitude`] the edge image.
-pub fn find(plan: &mut PlanBuilder, gradient: ImageId, method: Method, low: f32, high: f32) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, gradient: ImageId, options: &Options) -> ImageId {
+    let Options { method, low, high } = *options;
     let params = Params { method: method as u32, low, high: high.max(low) };
     plan.pass(&KERNEL, &[gradient], &params, Class::Field, Support::Pixels(1))
 }

@@ -27,8 +27,8 @@ crate::kernel!(edge_gradient {
 
 /// The gradient of the L of a Lab image after smoothing by `sigma` pixels; `sobel` by the Sobel operator
 /// (2.23), else by the 3x3 operator optimized for rotation invariance (2.26).
-pub fn of_lab(plan: &mut PlanBuilder, lab: ImageId, sigma: f32, sobel: bool) -> ImageId {
-    let smooth = gaussian_blur::color(plan, lab, sigma);
+pub fn pass(plan: &mut PlanBuilder, lab: ImageId, sigma: f32, sobel: bool) -> ImageId {
+    let smooth = gaussian_blur::pass_colour(plan, lab, sigma);
     let table = gaussian_table(sigma, gaussian_radius(sigma, 3.0));
     let [centre, side] = if sobel { [0.5, 0.25] } else { [162.32 / 256.0, 46.84 / 256.0] };
     // On both sides of a step between two pixels, the central difference is half the two middle weights.

@@ -26,7 +26,7 @@ pub const STEPS: u32 = 12;
 
 /// The edge image (1 = paper, 1 - `darkness` = line) of `candidates`: strong ones, and weak ones that a
 /// chain of at most `reach` pixels joins to a strong one.
-pub fn edges(plan: &mut PlanBuilder, candidates: ImageId, reach: u32, darkness: f32) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, candidates: ImageId, reach: u32, darkness: f32) -> ImageId {
     let (mut image, mut left) = (candidates, reach);
     loop {
         let steps = left.min(STEPS);
@@ -135,7 +135,7 @@ mod tests {
         let (width, height) = (candidates.width(), candidates.height());
         let mut plan = PlanBuilder::new(width, height).unwrap();
         let input = plan.input("candidates", 1, Class::Field);
-        let out = edges(&mut plan, input, reach, 1.0);
+        let out = pass(&mut plan, input, reach, 1.0);
         plan.output("edges", out);
         let region = Rect::of_size(width, height);
         CpuExecutor::new()

@@ -28,7 +28,7 @@ crate::kernel!(flow_dog_cabral_leedom {
 
 /// The edge image of a `response` (u alpha, alpha): smoothed along the stream lines of `field` (E - G, F) by
 /// standard deviation `sigma` pixels, thresholded as `xdog` says.
-pub fn edges(plan: &mut PlanBuilder, response: ImageId, field: ImageId, sigma: f32, xdog: &Xdog) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, response: ImageId, field: ImageId, sigma: f32, xdog: &Xdog) -> ImageId {
     let params = Params { sigma, threshold: xdog.threshold as u32, epsilon: xdog.epsilon, phi: xdog.phi };
     // No pixel lies farther than the line is long.
     let support = Support::Pixels(half_length(sigma) as u32 + 1);

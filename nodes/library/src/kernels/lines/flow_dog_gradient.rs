@@ -32,16 +32,21 @@ crate::kernel!(flow_dog_gradient {
 /// Cut-off, in standard deviations of the wider Gaussian; `precision` of Listing 4.1.
 const PRECISION: f32 = 3.0;
 
+/// What a difference of Gaussians is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Standard deviation of the narrower Gaussian, pixels.
+    pub sigma: f32,
+    /// Ratio of the two standard deviations.
+    pub k: f32,
+    /// Weights.
+    pub xdog: Xdog,
+}
+
 /// Response across the orientations of `field` (E - G, F) of (L alpha, alpha), as (u alpha, alpha), for standard
 /// deviations `sigma` and `k` `sigma` pixels.
-pub fn response(
-    plan: &mut PlanBuilder,
-    lightness: ImageId,
-    field: ImageId,
-    sigma: f32,
-    k: f32,
-    xdog: &Xdog,
-) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, field: ImageId, options: &Options) -> ImageId {
+    let Options { sigma, k, xdog } = *options;
     let halfwidth = halfwidth(sigma, k);
     let falloff = |sigma: f32| -0.5 / (sigma * sigma).max(1e-6);
     let params = Params {

@@ -31,16 +31,21 @@ crate::kernel!(flow_dog_tangent {
     },
 });
 
+/// What the smoothing along lines is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Standard deviation along the lines, pixels.
+    pub sigma: f32,
+    /// How lines are stepped.
+    pub integrator: Integrator,
+    /// The threshold.
+    pub xdog: Xdog,
+}
+
 /// The edge image of a `response` (u alpha, alpha): smoothed along the stream lines of `field` (E - G, F) by
 /// standard deviation `sigma` pixels, thresholded as `xdog` says.
-pub fn edges(
-    plan: &mut PlanBuilder,
-    response: ImageId,
-    field: ImageId,
-    sigma: f32,
-    integrator: Integrator,
-    xdog: &Xdog,
-) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, response: ImageId, field: ImageId, options: &Options) -> ImageId {
+    let Options { sigma, integrator, xdog } = *options;
     let params = Params {
         sigma,
         integrator: integrator as u32,

@@ -53,16 +53,26 @@ impl Stepping {
     }
 }
 
+/// What the filter is asked for; lengths in pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Standard deviation of the narrower Gaussian across lines.
+    pub sigma_e: f32,
+    /// Ratio of the two standard deviations across lines.
+    pub k: f32,
+    /// Standard deviation along lines.
+    pub sigma_m: f32,
+    /// How lines are stepped.
+    pub stepping: Stepping,
+    /// Weights and threshold.
+    pub xdog: Xdog,
+}
+
 /// The edge image of (L alpha, alpha) on the field (E - G, F), for standard deviations `sigma_e` and `k`
 /// `sigma_e` pixels across and `sigma_m` along the lines. What `marked` is darker than `lightness` is added
 /// to the response, which is how guides draw lines.
-pub fn edges(
-    plan: &mut PlanBuilder,
-    [lightness, field, marked]: [ImageId; 3],
-    [sigma_e, k, sigma_m]: [f32; 3],
-    stepping: Stepping,
-    xdog: &Xdog,
-) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, [lightness, field, marked]: [ImageId; 3], options: &Options) -> ImageId {
+    let Options { sigma_e, k, sigma_m, stepping, xdog } = *options;
     let falloff = |sigma: f32| -0.5 / (sigma * sigma).max(1e-6);
     let halfwidth = halfwidth(sigma_e, k);
     let params = Params {

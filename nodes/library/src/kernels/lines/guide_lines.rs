@@ -41,18 +41,28 @@ const WIDE: f32 = 3.0;
 /// Cut-off in standard deviations of the wider Gaussian.
 const PRECISION: f32 = 2.0;
 
+/// How guides draw lines.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Standard deviation of the narrower Gaussian across lines, pixels.
+    pub sigma: f32,
+    /// Strength of the lines.
+    pub weight: f32,
+    /// Weight of the difference of Gaussians in the response, tau or p.
+    pub edge: f32,
+}
+
 /// `response` (u alpha, alpha) with lines of strength `weight` where the guides, that is normal, depth
 /// and object id as far as there are any, break; `edge` is the weight of the difference of Gaussians
 /// in the response.
-pub fn add(
+pub fn pass(
     plan: &mut PlanBuilder,
     response: ImageId,
     field: ImageId,
     guides: [Option<ImageId>; 3],
-    sigma: f32,
-    weight: f32,
-    edge: f32,
+    options: &Options,
 ) -> ImageId {
+    let Options { sigma, weight, edge } = *options;
     // Narrower than this, no tap but the two next to the pixel would have any weight.
     let sigma = sigma.clamp(0.4, 100.0);
     let falloff = |factor: f32| -0.5 / (factor * sigma * factor * sigma);

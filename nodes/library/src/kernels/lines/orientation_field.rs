@@ -15,7 +15,7 @@ crate::kernel!(orientation_field {
 });
 
 /// (E - G, F) of a tensor image.
-pub fn of_tensor(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
     plan.pass(&KERNEL, &[tensor], &(), Class::Field, Support::Pixels(0))
 }
 

@@ -57,7 +57,7 @@ pub struct Options {
 }
 
 /// Filters a colour.
-pub fn filter(plan: &mut PlanBuilder, color: ImageId, options: &Options) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, options: &Options) -> ImageId {
     let radius = options.radius.max(MIN_RADIUS);
     let reach = (radius * INSIDE.sqrt()).floor() as i32;
     let block = if options.fft { block_side(reach) as u32 } else { 0 };

@@ -37,8 +37,8 @@ const SEEN: f32 = 1e-3;
 const STRIP: i32 = 32;
 
 /// Filters a colour.
-pub fn filter(plan: &mut PlanBuilder, color: ImageId, side: &Side) -> ImageId {
-    let left = kuwahara_rows::sums(plan, color, side);
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, side: &Side) -> ImageId {
+    let left = kuwahara_rows::pass(plan, color, side);
     let (right, squares) = (plan.sibling(left, 1), plan.sibling(left, 2));
     let params = Params {
         first: side.first,

@@ -85,7 +85,7 @@ fn reach(first: i32, count: u32) -> i32 {
 
 /// Adds the pass. The outputs are the sums of (a r, a g, a b, a) to the left, the same to the right
 /// (`sibling` 1), and of a (r^2 + g^2 + b^2) to the left and to the right (`sibling` 2).
-pub fn sums(plan: &mut PlanBuilder, color: ImageId, side: &Side) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, side: &Side) -> ImageId {
     let params = Params {
         first: side.first,
         count: side.count,

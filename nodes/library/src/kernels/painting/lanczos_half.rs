@@ -25,7 +25,7 @@ crate::kernel!(lanczos_half {
 });
 
 /// Adds the pass: from the image's level to the next coarser one.
-pub fn halved(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
     let lanczos = |d: f64| (PI * d).sin() * (PI * d / 3.0).sin() * 3.0 / (PI * PI * d * d);
     // Two pixels of this level are one of the next.
     let weights: [f64; 6] = std::array::from_fn(|i| lanczos((i as f64 + 0.5) / 2.0));

@@ -21,7 +21,7 @@ crate::kernel!(propagate_colour {
 });
 
 /// Adds the pass; `coarse` and the standard deviations found there lie one level above `color`.
-pub fn merged(
+pub fn pass(
     plan: &mut PlanBuilder,
     color: ImageId,
     coarse: ImageId,

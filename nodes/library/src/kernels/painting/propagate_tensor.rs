@@ -24,7 +24,7 @@ crate::kernel!(propagate_tensor {
 });
 
 /// Adds the pass; `coarse` lies one level above `fine`.
-pub fn merged(plan: &mut PlanBuilder, fine: ImageId, coarse: ImageId) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, fine: ImageId, coarse: ImageId) -> ImageId {
     // Without a floor two isotropic tensors would have no weight, and rounding would decide.
     plan.pass(&KERNEL, &[fine, coarse], &(), Class::Field, Support::Pixels(1))
 }

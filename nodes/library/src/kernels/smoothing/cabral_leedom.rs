@@ -28,7 +28,7 @@ crate::kernel!(cabral_leedom {
 
 /// Smooths a colour along the stream lines of `tensors`; pixels count by their coverage. Steps are those
 /// of the pixels: `options.step` and `options.midpoint` have no part in it.
-pub fn color(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: &Options) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: &Options) -> ImageId {
     let params = Params {
         sigma: options.sigma,
         least_turn: least_turn(options.max_angle),

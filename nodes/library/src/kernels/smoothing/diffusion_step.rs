@@ -23,7 +23,7 @@ crate::kernel!(diffusion_step {
 });
 
 /// A step by `time_step`.
-pub fn step(plan: &mut PlanBuilder, color: ImageId, weights: ImageId, time_step: f32) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, weights: ImageId, time_step: f32) -> ImageId {
     plan.pass(&KERNEL, &[color, weights], &Params { time_step }, Class::Colour, Support::Pixels(1))
 }
 

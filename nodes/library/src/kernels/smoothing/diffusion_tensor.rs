@@ -38,7 +38,7 @@ pub enum Scheme {
 
 /// The weights for `scheme`; `contrast` is lambda, or the fourth root of Weickert's C, in the unit of
 /// the gradients that the tensors are made of.
-pub fn weights(plan: &mut PlanBuilder, tensors: ImageId, scheme: Scheme, contrast: f32) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, tensors: ImageId, scheme: Scheme, contrast: f32) -> ImageId {
     let params = Params { falloff: 1.0 / (contrast * contrast).max(1e-12), coherence: scheme as u32 };
     plan.pass(&KERNEL, &[tensors], &params, Class::Field, Support::Pixels(0))
 }

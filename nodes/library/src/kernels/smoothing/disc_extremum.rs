@@ -30,7 +30,7 @@ pub enum Extremum {
 
 /// The extremum within a disc of `radius` pixels. Its pixels (x, y) are those with
 /// x^2 + y^2 <= radius (radius + 1), which gives rounder discs than radius^2 does.
-pub fn within_disc(plan: &mut PlanBuilder, color: ImageId, radius: f32, extremum: Extremum) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, radius: f32, extremum: Extremum) -> ImageId {
     let limit = (radius * (radius + 1.0) + 1e-3) as i32;
     let extent = limit.isqrt();
     let sign = if extremum == Extremum::Greatest { 1.0 } else { -1.0 };

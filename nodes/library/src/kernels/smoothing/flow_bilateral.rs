@@ -66,7 +66,7 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: &
     };
     // No sample lies further away than the line is long, and a bilinear one reads a pixel more.
     let support = Support::Pixels(reach(&params) as u32);
-    let field = orientation_field::of_tensor(plan, tensors);
+    let field = orientation_field::pass(plan, tensors);
     plan.pass(&KERNEL, &[color, field], &params, Class::Colour, support)
 }
 

@@ -30,7 +30,7 @@ crate::kernel!(flow_dilation {
 
 /// Looks `length` (1 + A)^2 / 4 pixels to both sides, A the anisotropy at the centre as in § 6.3.1, for the
 /// maximum of the first channel of `noise`.
-pub fn strokes(
+pub fn pass(
     plan: &mut PlanBuilder,
     color: ImageId,
     tensors: ImageId,

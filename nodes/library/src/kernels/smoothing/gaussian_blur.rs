@@ -25,12 +25,12 @@ crate::kernel!(gaussian_blur {
 const CUTOFF: f32 = 3.0;
 
 /// Smooths four channels of any meaning by `sigma` pixels of the image's level.
-pub fn smooth(plan: &mut PlanBuilder, image: ImageId, sigma: f32, class: Class) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, image: ImageId, sigma: f32, class: Class) -> ImageId {
     both_axes(plan, image, sigma, class, [0, 0])
 }
 
 /// Smooths a colour by `sigma` pixels, weighting by coverage.
-pub fn color(plan: &mut PlanBuilder, image: ImageId, sigma: f32) -> ImageId {
+pub fn pass_colour(plan: &mut PlanBuilder, image: ImageId, sigma: f32) -> ImageId {
     both_axes(plan, image, sigma, Class::Colour, [1, 2])
 }
 

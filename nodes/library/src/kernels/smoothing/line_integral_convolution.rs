@@ -69,7 +69,7 @@ pub struct Options {
 }
 
 /// Smooths a colour along the stream lines of `tensors`; pixels count by their coverage.
-pub fn color(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: &Options) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: &Options) -> ImageId {
     let params = Params {
         sigma: options.sigma,
         step: options.step.max(MIN_STEP),
@@ -79,7 +79,7 @@ pub fn color(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: 
         integrator: options.integrator as u32,
         adapt: options.adapt as u32,
     };
-    let field = orientation_field::of_tensor(plan, tensors);
+    let field = orientation_field::pass(plan, tensors);
     plan.pass(
         &KERNEL,
         &[color, tensors, field],

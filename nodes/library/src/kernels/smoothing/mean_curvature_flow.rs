@@ -30,7 +30,7 @@ crate::kernel!(mean_curvature_flow {
 
 /// A step by `time_step`; with `constraint` (r of 6.2, 0..=1) slower where isophotes do not follow the
 /// orientation of the tensors.
-pub fn step(
+pub fn pass(
     plan: &mut PlanBuilder,
     color: ImageId,
     tensors: Option<ImageId>,

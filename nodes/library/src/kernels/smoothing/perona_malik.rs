@@ -35,14 +35,20 @@ crate::choice::choice! {
     }
 }
 
-/// A step by `time_step`; `contrast` is K or lambda, in the unit of the colour.
-pub fn step(
-    plan: &mut PlanBuilder,
-    color: ImageId,
-    time_step: f32,
-    contrast: f32,
-    diffusivity: Diffusivity,
-) -> ImageId {
+/// What a step is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Length of the step.
+    pub time_step: f32,
+    /// K or lambda, in the unit of the colour.
+    pub contrast: f32,
+    /// The diffusivity.
+    pub diffusivity: Diffusivity,
+}
+
+/// A step of the diffusion.
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, options: &Options) -> ImageId {
+    let Options { time_step, contrast, diffusivity } = *options;
     let falloff = 1.0 / (contrast * contrast).max(1e-12);
     let params = Params { time_step, falloff, exponential: diffusivity as u32 };
     plan.pass(&KERNEL, &[color], &params, Class::Colour, Support::Pixels(1))

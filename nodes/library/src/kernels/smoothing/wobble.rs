@@ -22,9 +22,21 @@ crate::kernel!(wobble {
     },
 });
 
+/// How outlines waver.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// How far, pixels of the picture that is rendered.
+    pub amount: f32,
+    /// Length of the waves, pixels of the full-size picture.
+    pub wavelength: f32,
+    /// Rendered size over full size.
+    pub scale: f32,
+}
+
 /// Fetches pixels from up to `amount` pixels away; `wavelength` is in pixels of the full-size picture,
 /// of which this one is rendered at `scale`.
-pub fn waver(plan: &mut PlanBuilder, color: ImageId, amount: f32, wavelength: f32, scale: f32) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, options: &Options) -> ImageId {
+    let Options { amount, wavelength, scale } = *options;
     let params = Params { inverse_scale: 1.0 / scale, amount, frequency: 1.0 / wavelength.max(1.0) };
     plan.pass(&KERNEL, &[color], &params, Class::Colour, Support::Pixels(reach(&params) as u32))
 }

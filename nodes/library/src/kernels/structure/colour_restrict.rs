@@ -19,7 +19,7 @@ crate::kernel!(colour_restrict {
 });
 
 /// Adds the pass: from the image's level to the next coarser one, ceil(n / 2) pixels on a side.
-pub fn restrict(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
     let level = plan.desc(color).level + 1;
     plan.pass_at(&KERNEL, &[color], &(), &[Class::Colour], Support::Pixels(0), level)
 }
@@ -69,7 +69,7 @@ mod tests {
     fn pixels_count_by_coverage_and_missing_children_not_at_all() {
         let mut plan = PlanBuilder::new(3, 3).unwrap();
         let color = plan.input("color", 4, Class::Colour);
-        let half = restrict(&mut plan, color);
+        let half = pass(&mut plan, color);
         plan.output("color", half);
         let value = |x: usize, y: usize, c: usize| match (c, (x, y)) {
             (3, (1, 1)) => 0.0,

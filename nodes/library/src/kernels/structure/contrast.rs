@@ -20,7 +20,7 @@ crate::kernel!(contrast {
 });
 
 /// Adds the pass: 0.5 + gain (colour - 0.5), clamped.
-pub fn stretch(plan: &mut PlanBuilder, color: ImageId, gain: f32) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, gain: f32) -> ImageId {
     plan.pass(&KERNEL, &[color], &Params { gain }, Class::Colour, Support::Pixels(0))
 }
 

@@ -60,17 +60,23 @@ pub enum Neighbours {
     Column,
 }
 
+/// What a pass is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Neighbours lie nearer than this, pixels.
+    pub radius: f32,
+    /// Their spatial weight.
+    pub window: Window,
+    /// Which neighbours.
+    pub neighbours: Neighbours,
+    /// The last pass gives tensors with their validity.
+    pub last: bool,
+}
+
 /// Adds a pass. `flow` is what [`start`](super::flow_start::start) or the pass before gave, `largest`
 /// its largest magnitude; the `last` pass gives tensors with their validity.
-pub fn pass(
-    plan: &mut PlanBuilder,
-    flow: ImageId,
-    largest: ImageId,
-    radius: f32,
-    window: Window,
-    neighbours: Neighbours,
-    last: bool,
-) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, flow: ImageId, largest: ImageId, options: &Options) -> ImageId {
+    let Options { radius, window, neighbours, last } = *options;
     // Nearer than the radius, strictly; a last bit must not decide about a whole number.
     let reach = ((radius - 1e-3).ceil() as i32 - 1).clamp(0, MAX_REACH);
     let sigma = f64::from(radius.max(0.1)) / 3.0;
@@ -281,8 +287,9 @@ mod tests {
         for (radius, window) in [(5.0, Window::Box), (3.4, Window::Box), (6.0, Window::Gaussian)] {
             let mut plan = PlanBuilder::new(SIDE, SIDE).unwrap();
             let input = plan.input("flow", 4, Class::Field);
-            let largest = flow_maximum::maximum(&mut plan, input);
-            let result = pass(&mut plan, input, largest, radius, window, Neighbours::Disc, true);
+            let largest = flow_maximum::pass(&mut plan, input);
+            let options = Options { radius, window, neighbours: Neighbours::Disc, last: true };
+            let result = pass(&mut plan, input, largest, &options);
             plan.output("tensor", result);
             let region = Rect::of_size(SIDE, SIDE);
             let got = CpuExecutor::new()

@@ -13,14 +13,14 @@ crate::kernel!(flow_maximum {
 });
 
 /// Adds passes up to an image of one pixel, the largest value of the last channel of `image`.
-pub fn maximum(plan: &mut PlanBuilder, image: ImageId) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, image: ImageId) -> ImageId {
     let desc = plan.desc(image);
     if desc.channels == 1 && plan.level_size(desc.level) == [1, 1] {
         return image;
     }
     let params = Params { channel: desc.channels - 1 };
     let half = plan.pass_at(&KERNEL, &[image], &params, &[Class::Field], Support::Pixels(0), desc.level + 1);
-    maximum(plan, half)
+    pass(plan, half)
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {

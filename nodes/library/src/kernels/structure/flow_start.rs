@@ -24,7 +24,7 @@ crate::kernel!(flow_start {
 const LEAST: f32 = 1e-6;
 
 /// Adds the pass: unsmoothed tensor to unit tensor and magnitude.
-pub fn start(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
     plan.pass(&KERNEL, &[tensor], &(), Class::Field, Support::Pixels(0))
 }
 

@@ -142,7 +142,7 @@ pub(crate) fn least_lambda1(threshold: Option<f32>) -> f32 {
 }
 
 /// Adds the pass: colour to tensor.
-pub fn tensor(plan: &mut PlanBuilder, color: ImageId, operator: Derivative, measure: Measure) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, operator: Derivative, measure: Measure) -> ImageId {
     let (radius, smoothing, derivative) = operator.tables();
     let params = Params {
         radius: radius as i32,
@@ -285,7 +285,7 @@ mod tests {
     fn tensors(image: &Image, operator: Derivative, measure: Measure) -> Image {
         let mut plan = PlanBuilder::new(image.width(), image.height()).unwrap();
         let color = plan.input("color", 4, Class::Colour);
-        let result = tensor(&mut plan, color, operator, measure);
+        let result = pass(&mut plan, color, operator, measure);
         plan.output("tensor", result);
         let region = Rect::of_size(image.width(), image.height());
         CpuExecutor::new()

@@ -39,16 +39,20 @@ pub enum Guide {
     ObjectId,
 }
 
-/// Adds the pass: tensor plus `weight` times the tensor of the guide. `threshold` as in
-/// [`Measure`](super::gradient_tensor::Measure), for the sum.
-pub fn add(
-    plan: &mut PlanBuilder,
-    tensor: ImageId,
-    guide: ImageId,
-    kind: Guide,
-    weight: f32,
-    threshold: Option<f32>,
-) -> ImageId {
+/// How a guide counts.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// What it holds.
+    pub kind: Guide,
+    /// Factor on its tensor.
+    pub weight: f32,
+    /// As in [`Measure`](super::gradient_tensor::Measure), for the sum.
+    pub threshold: Option<f32>,
+}
+
+/// Adds the pass: tensor plus the weighted tensor of the guide.
+pub fn pass(plan: &mut PlanBuilder, tensor: ImageId, guide: ImageId, options: &Options) -> ImageId {
+    let Options { kind, weight, threshold } = *options;
     let params = Params { kind: kind as u32, weight, threshold: least_lambda1(threshold) };
     plan.pass(&KERNEL, &[tensor, guide], &params, Class::Field, Support::Pixels(1))
 }

@@ -20,7 +20,7 @@ crate::kernel!(jacobi_step {
 });
 
 /// Adds the pass.
-pub fn step(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
     plan.pass(&KERNEL, &[tensor], &(), Class::Field, Support::Pixels(1))
 }
 
@@ -31,11 +31,11 @@ pub fn relax(plan: &mut PlanBuilder, tensor: ImageId, steps: i32) -> ImageId {
     if plan.level_size(plan.desc(tensor).level) == [1, 1] {
         return tensor;
     }
-    let coarse = tensor_restrict::restrict(plan, tensor);
+    let coarse = tensor_restrict::pass(plan, tensor);
     let coarse = relax(plan, coarse, steps);
-    let mut filled = tensor_interpolate::interpolate(plan, tensor, coarse);
+    let mut filled = tensor_interpolate::pass(plan, tensor, coarse);
     for _ in 0..steps {
-        filled = step(plan, filled);
+        filled = pass(plan, filled);
     }
     filled
 }
@@ -160,7 +160,7 @@ mod tests {
 
     #[test]
     fn many_steps_converge_to_the_solution() {
-        let got = field(|plan, tensor| (0..1500).fold(relax(plan, tensor, 1), |t, _| step(plan, t)));
+        let got = field(|plan, tensor| (0..1500).fold(relax(plan, tensor, 1), |t, _| pass(plan, t)));
         for (got, want) in got.data().chunks_exact(4).zip(solution()) {
             assert!((0..3).all(|c| (f64::from(got[c]) - want[c]).abs() < 2e-3), "{got:?} for {want:?}");
         }

@@ -27,12 +27,12 @@ crate::kernel!(noise {
 const MOST: f32 = 8.0;
 
 /// Adds the pass: noise for a picture rendered at `scale` of its full size.
-pub fn white(plan: &mut PlanBuilder, scale: f32, seed: u32) -> ImageId {
-    white_at(plan, scale, seed, 0)
+pub fn pass(plan: &mut PlanBuilder, scale: f32, seed: u32) -> ImageId {
+    pass_at(plan, scale, seed, 0)
 }
 
 /// The same at a level of the pyramid; `scale` is the size of a picture at that level over the full size.
-pub fn white_at(plan: &mut PlanBuilder, scale: f32, seed: u32, level: i8) -> ImageId {
+pub fn pass_at(plan: &mut PlanBuilder, scale: f32, seed: u32, level: i8) -> ImageId {
     let grain = (1.0 / (scale * MOST)).max(1.0);
     let pixel_size = (1.0 / scale).min(MOST);
     // A whole number of grains fits; any other number touches one more at each end.
@@ -99,7 +99,7 @@ mod tests {
 
     fn noise(width: u32, height: u32, scale: f32, seed: u32) -> Image {
         let mut plan = PlanBuilder::new(width, height).unwrap();
-        let image = white(&mut plan, scale, seed);
+        let image = pass(&mut plan, scale, seed);
         plan.output("noise", image);
         let region = Rect::of_size(width, height);
         CpuExecutor::new()

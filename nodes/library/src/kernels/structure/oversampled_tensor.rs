@@ -39,7 +39,7 @@ crate::kernel!(oversampled_tensor {
 
 /// Adds the pass: colour to tensor at the next finer level, derivatives per pixel of the colour's own.
 /// `sigma` is the standard deviation of the Gaussian in those pixels, cut at three of them.
-pub fn tensor(plan: &mut PlanBuilder, color: ImageId, sigma: f32, measure: Measure) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, sigma: f32, measure: Measure) -> ImageId {
     let (radius, smoothing, derivative) = tables(sigma);
     let params = Params {
         radius,
@@ -247,7 +247,7 @@ mod tests {
                 let mut plan = PlanBuilder::new(61, 53).unwrap();
                 let color = plan.input("color", 4, Class::Colour);
                 let measure = Measure { scale: 1.0, luma: false, normalize: false, threshold: None };
-                let result = tensor(&mut plan, color, sigma, measure);
+                let result = pass(&mut plan, color, sigma, measure);
                 plan.output("tensor", result);
                 CpuExecutor::new()
                     .run(

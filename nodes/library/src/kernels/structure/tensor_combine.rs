@@ -29,7 +29,7 @@ crate::kernel!(tensor_combine {
 });
 
 /// Adds the pass; `coarse` lies one level above `fine`.
-pub fn combine(plan: &mut PlanBuilder, fine: ImageId, coarse: ImageId) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, fine: ImageId, coarse: ImageId) -> ImageId {
     plan.pass(&KERNEL, &[fine, coarse], &(), Class::Field, Support::Pixels(1))
 }
 

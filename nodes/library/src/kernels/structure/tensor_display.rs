@@ -70,7 +70,7 @@ pub fn least_significant(alpha: f32, samples: f32) -> f32 {
 }
 
 /// Adds the pass: tensor to opaque colour.
-pub fn color(plan: &mut PlanBuilder, tensor: ImageId, show: Show) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, tensor: ImageId, show: Show) -> ImageId {
     let plain = |show: u32| Params { show, k: 0.0, threshold: 0.0 };
     let params = match show {
         Show::Orientation => plain(0),
@@ -183,7 +183,7 @@ mod tests {
     fn grey([e, f, g]: [f32; 3], show: Show) -> f64 {
         let mut plan = PlanBuilder::new(1, 1).unwrap();
         let tensor = plan.input("tensor", 4, Class::Field);
-        let shown = color(&mut plan, tensor, show);
+        let shown = pass(&mut plan, tensor, show);
         plan.output("color", shown);
         let image = Image::from_vec(1, 1, 4, vec![e, f, g, 1.0]).unwrap();
         let region = Rect::of_size(1, 1);

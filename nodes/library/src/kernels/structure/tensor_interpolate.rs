@@ -19,12 +19,12 @@ crate::kernel!(tensor_interpolate {
 });
 
 /// Adds the pass; `coarse` lies one level above `fine`.
-pub fn interpolate(plan: &mut PlanBuilder, fine: ImageId, coarse: ImageId) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, fine: ImageId, coarse: ImageId) -> ImageId {
     plan.pass(&KERNEL, &[fine, coarse], &Params { kept: 1.0 }, Class::Field, Support::Pixels(1))
 }
 
 /// Adds the pass: `coarse` at the level of `fine`, one below, whose values do not matter.
-pub fn refine(plan: &mut PlanBuilder, fine: ImageId, coarse: ImageId) -> ImageId {
+pub fn pass_to(plan: &mut PlanBuilder, fine: ImageId, coarse: ImageId) -> ImageId {
     let params = Params { kept: f32::MAX };
     plan.pass(&KERNEL, &[fine, coarse], &params, Class::Field, Support::Pixels(1))
 }

@@ -30,16 +30,16 @@ const LEAST: f32 = 1e-12;
 const SHARE: f32 = 1e-3;
 
 /// Adds the pass: tensors to their logarithms.
-pub fn logarithm(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
-    pass(plan, tensor, 0)
+pub fn pass(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
+    convert(plan, tensor, 0)
 }
 
 /// Adds the pass: logarithms to their tensors.
-pub fn exponential(plan: &mut PlanBuilder, logarithm: ImageId) -> ImageId {
-    pass(plan, logarithm, 1)
+pub fn pass_inverse(plan: &mut PlanBuilder, logarithm: ImageId) -> ImageId {
+    convert(plan, logarithm, 1)
 }
 
-fn pass(plan: &mut PlanBuilder, image: ImageId, inverse: u32) -> ImageId {
+fn convert(plan: &mut PlanBuilder, image: ImageId, inverse: u32) -> ImageId {
     let params = Params { inverse, least: LEAST, share: SHARE };
     plan.pass(&KERNEL, &[image], &params, Class::Field, Support::Pixels(0))
 }
@@ -105,9 +105,9 @@ mod tests {
         let tensors =
             [[1.0, 0.0, 0.01, 1.0], [3e-6, 2e-6, 2e-6, 0.5], [40.0, -9.0, 4.0, 0.0], [2.0, 0.0, 2.0, 1.0]];
         let image = Image::from_vec(4, 1, 4, tensors.concat()).unwrap();
-        let there = run(&image, logarithm);
+        let there = run(&image, pass);
         assert!((there.pixel(0, 0)[0]).abs() < 1e-6 && (there.pixel(0, 0)[2] - 0.01f32.ln()).abs() < 1e-5);
-        let back = run(&there, exponential);
+        let back = run(&there, pass_inverse);
         for (got, want) in back.data().chunks_exact(4).zip(tensors) {
             let size = want[0].max(want[2]);
             assert!(
@@ -120,10 +120,10 @@ mod tests {
     #[test]
     fn no_tensor_has_no_direction_and_edges_keep_theirs() {
         let image = Image::from_vec(2, 1, 4, vec![0.0, 0.0, 0.0, 1.0, 0.36, 0.48, 0.64, 1.0]).unwrap();
-        let there = run(&image, logarithm);
+        let there = run(&image, pass);
         let [e, f, g, _] = there.pixel(0, 0).try_into().unwrap();
         assert!(f == 0.0 && e == g && (e - LEAST.ln()).abs() < 1e-4, "{e} {f} {g}");
-        let back = run(&there, exponential);
+        let back = run(&there, pass_inverse);
         let [e, f, g, _]: [f32; 4] = back.pixel(1, 0).try_into().unwrap();
         assert!((2.0 * f).atan2(e - g) - 0.96f32.atan2(-0.28) < 1e-4, "{e} {f} {g}");
         assert!(e * g - f * f < 2e-3, "{e} {f} {g}");

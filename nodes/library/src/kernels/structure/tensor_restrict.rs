@@ -20,12 +20,12 @@ crate::kernel!(tensor_restrict {
 });
 
 /// Adds the pass: from the image's level to the next coarser one, ceil(n / 2) pixels on a side.
-pub fn restrict(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
     coarser(plan, tensor, 1.0)
 }
 
 /// Adds the pass that takes the mean of all four, valid or not, also of w.
-pub fn mean(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
+pub fn pass_mean(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
     coarser(plan, tensor, -1.0)
 }
 

@@ -146,7 +146,7 @@ impl Filter {
     fn tensor(&self, plan: &mut PlanBuilder, color: ImageId, earlier: Option<ImageId>) -> ImageId {
         match earlier {
             Some(earlier) if self.relax_threshold > 0.0 => {
-                carried_tensor::tensor(plan, color, earlier, self.rho, self.relax_threshold)
+                carried_tensor::pass(plan, color, earlier, self.rho, self.relax_threshold)
             }
             _ => {
                 let options = TensorOptions {
@@ -164,7 +164,7 @@ impl Filter {
         let mut tensor = None;
         for _ in 0..self.iterations {
             let along = self.tensor(plan, color, tensor);
-            color = line_integral_convolution::color(plan, color, along, &self.smoothing);
+            color = line_integral_convolution::pass(plan, color, along, &self.smoothing);
             let mut across = self.tensor(plan, color, Some(along));
             match self.shock {
                 Shock::GradientDirected => color = self.directed.apply(plan, color, across),
@@ -189,7 +189,7 @@ impl Filter {
         match tensor {
             Some(tensor) if self.sigma_a > 0.0 => {
                 let last = Lic { sigma: self.sigma_a, adapt: Adapt::None, ..self.smoothing };
-                line_integral_convolution::color(plan, color, tensor, &last)
+                line_integral_convolution::pass(plan, color, tensor, &last)
             }
             _ => color,
         }

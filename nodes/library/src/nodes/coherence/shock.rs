@@ -107,13 +107,13 @@ impl Directed {
             scale: self.scale,
             threshold: self.threshold,
         };
-        directed_shock::sharpened(plan, color, tensor, smooth, &options)
+        directed_shock::pass(plan, color, tensor, smooth, &options)
     }
 }
 
 /// What a second derivative is taken of.
 fn smoothed(plan: &mut PlanBuilder, color: ImageId, sigma_i: f32) -> ImageId {
-    if sigma_i > 0.0 { gaussian_blur::color(plan, color, sigma_i) } else { color }
+    if sigma_i > 0.0 { gaussian_blur::pass_colour(plan, color, sigma_i) } else { color }
 }
 
 /// One step of the classical shock filter (§ 6.4.1).
@@ -124,8 +124,8 @@ pub(crate) fn osher_rudin_step(
     time_step: f32,
 ) -> ImageId {
     let smooth = smoothed(plan, color, sigma_i);
-    let detector = laplacian::of_color(plan, smooth);
-    shock_step::step(plan, color, detector, time_step)
+    let detector = laplacian::pass(plan, smooth);
+    shock_step::pass(plan, color, detector, time_step)
 }
 
 /// One step of the coherence-enhancing shock filter (§ 6.4.2).
@@ -137,8 +137,8 @@ pub(crate) fn coherence_enhancing_step(
     time_step: f32,
 ) -> ImageId {
     let smooth = smoothed(plan, color, sigma_i);
-    let detector = second_derivative::of_color(plan, smooth, tensor);
-    shock_step::step(plan, color, detector, time_step)
+    let detector = second_derivative::pass(plan, smooth, tensor);
+    shock_step::pass(plan, color, detector, time_step)
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {

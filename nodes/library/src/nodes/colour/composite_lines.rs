@@ -1,6 +1,6 @@
 //! Lines over a picture (§ 4.6).
 
-use crate::kernels::colour::composite_lines::composite;
+use crate::kernels::colour::composite_lines::{self, Params};
 use crate::ports;
 use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
 use isophote_engine::ImageId;
@@ -31,5 +31,5 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let mut line = scope.color("color");
     line[3] *= scope.float("opacity");
     let paper = scope.color("paper");
-    composite(scope.plan, color, edges, line, paper)
+    composite_lines::pass(scope.plan, color, edges, &Params { line, paper })
 }

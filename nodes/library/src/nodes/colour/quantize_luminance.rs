@@ -1,6 +1,6 @@
 //! Soft quantization of lightness (§ 4.6).
 
-use crate::kernels::colour::quantize_luminance::{Steepness, quantize};
+use crate::kernels::colour::quantize_luminance::{self, Steepness};
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
@@ -61,7 +61,7 @@ pub(crate) fn steepness(scope: &Scope<'_>, phi_q: f32) -> Steepness {
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = scope.required("color");
     let (bins, steepness) = (scope.int("bins"), steepness(scope, scope.float("phi_q")));
-    let lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
-    let flat = quantize(scope.plan, lab, bins, steepness);
-    lab_to_rgb::to_rgb(scope.plan, flat, 1.0)
+    let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
+    let flat = quantize_luminance::pass(scope.plan, lab, bins, steepness);
+    lab_to_rgb::pass(scope.plan, flat, 1.0)
 }

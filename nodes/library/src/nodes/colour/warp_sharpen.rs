@@ -1,6 +1,7 @@
 //! Sharpening by warping (§ 4.6): the picture is pulled away from its edges, which narrows them.
 
-use crate::kernels::colour::{luma_gradient, warp};
+use crate::kernels::colour::luma_gradient;
+use crate::kernels::colour::warp::{self, Params};
 use crate::kernels::smoothing::gaussian_blur;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
@@ -13,7 +14,7 @@ pub static NODE: NodeSpec = NodeSpec {
     group: "colour",
     doc: "Sharpens edges by moving pixels towards them, as image-based warping does: samples are taken \
           away from the ridges of the smoothed gradient magnitude, found by the Sobel operator (2.23). No \
-          value leaves the range of its surroundings.",
+          value leaves the range of its neighbourhood.",
     section: "4.6",
     inputs: &[ports::COLOR],
     output: ports::color_output("The sharpened picture."),
@@ -36,7 +37,7 @@ const SLOPE: f32 = 4.132_731;
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = scope.required("color");
     let (sigma, phi) = (scope.float("sigma_w"), scope.float("phi_w"));
-    let edges = luma_gradient::magnitude(scope.plan, color);
-    let ridges = gaussian_blur::smooth(scope.plan, edges, sigma, Class::Field);
-    warp::against(scope.plan, color, ridges, phi * SLOPE * sigma * sigma, phi)
+    let edges = luma_gradient::pass(scope.plan, color);
+    let ridges = gaussian_blur::pass(scope.plan, edges, sigma, Class::Field);
+    warp::pass(scope.plan, color, ridges, &Params { amount: phi * SLOPE * sigma * sigma, limit: phi })
 }

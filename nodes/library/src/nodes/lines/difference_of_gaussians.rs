@@ -2,7 +2,7 @@
 
 use crate::choice::choice;
 use crate::kernels::colour::lightness;
-use crate::kernels::lines::dog_columns;
+use crate::kernels::lines::dog_columns::{self, Options};
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::ports;
 use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
@@ -84,8 +84,8 @@ pub(crate) fn xdog(scope: &Scope<'_>) -> Xdog {
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
-    let (color, xdog) = (scope.required("color"), xdog(scope));
-    let (sigma, k) = (scope.float("sigma_e"), scope.float("k"));
-    let lightness = lightness::of_color(scope.plan, color);
-    dog_columns::edges(scope.plan, lightness, sigma, k, &xdog)
+    let color = scope.required("color");
+    let options = Options { sigma: scope.float("sigma_e"), k: scope.float("k"), xdog: xdog(scope) };
+    let lightness = lightness::pass(scope.plan, color);
+    dog_columns::pass(scope.plan, lightness, &options)
 }

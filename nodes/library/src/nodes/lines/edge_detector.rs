@@ -1,7 +1,7 @@
 //! Classical edge detection (§ 4.1, 4.2.1): lines one pixel wide, as computer vision draws them.
 
 use crate::kernels::colour::rgb_to_lab;
-use crate::kernels::lines::edge_candidates::{self, Method};
+use crate::kernels::lines::edge_candidates::{self, Method, Options};
 use crate::kernels::lines::{edge_gradient, edge_hysteresis};
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::ports;
@@ -51,17 +51,18 @@ pub static NODE: NodeSpec = NodeSpec {
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = scope.required("color");
     let method = scope.option("method");
-    let (sigma, low, high) = (scope.float("sigma"), scope.float("low"), scope.float("high"));
-    let lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
-    let gradient = edge_gradient::of_lab(scope.plan, lab, sigma, method == Method::Magnitude);
-    let candidates = edge_candidates::find(scope.plan, gradient, method, low, high);
+    let sigma = scope.float("sigma");
+    let options = Options { method, low: scope.float("low"), high: scope.float("high") };
+    let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
+    let gradient = edge_gradient::pass(scope.plan, lab, sigma, method == Method::Magnitude);
+    let candidates = edge_candidates::pass(scope.plan, gradient, &options);
     if method == Method::Magnitude {
         return candidates;
     }
     // A line of one pixel covers that share of a pixel of a smaller rendering.
     let darkness = scope.scale().min(1.0);
     let reach = scope.float("reach").ceil().max(0.0) as u32;
-    edge_hysteresis::edges(scope.plan, candidates, reach, darkness)
+    edge_hysteresis::pass(scope.plan, candidates, reach, darkness)
 }
 
 #[cfg(test)]

@@ -130,7 +130,7 @@ impl FlowDog {
         tensor: ImageId,
         guides: &Guides,
     ) -> ImageId {
-        let field = orientation_field::of_tensor(plan, tensor);
+        let field = orientation_field::pass(plan, tensor);
         let (mut source, mut edges) = (lightness, lightness);
         let guides = [guides.normal, guides.depth, guides.object_id];
         for iteration in 1..=self.iterations {
@@ -142,32 +142,32 @@ impl FlowDog {
             }
             edges = match self.kernel {
                 Kernel::Separable => {
-                    let response =
-                        flow_dog_gradient::response(plan, source, field, self.sigma_e, self.k, &xdog);
-                    let response = self.marked(plan, response, field, guides);
+                    let options = flow_dog_gradient::Options { sigma: self.sigma_e, k: self.k, xdog };
+                    let response = flow_dog_gradient::pass(plan, source, field, &options);
+                    let response = self.with_guides(plan, response, field, guides);
                     self.along(plan, response, field, &xdog)
                 }
                 Kernel::TwoDimensional => {
-                    let marked = self.marked(plan, source, field, guides);
-                    let sigmas = [self.sigma_e, self.k, self.sigma_m];
-                    flow_dog_two_dimensional::edges(
-                        plan,
-                        [source, field, marked],
-                        sigmas,
-                        self.stepping,
-                        &xdog,
-                    )
+                    let marked = self.with_guides(plan, source, field, guides);
+                    let options = flow_dog_two_dimensional::Options {
+                        sigma_e: self.sigma_e,
+                        k: self.k,
+                        sigma_m: self.sigma_m,
+                        stepping: self.stepping,
+                        xdog,
+                    };
+                    flow_dog_two_dimensional::pass(plan, [source, field, marked], &options)
                 }
             };
             if !last {
-                source = darken_by_lines::darken(plan, lightness, edges);
+                source = darken_by_lines::pass(plan, lightness, edges);
             }
         }
         edges
     }
 
     /// A response, or any image of that shape, with the lines that the guides draw.
-    fn marked(
+    fn with_guides(
         &self,
         plan: &mut PlanBuilder,
         response: ImageId,
@@ -177,19 +177,19 @@ impl FlowDog {
         if self.guide_weight <= 0.0 || guides.iter().all(Option::is_none) {
             return response;
         }
-        let (sigma, weight) = (self.sigma_e, self.guide_weight);
-        guide_lines::add(plan, response, field, guides, sigma, weight, self.xdog.edge)
+        let options =
+            guide_lines::Options { sigma: self.sigma_e, weight: self.guide_weight, edge: self.xdog.edge };
+        guide_lines::pass(plan, response, field, guides, &options)
     }
 
     /// The second pass of the separable filter.
     fn along(&self, plan: &mut PlanBuilder, response: ImageId, field: ImageId, xdog: &Xdog) -> ImageId {
         match self.stepping {
             Stepping::Along(integrator) => {
-                flow_dog_tangent::edges(plan, response, field, self.sigma_m, integrator, xdog)
+                let options = flow_dog_tangent::Options { sigma: self.sigma_m, integrator, xdog: *xdog };
+                flow_dog_tangent::pass(plan, response, field, &options)
             }
-            Stepping::CabralLeedom => {
-                flow_dog_cabral_leedom::edges(plan, response, field, self.sigma_m, xdog)
-            }
+            Stepping::CabralLeedom => flow_dog_cabral_leedom::pass(plan, response, field, self.sigma_m, xdog),
         }
     }
 }
@@ -230,6 +230,6 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         Some(tensor) => tensor,
         None => tensor(scope, color, &guides),
     };
-    let lightness = lightness::of_color(scope.plan, color);
+    let lightness = lightness::pass(scope.plan, color);
     lines.edges(scope.plan, lightness, tensor, &guides)
 }

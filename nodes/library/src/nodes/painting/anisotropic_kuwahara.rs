@@ -141,7 +141,7 @@ impl Painting {
             if plan.level_size(level).iter().all(|n| *n <= SMALLEST) {
                 break;
             }
-            levels[count] = lanczos_half::halved(plan, finer);
+            levels[count] = lanczos_half::pass(plan, finer);
             count += 1;
         }
         let mut below: Option<[ImageId; 3]> = None;
@@ -150,13 +150,13 @@ impl Painting {
             if let Some([colour, deviations, _]) = below {
                 let gain = self.p_s * self.p_d.powi(k as i32);
                 let params = Propagation { gain, threshold: self.tau_v };
-                merged = propagate_colour::merged(plan, *image, colour, deviations, &params);
+                merged = propagate_colour::pass(plan, *image, colour, deviations, &params);
             }
             let orientation = match (tensor, below) {
                 (Some(tensor), _) if k == 0 => tensor,
                 (_, below) => {
                     let own = structure_tensor::of_color(plan, merged, &options);
-                    below.map_or(own, |[.., coarse]| propagate_tensor::merged(plan, own, coarse))
+                    below.map_or(own, |[.., coarse]| propagate_tensor::pass(plan, own, coarse))
                 }
             };
             let filter = match self.weights {

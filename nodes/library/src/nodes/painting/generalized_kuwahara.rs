@@ -70,5 +70,5 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         threshold: scope.float("threshold"),
         fft: scope.option::<Method>("method") == Method::Fourier,
     };
-    generalized_kuwahara::filter(scope.plan, color, &options)
+    generalized_kuwahara::pass(scope.plan, color, &options)
 }

@@ -50,5 +50,5 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         Regions::Squares => Side::square(radius),
         Regions::Gaussian => Side::gaussian(radius),
     };
-    kuwahara::filter(scope.plan, color, &side)
+    kuwahara::pass(scope.plan, color, &side)
 }

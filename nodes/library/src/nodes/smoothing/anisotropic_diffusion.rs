@@ -3,7 +3,7 @@
 
 use crate::choice::choice;
 use crate::kernels::smoothing::diffusion_tensor::{self, Scheme};
-use crate::kernels::smoothing::perona_malik::{self, Diffusivity};
+use crate::kernels::smoothing::perona_malik::{self, Diffusivity, Options};
 use crate::kernels::smoothing::{diffusion_step, gaussian_blur};
 use crate::kernels::structure::gradient_tensor::{self, Derivative, Measure};
 use crate::ports;
@@ -71,9 +71,9 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         Diffusion::EdgeEnhancing => Scheme::EdgeEnhancing,
         Diffusion::CoherenceEnhancing => Scheme::CoherenceEnhancing,
         Diffusion::PeronaMalik => {
-            let diffusivity = scope.option("diffusivity");
+            let options = Options { time_step, contrast, diffusivity: scope.option("diffusivity") };
             for _ in 0..iterations {
-                color = perona_malik::step(scope.plan, color, time_step, contrast, diffusivity);
+                color = perona_malik::pass(scope.plan, color, &options);
             }
             return color;
         }
@@ -83,8 +83,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let contrast = if scheme == Scheme::CoherenceEnhancing { 0.25 * contrast } else { contrast };
     for _ in 0..iterations {
         let tensors = structure(scope.plan, color, sigma, scheme, rho);
-        let weights = diffusion_tensor::weights(scope.plan, tensors, scheme, contrast);
-        color = diffusion_step::step(scope.plan, color, weights, time_step);
+        let weights = diffusion_tensor::pass(scope.plan, tensors, scheme, contrast);
+        color = diffusion_step::pass(scope.plan, color, weights, time_step);
     }
     color
 }
@@ -92,11 +92,11 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
 /// The structure tensor that guides a step. Edges are located by the gradient itself; lines by its
 /// mean over a neighbourhood.
 fn structure(plan: &mut PlanBuilder, color: ImageId, sigma: f32, scheme: Scheme, rho: f32) -> ImageId {
-    let smooth = gaussian_blur::color(plan, color, sigma);
+    let smooth = gaussian_blur::pass_colour(plan, color, sigma);
     let measure = Measure { scale: 1.0, luma: false, normalize: false, threshold: None };
-    let tensors = gradient_tensor::tensor(plan, smooth, Derivative::Scharr3, measure);
+    let tensors = gradient_tensor::pass(plan, smooth, Derivative::Scharr3, measure);
     match scheme {
         Scheme::EdgeEnhancing => tensors,
-        Scheme::CoherenceEnhancing => gaussian_blur::smooth(plan, tensors, rho, Class::Field),
+        Scheme::CoherenceEnhancing => gaussian_blur::pass(plan, tensors, rho, Class::Field),
     }
 }

@@ -1,6 +1,6 @@
 //! The bilateral filter (§ 3.2) and its xy-separable form (§ 3.3).
 //!
-//! Other nodes interleave single iterations with work of their own by `iteration`.
+//! Other nodes call `iteration` between passes of their own.
 
 use crate::choice::choice;
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
@@ -102,10 +102,10 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let passes = Passes { kernel: scope.option("kernel"), options };
     let iterations = scope.int("iterations");
     if is_lab {
-        color = rgb_to_lab::to_lab(scope.plan, color, 1.0);
+        color = rgb_to_lab::pass(scope.plan, color, 1.0);
     }
     for _ in 0..iterations {
         color = iteration(scope.plan, color, &passes);
     }
-    if is_lab { lab_to_rgb::to_rgb(scope.plan, color, 1.0) } else { color }
+    if is_lab { lab_to_rgb::pass(scope.plan, color, 1.0) } else { color }
 }

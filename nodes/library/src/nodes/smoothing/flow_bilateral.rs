@@ -1,7 +1,7 @@
 //! The flow-based bilateral filter (§ 3.5): as the oriented one, with the second pass along stream
 //! lines, so that curved features are enhanced and not smoothed away.
 //!
-//! Other nodes interleave single iterations with work of their own by `iteration`.
+//! Other nodes call `iteration` between passes of their own.
 
 use crate::choice::choice;
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
@@ -141,9 +141,9 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         },
     };
     let iterations = scope.int("iterations");
-    let mut lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
+    let mut lab = rgb_to_lab::pass(scope.plan, color, 1.0);
     for _ in 0..iterations {
         lab = iteration(scope.plan, lab, tensors, &passes);
     }
-    lab_to_rgb::to_rgb(scope.plan, lab, 1.0)
+    lab_to_rgb::pass(scope.plan, lab, 1.0)
 }

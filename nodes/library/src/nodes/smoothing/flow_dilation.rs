@@ -37,7 +37,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let tensors = structure_tensor::connected(scope, color);
     let (length, width, seed) = (scope.float("length"), scope.float("width"), scope.int("seed"));
     let scale = scope.scale();
-    let white = noise::white(scope.plan, scale, seed as u32);
-    let grains = gaussian_blur::smooth(scope.plan, white, width, Class::Colour);
-    flow_dilation::strokes(scope.plan, color, tensors, grains, length)
+    let white = noise::pass(scope.plan, scale, seed as u32);
+    let grains = gaussian_blur::pass(scope.plan, white, width, Class::Colour);
+    flow_dilation::pass(scope.plan, color, tensors, grains, length)
 }

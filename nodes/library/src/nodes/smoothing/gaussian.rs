@@ -25,5 +25,5 @@ pub static NODE: NodeSpec = NodeSpec {
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let (color, sigma) = (scope.required("color"), scope.float("sigma"));
-    gaussian_blur::color(scope.plan, color, sigma)
+    gaussian_blur::pass_colour(scope.plan, color, sigma)
 }

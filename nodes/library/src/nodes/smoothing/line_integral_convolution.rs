@@ -89,7 +89,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         Stepping::Euler => Integrator::Euler,
         Stepping::Midpoint => Integrator::Midpoint,
         Stepping::TwoStep => Integrator::TwoStep,
-        Stepping::CabralLeedom => return cabral_leedom::color(scope.plan, color, tensors, &options),
+        Stepping::CabralLeedom => return cabral_leedom::pass(scope.plan, color, tensors, &options),
     };
-    line_integral_convolution::color(scope.plan, color, tensors, &options)
+    line_integral_convolution::pass(scope.plan, color, tensors, &options)
 }

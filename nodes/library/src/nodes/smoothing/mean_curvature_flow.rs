@@ -55,7 +55,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     });
     let sigma_i = SHOCK_SIGMA * scope.scale();
     for i in 1..=iterations {
-        color = mean_curvature_flow::step(scope.plan, color, tensors, time_step, constraint);
+        color = mean_curvature_flow::pass(scope.plan, color, tensors, time_step, constraint);
         if shock_every > 0 && i % shock_every == 0 {
             color = shock::osher_rudin_step(scope.plan, color, sigma_i, shock::TIME_STEP.default_float());
         }

@@ -5,10 +5,10 @@
 //! would keep the colours of single pixels but tear channels' contours apart where colours are equally
 //! light.
 //!
-//! Other nodes use the operators by `apply`.
+//! Other nodes use [`open`] and [`close`].
 
 use crate::choice::choice;
-use crate::kernels::smoothing::disc_extremum::{Extremum, within_disc};
+use crate::kernels::smoothing::disc_extremum::{self, Extremum};
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
@@ -57,14 +57,14 @@ choice! {
 
 /// Light features smaller than the disc go.
 pub(crate) fn open(plan: &mut PlanBuilder, color: ImageId, radius: f32) -> ImageId {
-    let eroded = within_disc(plan, color, radius, Extremum::Least);
-    within_disc(plan, eroded, radius, Extremum::Greatest)
+    let eroded = disc_extremum::pass(plan, color, radius, Extremum::Least);
+    disc_extremum::pass(plan, eroded, radius, Extremum::Greatest)
 }
 
 /// Dark features smaller than the disc go.
 pub(crate) fn close(plan: &mut PlanBuilder, color: ImageId, radius: f32) -> ImageId {
-    let dilated = within_disc(plan, color, radius, Extremum::Greatest);
-    within_disc(plan, dilated, radius, Extremum::Least)
+    let dilated = disc_extremum::pass(plan, color, radius, Extremum::Greatest);
+    disc_extremum::pass(plan, dilated, radius, Extremum::Least)
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
@@ -72,8 +72,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let operator = scope.option("operator");
     let plan = &mut *scope.plan;
     match operator {
-        Operator::Dilate => within_disc(plan, color, radius, Extremum::Greatest),
-        Operator::Erode => within_disc(plan, color, radius, Extremum::Least),
+        Operator::Dilate => disc_extremum::pass(plan, color, radius, Extremum::Greatest),
+        Operator::Erode => disc_extremum::pass(plan, color, radius, Extremum::Least),
         Operator::Open => open(plan, color, radius),
         Operator::Close => close(plan, color, radius),
         Operator::OpenClose => {

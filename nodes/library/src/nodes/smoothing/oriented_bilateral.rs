@@ -1,7 +1,7 @@
 //! The orientation-aligned bilateral filter (§ 3.4): regions of like colour become flat, borders stay.
 //!
-//! Other nodes interleave single iterations with work of their own by `iteration`, on a CIELAB
-//! image and with a tensor that stays the same throughout.
+//! Other nodes call `iteration` between passes of their own, on a CIELAB image and with a tensor that stays
+//! the same throughout.
 
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::oriented_bilateral::{self, Direction, Options, Sampling};
@@ -104,9 +104,9 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let passes =
         Passes { gradient: options("sigma_dg", "sigma_rg"), tangent: options("sigma_dt", "sigma_rt") };
     let iterations = scope.int("iterations");
-    let mut lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
+    let mut lab = rgb_to_lab::pass(scope.plan, color, 1.0);
     for _ in 0..iterations {
         lab = iteration(scope.plan, lab, tensors, &passes);
     }
-    lab_to_rgb::to_rgb(scope.plan, lab, 1.0)
+    lab_to_rgb::pass(scope.plan, lab, 1.0)
 }

@@ -1,7 +1,7 @@
 //! The edge tangent flow (§ 2.5): a bilateral filter of tangents, the well-known other way to a smooth
 //! orientation field, to compare the structure tensor with.
 
-use crate::kernels::structure::edge_tangent_flow::{self, Neighbours, Window};
+use crate::kernels::structure::edge_tangent_flow::{self, Neighbours, Options, Window};
 use crate::kernels::structure::gradient_tensor::{self, Derivative, Measure};
 use crate::kernels::structure::{flow_maximum, flow_start};
 use crate::ports;
@@ -53,13 +53,18 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let iterations = scope.int("iterations");
     let plan = &mut *scope.plan;
     let measure = Measure { scale: 1.0, luma: false, normalize: false, threshold: None };
-    let gradients = gradient_tensor::tensor(plan, color, Derivative::Scharr3, measure);
-    let mut flow = flow_start::start(plan, gradients);
-    let largest = flow_maximum::maximum(plan, flow);
+    let gradients = gradient_tensor::pass(plan, color, Derivative::Scharr3, measure);
+    let mut flow = flow_start::pass(plan, gradients);
+    let largest = flow_maximum::pass(plan, flow);
     for iteration in 1..=iterations {
         for (index, shape) in neighbours.iter().enumerate() {
             let last = iteration == iterations && index + 1 == neighbours.len();
-            flow = edge_tangent_flow::pass(plan, flow, largest, radius, window, *shape, last);
+            flow = edge_tangent_flow::pass(
+                plan,
+                flow,
+                largest,
+                &Options { radius, window, neighbours: *shape, last },
+            );
         }
     }
     flow

@@ -96,7 +96,7 @@ pub fn of_color_and_guides(
 ) -> ImageId {
     let threshold = (options.relax_threshold > 0.0).then_some(options.relax_threshold);
     let (source, scale) = match options.space {
-        Space::Lab => (rgb_to_lab::to_lab(plan, color, 1.0), 0.01),
+        Space::Lab => (rgb_to_lab::pass(plan, color, 1.0), 0.01),
         Space::Rgb | Space::Luminance => (color, 1.0),
     };
     let measure =
@@ -117,9 +117,9 @@ fn over_levels(
     if levels <= 1 || plan.level_size(plan.desc(source).level) == [1, 1] {
         return own;
     }
-    let coarse = colour_restrict::restrict(plan, source);
+    let coarse = colour_restrict::pass(plan, source);
     let coarse = over_levels(plan, coarse, &Guides::default(), options, measure, levels - 1);
-    tensor_combine::combine(plan, own, coarse)
+    tensor_combine::pass(plan, own, coarse)
 }
 
 /// The smoothed tensor of one level.
@@ -132,8 +132,8 @@ fn smoothed(
 ) -> ImageId {
     let mut rho = options.smoothing();
     let mut tensor = match options.oversample {
-        Some(sigma) => oversampled_tensor::tensor(plan, source, sigma, measure),
-        None => gradient_tensor::tensor(plan, source, options.derivative, measure),
+        Some(sigma) => oversampled_tensor::pass(plan, source, sigma, measure),
+        None => gradient_tensor::pass(plan, source, options.derivative, measure),
     };
     let relax = |plan: &mut PlanBuilder, tensor| match measure.threshold {
         Some(_) => jacobi_step::relax(plan, tensor, options.relax_steps),
@@ -145,17 +145,19 @@ fn smoothed(
         if guides.each().next().is_none() {
             // Smoothing comes before the samples are thinned out, or they would alias.
             let relaxed = relax(plan, tensor);
-            let wide = gaussian_blur::smooth(plan, relaxed, 2.0 * rho, Class::Field);
-            return tensor_restrict::mean(plan, wide);
+            let wide = gaussian_blur::pass(plan, relaxed, 2.0 * rho, Class::Field);
+            return tensor_restrict::pass_mean(plan, wide);
         }
         // Guides have the picture's own pixels.
-        tensor = tensor_restrict::mean(plan, tensor);
+        tensor = tensor_restrict::pass_mean(plan, tensor);
     }
     for (kind, guide) in guides.each() {
-        tensor = guide_tensor::add(plan, tensor, guide, kind, options.guide_weight, measure.threshold);
+        let guide_options =
+            guide_tensor::Options { kind, weight: options.guide_weight, threshold: measure.threshold };
+        tensor = guide_tensor::pass(plan, tensor, guide, &guide_options);
     }
     let relaxed = relax(plan, tensor);
-    gaussian_blur::smooth(plan, relaxed, rho, Class::Field)
+    gaussian_blur::pass(plan, relaxed, rho, Class::Field)
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {

@@ -109,7 +109,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
             Show::Significance { alpha: scope.float("alpha"), samples }
         }
     };
-    tensor_display::color(scope.plan, tensor, show)
+    tensor_display::pass(scope.plan, tensor, show)
 }
 
 /// Levels beyond the picture's own at which a proxy's stream lines are traced.
@@ -123,17 +123,17 @@ fn stream_lines(plan: &mut PlanBuilder, mut tensor: ImageId, sigma: f32, scale: 
     let finer = (1..=allowed).rev().find(|level| scale * f32::from(1_u8 << level) <= 1.0).unwrap_or(0);
     let mut grains = None;
     if finer > 0 {
-        tensor = tensor_logarithm::logarithm(plan, tensor);
+        tensor = tensor_logarithm::pass(plan, tensor);
     }
     for level in 1..=finer {
-        let noise = noise::white_at(plan, scale * f32::from(1_u8 << level), 0, -(level as i8));
-        tensor = tensor_interpolate::refine(plan, noise, tensor);
+        let noise = noise::pass_at(plan, scale * f32::from(1_u8 << level), 0, -(level as i8));
+        tensor = tensor_interpolate::pass_to(plan, noise, tensor);
         grains = Some(noise);
     }
     if finer > 0 {
-        tensor = tensor_logarithm::exponential(plan, tensor);
+        tensor = tensor_logarithm::pass_inverse(plan, tensor);
     }
-    let grains = grains.unwrap_or_else(|| noise::white(plan, scale, 0));
+    let grains = grains.unwrap_or_else(|| noise::pass(plan, scale, 0));
     // Who looks at a field looks at the lines themselves.
     let options = Options {
         sigma: sigma * f32::from(1_u8 << finer),
@@ -142,11 +142,11 @@ fn stream_lines(plan: &mut PlanBuilder, mut tensor: ImageId, sigma: f32, scale: 
         adapt: Adapt::None,
         ..lic::options()
     };
-    let lines = line_integral_convolution::color(plan, grains, tensor, &options);
+    let lines = line_integral_convolution::pass(plan, grains, tensor, &options);
     // The contrast of the full-size picture, which a proxy shows less of.
-    let mut shown = contrast::stretch(plan, lines, SPREAD / deviation(sigma / scale));
+    let mut shown = contrast::pass(plan, lines, SPREAD / deviation(sigma / scale));
     for _ in 0..finer {
-        shown = colour_restrict::restrict(plan, shown);
+        shown = colour_restrict::pass(plan, shown);
     }
     shown
 }

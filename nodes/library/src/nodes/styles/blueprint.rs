@@ -1,6 +1,6 @@
 //! A blueprint: light lines on tinted paper (§ 1.2, 4.5).
 
-use crate::kernels::colour::blueprint_paper::{Sheet, draw};
+use crate::kernels::colour::blueprint_paper::{self, Sheet};
 use crate::kernels::colour::{lightness, rgb_to_lab};
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::lines::flow_dog;
@@ -68,10 +68,10 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let tensor = flow_dog::tensor(scope, color, &guides);
     let abstraction = Abstraction::of(scope);
     let n_e = scope.int("n_e");
-    let lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
+    let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
     let smooth = abstraction.apply(scope.plan, lab, tensor, n_e);
     let flow = lines::flow_dog(scope, guide_weight);
-    let lightness = lightness::of_lab(scope.plan, smooth);
+    let lightness = lightness::pass_lab(scope.plan, smooth);
     let edges = flow.edges(scope.plan, lightness, tensor, &guides);
     let sheet = Sheet {
         line: scope.color("line_color"),
@@ -82,5 +82,5 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         fill: scope.float("fill"),
         cover: scope.bool("cover"),
     };
-    draw(scope.plan, lightness, edges, &sheet)
+    blueprint_paper::pass(scope.plan, lightness, edges, &sheet)
 }

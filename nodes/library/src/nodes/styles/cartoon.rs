@@ -1,7 +1,7 @@
 //! The enhanced cartoon filter (§ 4.6, Fig. 4.7).
 
-use crate::kernels::colour::quantize_luminance::quantize;
-use crate::kernels::colour::{composite_lines, lab_to_rgb, lightness, rgb_to_lab};
+use crate::kernels::colour::composite_lines::{self, Params as Composite};
+use crate::kernels::colour::{lab_to_rgb, lightness, quantize_luminance, rgb_to_lab};
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::nodes::colour::quantize_luminance as quantization;
 use crate::nodes::lines::difference_of_gaussians as dog;
@@ -84,10 +84,10 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let abstraction = Abstraction::of(scope);
     let (n_e, n_a) = (scope.int("n_e"), scope.int("n_a"));
 
-    let lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
+    let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
     let for_lines = abstraction.apply(scope.plan, lab, tensor, n_e);
     let flow = lines::flow_dog(scope, guide_weight);
-    let lightness = lightness::of_lab(scope.plan, for_lines);
+    let lightness = lightness::pass_lab(scope.plan, for_lines);
     let edges = flow.edges(scope.plan, lightness, tensor, &guides);
 
     // The first iterations are those behind the lines: the plan records them once.
@@ -96,15 +96,15 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let bins = scope.int("posterize");
     if bins > 0 {
         let steepness = quantization::steepness(scope, levels::steepness(scope, bins));
-        flat = quantize(scope.plan, flat, bins, steepness);
+        flat = quantize_luminance::pass(scope.plan, flat, bins, steepness);
     }
     let (saturation, line) = (scope.float("saturation"), scope.color("line_color"));
-    let rgb = lab_to_rgb::to_rgb(scope.plan, flat, saturation);
-    let drawn = composite_lines::composite(scope.plan, rgb, edges, line, [0.0; 4]);
+    let rgb = lab_to_rgb::pass(scope.plan, flat, saturation);
+    let drawn = composite_lines::pass(scope.plan, rgb, edges, &Composite { line, paper: [0.0; 4] });
     let sigma_a = scope.float("sigma_a");
     if sigma_a > 0.0 {
         let smooth = Lic { sigma: sigma_a, ..lic::options() };
-        return line_integral_convolution::color(scope.plan, drawn, tensor, &smooth);
+        return line_integral_convolution::pass(scope.plan, drawn, tensor, &smooth);
     }
     drawn
 }

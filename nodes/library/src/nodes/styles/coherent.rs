@@ -1,6 +1,6 @@
 //! Coherence-enhancing filtering as a style (§ 6).
 
-use crate::kernels::colour::quantize_luminance::{Steepness, quantize};
+use crate::kernels::colour::quantize_luminance::{self, Steepness};
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::nodes::coherence::coherence_enhancing::{self as filter, Filter};
 use crate::nodes::coherence::shock;
@@ -71,11 +71,11 @@ fn toned(scope: &mut Scope<'_>, color: ImageId) -> ImageId {
     if tone::is_neutral(scope) && bins == 0 && saturation == tone::SATURATION.default_float() {
         return color;
     }
-    let mut lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
+    let mut lab = rgb_to_lab::pass(scope.plan, color, 1.0);
     lab = tone::curve(scope, lab);
     if bins > 0 {
         let phi_q = levels::steepness(scope, bins);
-        lab = quantize(scope.plan, lab, bins, Steepness::Fixed(phi_q));
+        lab = quantize_luminance::pass(scope.plan, lab, bins, Steepness::Fixed(phi_q));
     }
-    lab_to_rgb::to_rgb(scope.plan, lab, saturation)
+    lab_to_rgb::pass(scope.plan, lab, saturation)
 }

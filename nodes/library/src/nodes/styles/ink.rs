@@ -1,7 +1,7 @@
 //! Ink and its relatives: the extended difference of Gaussians as drawing (§ 4.3, 4.4, Figure 4.1).
 
 use crate::choice::choice;
-use crate::kernels::colour::ink_sheet::{Sheet, draw};
+use crate::kernels::colour::ink_sheet::{self, Sheet};
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
@@ -305,13 +305,13 @@ impl Preset {
 /// Strokes along the flow, 0..=1 about middle grey: noise, `width` pixels wide and smoothed along the stream
 /// lines by `length`, lengths in pixels of the full-size picture.
 fn strokes(plan: &mut PlanBuilder, tensor: ImageId, [width, length]: [f32; 2], scale: f32) -> ImageId {
-    let white = noise::white(plan, scale, 19);
-    let soft = gaussian_blur::smooth(plan, white, width * scale, Class::Colour);
+    let white = noise::pass(plan, scale, 19);
+    let soft = gaussian_blur::pass(plan, white, width * scale, Class::Colour);
     // Noise is about as fine as pixels: none may be left out.
     let options = Lic { sigma: length * scale, adapt: Adapt::None, stretch: 1.0, ..lic::options() };
-    let long = line_integral_convolution::color(plan, soft, tensor, &options);
+    let long = line_integral_convolution::pass(plan, soft, tensor, &options);
     // Averages of noise are faint: a Gaussian of this width leaves 1 / (2 sqrt(pi) width) of its deviation.
-    contrast::stretch(plan, long, 7.0 * width)
+    contrast::pass(plan, long, 7.0 * width)
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
@@ -330,7 +330,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let options = TensorOptions { rho: drawing.rho * scale, ..TensorOptions::at_scale(scale) };
     let tensor = of_color_and_guides(scope.plan, color, &guides, &options);
     let (abstraction, n_e) = (Abstraction::of(scope), scope.int("n_e"));
-    let lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
+    let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
     let smooth = abstraction.apply(scope.plan, lab, tensor, n_e + own.flattening);
     let flow = FlowDog {
         sigma_e: drawing.sigma_e * scale,
@@ -342,9 +342,9 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         kernel: Kernel::Separable,
         guide_weight,
     };
-    let lightness = lightness::of_lab(scope.plan, smooth);
+    let lightness = lightness::pass_lab(scope.plan, smooth);
     let response = flow.edges(scope.plan, lightness, tensor, &guides);
-    let tinted = lab_to_rgb::to_rgb(scope.plan, smooth, scope.float("saturation"));
+    let tinted = lab_to_rgb::pass(scope.plan, smooth, scope.float("saturation"));
     // Which passes there are is a matter of the style alone: the trims only change numbers.
     let carved = if own.stroke[1] > 0.0 { strokes(scope.plan, tensor, own.stroke, scale) } else { tinted };
     let mut line = scope.color("line_color");
@@ -365,10 +365,10 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         texture: drawing.texture,
         cover: scope.bool("cover"),
     };
-    let drawn = draw(scope.plan, response, tinted, carved, &sheet);
+    let drawn = ink_sheet::pass(scope.plan, response, tinted, carved, &sheet);
     if own.sigma_a > 0.0 {
         let options = Lic { sigma: drawing.sigma_a * scale, ..lic::options() };
-        return line_integral_convolution::color(scope.plan, drawn, tensor, &options);
+        return line_integral_convolution::pass(scope.plan, drawn, tensor, &options);
     }
     drawn
 }

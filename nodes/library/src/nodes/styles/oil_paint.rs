@@ -116,22 +116,22 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let abstraction = Abstraction::of(scope);
     let n_a = scope.int("n_a");
     let (scale, seed) = (scope.scale(), scope.int("seed") as u32);
-    let white = noise::white(scope.plan, scale, seed);
+    let white = noise::pass(scope.plan, scale, seed);
     let sigma_n = scope.float("sigma_n") * width;
-    let grains = gaussian_blur::smooth(scope.plan, white, sigma_n, Class::Colour);
+    let grains = gaussian_blur::pass(scope.plan, white, sigma_n, Class::Colour);
 
-    let lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
+    let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
     let flat = abstraction.apply(scope.plan, lab, tensors, n_a);
     let dilation_length = scope.float("dilation_length") * length;
-    let strokes = flow_dilation::strokes(scope.plan, flat, tensors, grains, dilation_length);
+    let strokes = flow_dilation::pass(scope.plan, flat, tensors, grains, dilation_length);
     // Grains are about as fine as pixels: none may be left out.
     let along = |sigma: f32, adapt: Adapt| Lic { sigma, adapt, stretch: 1.0, ..lic::options() };
     let sigma_t = scope.float("sigma_t") * length;
     let mut painted =
-        line_integral_convolution::color(scope.plan, strokes, tensors, &along(sigma_t, Adapt::Anisotropy));
+        line_integral_convolution::pass(scope.plan, strokes, tensors, &along(sigma_t, Adapt::Anisotropy));
 
     let sigma_b = scope.float("sigma_b") * length;
-    let heights = line_integral_convolution::color(scope.plan, grains, tensors, &along(sigma_b, Adapt::None));
+    let heights = line_integral_convolution::pass(scope.plan, grains, tensors, &along(sigma_b, Adapt::None));
     // The marks of a proxy are those of the full picture, seen from further away.
     let gain = evenness(sigma_n / scale, sigma_b / scale);
     let relief = Relief {
@@ -140,11 +140,11 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         shine: scope.float("shine") * MOST_SHINE * gain * sigma_n.max(0.5 * scale),
         angle: scope.float("light_angle"),
     };
-    painted = paint_relief::lit(scope.plan, painted, heights, &relief);
+    painted = paint_relief::pass(scope.plan, painted, heights, &relief);
 
     painted = tone::curve(scope, painted);
     let saturation = scope.float("saturation");
-    lab_to_rgb::to_rgb(scope.plan, painted, saturation)
+    lab_to_rgb::pass(scope.plan, painted, saturation)
 }
 
 /// Factor by which uniform noise, smoothed by `across` pixels and then along lines by `along`, gets a

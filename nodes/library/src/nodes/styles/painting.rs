@@ -81,9 +81,9 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     if saturation == tone::SATURATION.default_float() && tone::is_neutral(scope) {
         return painted;
     }
-    let lab = rgb_to_lab::to_lab(scope.plan, painted, 1.0);
+    let lab = rgb_to_lab::pass(scope.plan, painted, 1.0);
     let toned = tone::curve(scope, lab);
-    lab_to_rgb::to_rgb(scope.plan, toned, saturation)
+    lab_to_rgb::pass(scope.plan, toned, saturation)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use crate::kernels::colour::watercolor_wash::{self, Wash};
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
-use crate::kernels::smoothing::wobble;
+use crate::kernels::smoothing::wobble::{self, Options as Wobble};
 use crate::nodes::smoothing::{line_integral_convolution as lic, morphology};
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
@@ -96,24 +96,24 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let tensors = structure_tensor::of_color(scope.plan, color, &options);
     let abstraction = Abstraction::of(scope);
     let n_a = scope.int("n_a");
-    let lab = rgb_to_lab::to_lab(scope.plan, color, 1.0);
+    let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
     let mut flat = abstraction.apply(scope.plan, lab, tensors, n_a);
     flat = tone::curve(scope, flat);
     let saturation = scope.float("saturation");
-    let rgb = lab_to_rgb::to_rgb(scope.plan, flat, saturation);
+    let rgb = lab_to_rgb::pass(scope.plan, flat, saturation);
 
     // Closing first: watercolours are light (5.1).
     let radius = scope.float("wash_size");
     let closed = morphology::close(scope.plan, rgb, radius);
     let patches = morphology::open(scope.plan, closed, radius);
     let smooth = Lic { sigma: scope.float("sigma_a"), ..lic::options() };
-    let patches = line_integral_convolution::color(scope.plan, patches, tensors, &smooth);
+    let patches = line_integral_convolution::pass(scope.plan, patches, tensors, &smooth);
     let (amount, wavelength, scale) = (scope.float("wobble"), scope.float("wavelength"), scope.scale());
     let wavelength = wavelength.max(SHORTEST_WAVE * amount / scale);
-    let drawn = wobble::waver(scope.plan, patches, amount, wavelength, scale);
+    let drawn = wobble::pass(scope.plan, patches, &Wobble { amount, wavelength, scale });
 
     let edge_width = scope.float("edge_width");
-    let blurred = gaussian_blur::color(scope.plan, drawn, edge_width);
+    let blurred = gaussian_blur::pass_colour(scope.plan, drawn, edge_width);
     let wash = Wash {
         scale,
         pigment: scope.float("pigment"),
@@ -122,5 +122,5 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         grain: scope.float("granulation") * MOST_GRAIN,
         grain_size: scope.float("grain_size"),
     };
-    watercolor_wash::painted(scope.plan, drawn, blurred, &wash)
+    watercolor_wash::pass(scope.plan, drawn, blurred, &wash)
 }
