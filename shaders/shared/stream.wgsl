@@ -23,7 +23,7 @@ struct Stream {
     direction: vec2f,
     // Cosine of the angle between the last two steps, 0..1 up to rounding.
     turn: f32,
-    // The tangent at the end of the last step, foreseen by the two-step method.
+    // The tangent at the end of the last step, extrapolated by the two-step method.
     ahead: vec2f,
     // True until the first step, whose tangent is already known.
     begins: bool,
@@ -49,7 +49,7 @@ fn stream_tangent_along(field: texture_2d<f32>, slot: u32, p: vec2f, direction: 
 const STREAM_EULER = 0u;
 // The midpoint method, a second-order Runge-Kutta method (2.182).
 const STREAM_MIDPOINT = 1u;
-// The midpoint method with the tangent here foreseen from those halfway through the last two steps; of second
+// The midpoint method with the tangent here extrapolated from those halfway through the last two steps; of second
 // order too.
 const STREAM_TWO_STEP = 2u;
 

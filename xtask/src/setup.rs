@@ -82,7 +82,7 @@ pub const XVFB: Need = Need {
 /// Debian and the user may.
 ///
 /// # Errors
-/// Names what is missing and the command that mends it.
+/// Names what is missing and the command that installs it.
 pub fn ensure(needs: &[&Need]) -> Result<()> {
     let missing: Vec<&&Need> = needs.iter().filter(|n| !(n.present)()).collect();
     if missing.is_empty() {

@@ -145,7 +145,7 @@ fn programs() -> Result<Vec<Program>> {
     Ok(programs.collect())
 }
 
-/// Whether one of cargo's messages tells of something compiled as a test, and not of what may be.
+/// Whether one of cargo's messages is about something compiled as a test.
 fn is_test(message: &str) -> bool {
     let profile = message.split_once(r#""profile":{"#).and_then(|(_, rest)| rest.split_once('}'));
     profile.is_some_and(|(profile, _)| profile.contains(r#""test":true"#))

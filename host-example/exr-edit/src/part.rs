@@ -23,7 +23,7 @@ const SHORTEST_CHANNEL: usize = 18;
 /// Fewest bytes of a view in the file: its length.
 const SHORTEST_VIEW: usize = 4;
 
-/// One part of a file. It tells what the file says; what is to change is said by an [`Edit`](crate::Edit).
+/// One part of a file. What is to change is in an [`Edit`](crate::Edit).
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Part {

@@ -132,11 +132,11 @@ pub fn choose(exr: &File, selection: &Selection) -> Result<Vec<Chosen>, Fault> {
         return Err(match &selection.layer {
             Some(layer) => Fault::Choice {
                 problem: format!("has no layer '{layer}' with colours"),
-                mend: format!("choose from {}", layers(exr, &groups)),
+                fix: format!("choose from {}", layers(exr, &groups)),
             },
             None => Fault::Choice {
                 problem: "has no layer with channels R, G and B of floats".into(),
-                mend: "name a layer by --layer, or a picture with colours".into(),
+                fix: "name a layer by --layer, or a picture with colours".into(),
             },
         });
     };
@@ -164,7 +164,7 @@ pub fn choose(exr: &File, selection: &Selection) -> Result<Vec<Chosen>, Fault> {
         let view = selection.view.as_deref().unwrap_or_default();
         return Err(Fault::Choice {
             problem: format!("does not show the layer in a view '{view}'"),
-            mend: if views.is_empty() {
+            fix: if views.is_empty() {
                 "leave --view out: the file has only one".into()
             } else {
                 format!("choose from {}", unique(views.into_iter()))
@@ -209,7 +209,7 @@ fn alpha(exr: &File, group: &Group, selection: &Selection) -> Result<Option<usiz
             let any = || part.channels.iter().position(|c| c.name == name);
             own.or_else(any).filter(usable).map(Some).ok_or_else(|| Fault::Choice {
                 problem: format!("has no float channel '{name}' beside the layer's colours"),
-                mend: "name one of its channels by --alpha, or none".into(),
+                fix: "name one of its channels by --alpha, or none".into(),
             })
         }
     }
@@ -247,7 +247,7 @@ fn sources(
             (None, Some(name)) => {
                 return Err(Fault::Choice {
                     problem: format!("has no layer or channel '{name}' that could be the {}", guide.id()),
-                    mend: format!("name another by --guide {}=LAYER, or none", guide.id()),
+                    fix: format!("name another by --guide {}=LAYER, or none", guide.id()),
                 });
             }
             (None, None) => {}

@@ -14,7 +14,7 @@ pub enum Fault {
         /// What is so.
         problem: String,
         /// How to put it right.
-        mend: String,
+        fix: String,
     },
 }
 
@@ -32,7 +32,7 @@ impl Fault {
             Self::File(File::Damaged(problem)) => Error::malformed(path, "EXR", problem),
             Self::File(File::Unsupported { problem, remedy }) => Error::file(path, problem, remedy),
             Self::File(other) => Error::file(path, other, "use a smaller picture"),
-            Self::Choice { problem, mend } => Error::file(path, problem, mend),
+            Self::Choice { problem, fix } => Error::file(path, problem, fix),
         }
     }
 }

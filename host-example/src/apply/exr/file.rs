@@ -97,13 +97,13 @@ impl ExrFile {
                 if part.channels.iter().any(|c| c.name.starts_with(&prefix)) {
                     return Err(Fault::Choice {
                         problem: format!("has a layer '{layer}' already"),
-                        mend: "choose another name for --into".into(),
+                        fix: "choose another name for --into".into(),
                     });
                 }
                 if prefix.len() > 250 {
                     return Err(Fault::Choice {
                         problem: format!("cannot hold a layer of the name '{layer}'"),
-                        mend: "choose another name for --into".into(),
+                        fix: "choose another name for --into".into(),
                     });
                 }
             }

@@ -10,7 +10,7 @@ use crate::kernels::shared::sampling::sample_linear2;
 use crate::kernels::shared::stream::{Field, FieldView, Integrator, Stream, half_length};
 use crate::kernels::shared::tensor::tangent;
 use crate::kernels::simd::pixels::Block;
-use crate::kernels::simd::tile_copy::{Surroundings, TWO};
+use crate::kernels::simd::tile_copy::{TWO, TileCopy};
 use crate::kernels::simd::trace::{AlongLines, FieldCopy, Inputs, Lines, along_lines, both_sides};
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
@@ -90,7 +90,7 @@ impl AlongLines<TWO, 1> for Smooth<'_> {
         simd: S,
         field: &FieldCopy<'_>,
         integrator: Integrator,
-        source: &Surroundings<TWO>,
+        source: &TileCopy<TWO>,
         [first, second]: &[Block; 2],
     ) -> [[f32x8<S>; 1]; 2] {
         let ([a, b], [c, d]) = (self.sides(simd, first), self.sides(simd, second));

@@ -1,7 +1,7 @@
 //! Tiles of a picture with what lies around them, copied together for kernels that follow lines through
 //! them pixel by pixel.
 //!
-//! In a copy every place is told by sixteen bits, and arrays hold a pixel for each of their values: places
+//! In a copy every place is an index of sixteen bits, and arrays hold a pixel for each of their values: places
 //! need no comparison with the range before they are read, of which there would be several a tap. The
 //! picture's edges are repeated around it, so that places near them are like any other, and what lines
 //! reach stays together in the second-level cache.
@@ -14,16 +14,16 @@ use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, prelude::*};
 use isophote_engine::math::{spread, transposed};
 use isophote_engine::{Rect, View};
 
-/// Widest copy: a row's length must be told by eight bits.
+/// Widest copy: a row's length must fit eight bits.
 const WIDEST: i32 = u8::MAX as i32;
 /// Most pixels in a copy.
 const MOST: i32 = 1 << 16;
 /// Columns and rows of a tile, unless far-reaching lines leave less room.
 const TILE: [i32; 2] = [128, 64];
-/// Smaller tiles are not worth their surroundings.
+/// Smaller tiles are not worth what is copied around them.
 const LEAST_SIDE: i32 = 8;
 
-/// Places told by sixteen bits, one row on by eight more, and the pixel to the right of the last.
+/// Places of sixteen bits, one row on by eight more, and the pixel to the right of the last.
 const PLACES: usize = (1 << 16) + (1 << 8) + 1;
 /// Values of a copy of a two-channel image.
 pub const TWO: usize = 2 * PLACES;
@@ -98,13 +98,13 @@ impl<S: Simd> Place<S> {
 
 /// A copy of the part of an image that a frame holds; `VALUES` is [`TWO`] or [`FOUR`].
 #[derive(Debug)]
-pub struct Surroundings<const VALUES: usize> {
+pub struct TileCopy<const VALUES: usize> {
     data: Box<[f32; VALUES]>,
     stride: u8,
     scratch: Vec<f32>,
 }
 
-impl<const VALUES: usize> Default for Surroundings<VALUES> {
+impl<const VALUES: usize> Default for TileCopy<VALUES> {
     fn default() -> Self {
         let data = vec![0.0; VALUES].into_boxed_slice();
         let Ok(data) = data.try_into() else { unreachable!("a vector has the length it is made with") };
@@ -112,7 +112,7 @@ impl<const VALUES: usize> Default for Surroundings<VALUES> {
     }
 }
 
-impl<const VALUES: usize> Surroundings<VALUES> {
+impl<const VALUES: usize> TileCopy<VALUES> {
     const CHANNELS: usize = VALUES / PLACES;
 
     /// Copies what `frame` holds of `view`.
@@ -152,7 +152,7 @@ impl<const VALUES: usize> Surroundings<VALUES> {
     }
 }
 
-impl Surroundings<TWO> {
+impl TileCopy<TWO> {
     /// Bilinear samples, by the arithmetic of `sample_linear2`.
     #[inline(always)]
     pub fn sample<S: Simd>(&self, simd: S, place: &Place<S>) -> [f32x8<S>; 2] {
@@ -189,7 +189,7 @@ mod tests {
         let (two, four) = (View::new(&two, [90, 70]), View::new(&four, [90, 70]));
         let frames: Vec<_> = Frame::tiles(Rect { x0: 0, y0: 0, x1: 90, y1: 70 }, 9).collect();
         assert_eq!(frames.iter().map(|f| f.tile.area()).sum::<u64>(), 90 * 70);
-        let (mut pairs, mut colors) = (Surroundings::<TWO>::default(), Surroundings::<FOUR>::default());
+        let (mut pairs, mut colors) = (TileCopy::<TWO>::default(), TileCopy::<FOUR>::default());
         for frame in &frames {
             pairs.load(&two, frame);
             colors.load(&four, frame);

@@ -8,7 +8,7 @@
 use crate::kernels::shared::coverage::Covered;
 use crate::kernels::shared::stream::{Field, FieldView, Integrator, Stream, in_bounds, step};
 use crate::kernels::simd::pixels::{BLOCK, Block, for_blocks_in_tiles, write};
-use crate::kernels::simd::tile_copy::{FOUR, Frame, Place, Surroundings, TWO};
+use crate::kernels::simd::tile_copy::{FOUR, Frame, Place, TWO, TileCopy};
 use isophote_engine::fearless_simd::{Level, Simd, dispatch, f32x8, mask32x8, prelude::*};
 use isophote_engine::{Band, View};
 
@@ -123,7 +123,7 @@ impl<S: Simd, F: Field<S>, const N: usize> Lines<S, F, N> {
 pub struct FieldCopy<'a> {
     frame: &'a Frame,
     /// (E - G, F).
-    tensors: &'a Surroundings<TWO>,
+    tensors: &'a TileCopy<TWO>,
     /// Size of the picture, where lines can leave it.
     edges: Option<[i32; 2]>,
 }
@@ -178,7 +178,7 @@ pub trait AlongLines<const VALUES: usize, const OUT: usize> {
         simd: S,
         field: &FieldCopy<'_>,
         integrator: Integrator,
-        source: &Surroundings<VALUES>,
+        source: &TileCopy<VALUES>,
         blocks: &[Block; 2],
     ) -> [[f32x8<S>; OUT]; 2];
 
@@ -204,7 +204,7 @@ pub fn along_lines<const VALUES: usize, const OUT: usize>(
     if !Frame::suits(inputs.reach) {
         return far(level, inputs, kernel, band);
     }
-    let (mut source, mut tensors) = (Surroundings::default(), Surroundings::default());
+    let (mut source, mut tensors) = (TileCopy::default(), TileCopy::default());
     for frame in Frame::tiles(band.window, inputs.reach) {
         source.load_covered(&inputs.source, &frame);
         tensors.load(&inputs.field, &frame);
@@ -234,7 +234,7 @@ fn near<S: Simd, const VALUES: usize, const OUT: usize>(
     simd: S,
     field: &FieldCopy<'_>,
     integrator: Integrator,
-    source: &Surroundings<VALUES>,
+    source: &TileCopy<VALUES>,
     kernel: &mut impl AlongLines<VALUES, OUT>,
     band: &mut Band<'_>,
 ) {

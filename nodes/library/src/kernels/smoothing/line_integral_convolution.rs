@@ -13,7 +13,7 @@ use crate::kernels::shared::stream::{
 };
 use crate::kernels::shared::tensor::{anisotropy, tangent};
 use crate::kernels::simd::pixels::Block;
-use crate::kernels::simd::tile_copy::{FOUR, Surroundings};
+use crate::kernels::simd::tile_copy::{FOUR, TileCopy};
 use crate::kernels::simd::trace::{AlongLines, FieldCopy, Inputs, Lines, along_lines, both_sides};
 use colour_taps::{ColourTaps, RUN, Sums};
 use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
@@ -132,7 +132,7 @@ impl AlongLines<FOUR, 4> for Convolve<'_> {
         simd: S,
         field: &FieldCopy<'_>,
         integrator: Integrator,
-        colours: &Surroundings<FOUR>,
+        colours: &TileCopy<FOUR>,
         blocks: &[Block; 2],
     ) -> [[f32x8<S>; 4]; 2] {
         let (near, [a, b]) = self.begin(simd, &blocks[0]);

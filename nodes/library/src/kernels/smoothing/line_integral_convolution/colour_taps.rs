@@ -4,7 +4,7 @@
 //! many independent loads of the other, and both in registers.
 
 use crate::kernels::simd::pixels::BLOCK;
-use crate::kernels::simd::tile_copy::{FOUR, Place, Surroundings};
+use crate::kernels::simd::tile_copy::{FOUR, Place, TileCopy};
 use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, prelude::*};
 use isophote_engine::math::load4;
 
@@ -66,7 +66,7 @@ impl ColourTaps {
     pub fn add_up<S: Simd>(
         &self,
         simd: S,
-        colours: &Surroundings<FOUR>,
+        colours: &TileCopy<FOUR>,
         counts: [i32x8<S>; 2],
         sums: &mut Sums<S>,
     ) {
@@ -84,7 +84,7 @@ impl ColourTaps {
     fn add<S: Simd>(
         &self,
         simd: S,
-        colours: &Surroundings<FOUR>,
+        colours: &TileCopy<FOUR>,
         [first, lane]: [usize; 2],
         count: usize,
         sums: &mut [f32x8<S>; 2],
