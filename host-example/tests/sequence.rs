@@ -59,8 +59,8 @@ fn frames_are_found_and_chosen() {
     assert_eq!(bytes("single.exr"), bytes("out/o.1003.exr"));
 
     // Little memory: one frame after the other, and the same files.
-    run(&["gaussian", INPUT, "one.####.exr", "--frames", "1001-1002", "--memory", "64MiB", "--threads", "1"]);
-    assert_eq!(bytes("one.1002.exr"), bytes("out/o.1002.exr"));
+    run(&["gaussian", INPUT, "one.####.exr", "--frames", "1001,1003", "--memory", "64MiB", "--threads", "1"]);
+    assert_eq!(bytes("one.1003.exr"), bytes("out/o.1003.exr"));
 }
 
 #[test]

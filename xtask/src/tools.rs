@@ -54,15 +54,14 @@ pub fn build(profile: &str, programs: &[&str]) -> Result<()> {
     run(command.args(release(profile)))
 }
 
-/// Builds the sample host, the dynamic library and some more packages, and nothing else. These two together
-/// already ask for every feature that the workspace asks for of what they depend on.
+/// Builds the dynamic library, the sample host and some more programs. The libraries of the workspace come along,
+/// for a choice of packages would give their dependencies other features and compile them anew.
 ///
 /// # Errors
 /// The command line, when it fails.
 pub fn build_with_host(profile: &str, more: &[&str]) -> Result<()> {
-    let mut command = cargo_command(&["build"]);
-    let packages = ["isophote-host", "isophote-plugin"];
-    command.args(packages.iter().chain(more).flat_map(|package| ["--package", package]));
+    let mut command = cargo_command(&["build", "--workspace", "--lib", "--bin", "isophote"]);
+    command.args(more.iter().flat_map(|program| ["--bin", program]));
     run(command.args(release(profile)))
 }
 
