@@ -8,7 +8,7 @@
 //! * rows and columns around it: [`line_buffer`], or [`moment_buffer`] with squares of the colours;
 //! * a row or a column, with symmetric weights: [`window_sum`];
 //! * a straight line through it: [`line_taps`];
-//! * a curved line through it: [`tile_copy`];
+//! * a curved line through it: [`trace`], over a [`tile_copy`];
 //! * the pixel of a coarser pyramid level: [`upsampling`].
 
 pub mod line_buffer;
