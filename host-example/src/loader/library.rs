@@ -49,7 +49,7 @@ impl Library {
     /// A request for a whole picture: full scale, sRGB, premultiplied alpha, no guides.
     ///
     /// # Errors
-    /// [`Refusal`] for impossible sizes.
+    /// [`Refusal`](super::refusal::Refusal) for impossible sizes.
     pub fn request(&self, size: (u32, u32)) -> Answer<IsophoteRequest> {
         let mut request = IsophoteRequest { width: 0, height: 0, scale: 0.0, space: 0, alpha: 0, guides: 0 };
         // SAFETY: `request` may be written during the call.

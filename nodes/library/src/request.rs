@@ -96,7 +96,7 @@ impl Planned {
     /// Plans `graph` for `request`.
     ///
     /// # Errors
-    /// [`Error::Connection`](crate::Error::Connection) for a required input left open or an output not set, and the engine's
+    /// [`Error::Connection`] for a required input left open or an output not set, and the engine's
     /// errors for impossible sizes.
     pub fn new(graph: &Graph, request: Request) -> Result<Self> {
         let mut scratch = Scratch::default();

@@ -31,7 +31,7 @@ impl Opened {
     /// Takes a file apart.
     ///
     /// # Errors
-    /// [`Error::Input`] for damaged files, and when there is no such layer, view, alpha or guide.
+    /// [`Error::Input`](crate::error::Error::Input) for damaged files, and when there is no such layer, view, alpha or guide.
     pub fn new(path: &Path, bytes: Vec<u8>, selection: &Selection) -> Result<Self> {
         let open = || -> std::result::Result<Self, Fault> {
             let exr = File::parse(bytes, LIMITS)?;
@@ -71,7 +71,7 @@ impl Opened {
     /// Decodes the parts that are needed.
     ///
     /// # Errors
-    /// [`Error::Input`] for damaged files and for kinds of files that cannot be written back.
+    /// [`Error::Input`](crate::error::Error::Input) for damaged files and for kinds of files that cannot be written back.
     pub fn decode(self, path: &Path) -> Result<ExrFile> {
         ExrFile::of(self).map_err(|fault| fault.of(path))
     }
@@ -124,7 +124,7 @@ impl ExrFile {
     /// The pictures, one for each view that was asked for.
     ///
     /// # Errors
-    /// [`Error::Input`] when channels are of unequal size.
+    /// [`Error::Input`](crate::error::Error::Input) when channels are of unequal size.
     pub fn pictures(&self, path: &Path) -> Result<Vec<Picture>> {
         let read = |chosen| picture::read(&self.exr, &self.decoded, chosen);
         let pictures: std::result::Result<Vec<Picture>, Fault> = self.chosen.iter().map(read).collect();

@@ -76,8 +76,8 @@ impl CpuExecutor {
     /// for it. The outputs come in the order of [`Plan::outputs`].
     ///
     /// # Errors
-    /// [`Error::Input`] for a missing or unfitting input, [`Error::Geometry`] for a region outside
-    /// the picture, [`Error::Cancelled`] when `control` says so.
+    /// [`Error::Input`](crate::Error::Input) for a missing or unfitting input, [`Error::Geometry`](crate::Error::Geometry) for a region outside
+    /// the picture, [`Error::Cancelled`](crate::Error::Cancelled) when `control` says so.
     pub fn run(
         &mut self,
         plan: &Plan,

@@ -73,7 +73,7 @@ pub struct Options {
     pub last: bool,
 }
 
-/// Adds a pass. `flow` is what [`start`](super::flow_start::start) or the pass before gave, `largest`
+/// Adds a pass. `flow` is what [`flow_start`](super::flow_start) or the pass before gave, `largest`
 /// its largest magnitude; the `last` pass gives tensors with their validity.
 pub fn pass(plan: &mut PlanBuilder, flow: ImageId, largest: ImageId, options: &Options) -> ImageId {
     let Options { radius, window, neighbours, last } = *options;

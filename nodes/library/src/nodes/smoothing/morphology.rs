@@ -5,7 +5,7 @@
 //! would keep the colours of single pixels but tear channels' contours apart where colours are equally
 //! light.
 //!
-//! Other nodes use [`open`] and [`close`].
+//! Other nodes use `open` and `close`.
 
 use crate::choice::choice;
 use crate::kernels::smoothing::disc_extremum::{self, Extremum};
