@@ -13,7 +13,7 @@ use crate::stylize::style::Style;
 /// Measures every subject on so many frames that show `picture`, and prints what came out.
 ///
 /// # Errors
-/// When frames cannot be written to a folder of their own, or a node refuses them.
+/// For styles that do not fit, and when there is no room for the files.
 pub fn run(subjects: &[Subject], picture: &Pixels, frames: u32, json: bool) -> Result<()> {
     let mut results = Vec::with_capacity(subjects.len());
     for subject in subjects {
