@@ -1,6 +1,6 @@
 // Blend of two pictures, by coverage.
 // Cost: two loads and eight multiply-adds.
-#import gpu/grid
+#import shared/coverage
 
 struct Params {
     /// Share of the second picture, 0..=1.
@@ -20,7 +20,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let a = fetch(first, 0u, pixel(id));
     let b = fetch(second, 1u, pixel(id));
     let weights = vec2f((1.0 - params.amount) * a.a, params.amount * b.a);
-    let alpha = weights.x + weights.y;
-    let rgb = weights.x * a.rgb + weights.y * b.rgb;
-    textureStore(target_image, vec2i(id.xy), vec4f(select(vec3f(0.0), rgb / alpha, alpha > 1e-6), alpha));
+    let mixed = vec4f(weights.x * a.rgb + weights.y * b.rgb, weights.x + weights.y);
+    textureStore(target_image, vec2i(id.xy), unpremultiply(mixed));
 }

@@ -26,6 +26,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let length = sqrt(dot(move_by, move_by));
     let bounded = move_by * (params.limit / max(length, max(params.limit, 1e-6)));
     let sum = sample_covered(source, 0u, centre(id) + bounded);
-    let color = select(vec3f(0.0), sum.rgb / sum.a, sum.a > 1e-6);
-    textureStore(target_image, vec2i(id.xy), vec4f(color, sum.a));
+    textureStore(target_image, vec2i(id.xy), unpremultiply(sum));
 }

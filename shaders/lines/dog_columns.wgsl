@@ -48,8 +48,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
     }
     var result = edge_uncovered(params.threshold);
-    if min(sum.y, sum.w) > 1e-6 {
-        let u = dog_response(sum.x / sum.y, sum.z / sum.w, params.base, params.edge);
+    if min(sum.y, sum.w) > LEAST_COVERAGE {
+        let u = dog_of_sums(sum.xy, sum.zw, params.base, params.edge);
         result = edge_threshold(u, params.threshold, params.epsilon, params.phi);
     }
     if !outside(id) {

@@ -48,9 +48,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             }
         }
     }
-    var result = edge_uncovered(params.threshold);
-    if sum.y > 1e-6 {
-        result = edge_threshold(sum.x / sum.y, params.threshold, params.epsilon, params.phi);
-    }
-    textureStore(target_image, vec2i(id.xy), vec4f(result));
+    let edge = edge_of_sum(sum, params.threshold, params.epsilon, params.phi);
+    textureStore(target_image, vec2i(id.xy), vec4f(edge));
 }

@@ -61,10 +61,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         narrow += exp(params.narrow * d * d) * both;
         wide += exp(params.wide * d * d) * both;
     }
-    // Dividing by the weighted coverage normalises the weights too.
-    var u = 0.0;
-    if min(narrow.y, wide.y) > 1e-6 {
-        u = dog_response(narrow.x / narrow.y, wide.x / wide.y, params.base, params.edge);
-    }
+    let u = dog_of_sums(narrow, wide, params.base, params.edge);
     textureStore(target_image, vec2i(id.xy), vec4f(u * middle.y, middle.y, 0.0, 0.0));
 }

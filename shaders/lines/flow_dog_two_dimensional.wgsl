@@ -57,10 +57,7 @@ fn across(p: vec2f, t: vec2f) -> vec2f {
         narrow += exp(params.narrow * d * d) * both;
         wide += exp(params.wide * d * d) * both;
     }
-    var u = 0.0;
-    if min(narrow.y, wide.y) > 1e-6 {
-        u = dog_response(narrow.x / narrow.y, wide.x / wide.y, params.base, params.edge);
-    }
+    let u = dog_of_sums(narrow, wide, params.base, params.edge);
     return vec2f(u * middle.y + lines, middle.y);
 }
 
@@ -105,9 +102,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             sum += exp2(falloff * u * u) * across(line.position, stream_tangent(field, 1u, line.position));
         }
     }
-    var result = edge_uncovered(params.threshold);
-    if sum.y > 1e-6 {
-        result = edge_threshold(sum.x / sum.y, params.threshold, params.epsilon, params.phi);
-    }
-    textureStore(target_image, vec2i(id.xy), vec4f(result));
+    let edge = edge_of_sum(sum, params.threshold, params.epsilon, params.phi);
+    textureStore(target_image, vec2i(id.xy), vec4f(edge));
 }

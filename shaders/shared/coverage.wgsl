@@ -3,10 +3,22 @@
 // Colours that are to be mixed count by their coverage, so that transparent pixels lend no colour.
 // Twin of kernels/shared/coverage.rs.
 
+// Coverage up to which a pixel counts as empty.
+const LEAST_COVERAGE: f32 = 1e-6;
+
+// A colour times its alpha.
+fn premultiply(v: vec4f) -> vec4f {
+    return vec4f(v.rgb * v.a, v.a);
+}
+
+// A colour without the alpha that it is multiplied by; black where nothing is covered.
+fn unpremultiply(v: vec4f) -> vec4f {
+    return vec4f(select(vec3f(0.0), v.rgb / v.a, v.a > LEAST_COVERAGE), v.a);
+}
+
 // The pixel at absolute position p of input `slot`, its colour multiplied by its alpha.
 fn fetch_covered(image: texture_2d<f32>, slot: u32, p: vec2i) -> vec4f {
-    let v = fetch(image, slot, p);
-    return vec4f(v.rgb * v.a, v.a);
+    return premultiply(fetch(image, slot, p));
 }
 
 // `sample_linear` of colours multiplied by their alpha.

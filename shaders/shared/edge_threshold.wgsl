@@ -1,3 +1,5 @@
+#import shared/coverage
+
 // From the response of a difference of Gaussians to an edge image: 1 is paper, 0 is line.
 // Twin of kernels/shared/edge_threshold.rs.
 
@@ -26,7 +28,20 @@ fn edge_uncovered(kind: u32) -> f32 {
     return select(1.0, 0.0, kind == 0u);
 }
 
-// D = base G_sigma + edge (G_sigma - G_k sigma) (4.9), from two coverage-weighted means of lightness.
-fn dog_response(narrow: f32, wide: f32, base: f32, edge: f32) -> f32 {
-    return base * narrow + edge * (narrow - wide);
+// The edge image of a weighted sum of (u alpha, alpha); paper where no covered pixel contributes.
+fn edge_of_sum(sum: vec2f, kind: u32, epsilon: f32, phi: f32) -> f32 {
+    if sum.y > LEAST_COVERAGE {
+        return edge_threshold(sum.x / sum.y, kind, epsilon, phi);
+    }
+    return edge_uncovered(kind);
+}
+
+// D = base G_sigma + edge (G_sigma - G_k sigma) (4.9) of two weighted sums of (L alpha, alpha); 0 where no
+// covered pixel contributes. Dividing by the weighted coverage normalises the weights too.
+fn dog_of_sums(narrow: vec2f, wide: vec2f, base: f32, edge: f32) -> f32 {
+    if min(narrow.y, wide.y) > LEAST_COVERAGE {
+        let mean = narrow.x / narrow.y;
+        return base * mean + edge * (mean - wide.x / wide.y);
+    }
+    return 0.0;
 }

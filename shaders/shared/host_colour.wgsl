@@ -1,3 +1,5 @@
+#import shared/coverage
+
 // The host's pixels in its own space, finite and not premultiplied. Twin of
 // kernels/shared/host_colour.rs.
 fn plain(pixel: vec4f, premultiplied: bool) -> vec4f {
@@ -10,7 +12,7 @@ fn plain(pixel: vec4f, premultiplied: bool) -> vec4f {
     v = select(select(v, largest, special), vec4f(0.0), nan);
     v = clamp(v, vec4f(vec3f(-65504.0), 0.0), vec4f(vec3f(65504.0), 1.0));
     if premultiplied {
-        v = vec4f(select(vec3f(0.0), v.rgb / v.a, v.a > 1e-6), v.a);
+        v = unpremultiply(v);
     }
     return v;
 }

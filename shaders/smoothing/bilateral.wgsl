@@ -3,6 +3,7 @@
 // Cost: one read of workgroup memory and one exponential per pixel of the window, a disc of about
 // 3.1 radius^2 or a line of 2 radius + 1 pixels; radius^2 / 16 + radius / 2 + 1 loads and, where windows
 // go in parts, about as many again.
+#import shared/coverage
 #import gpu/window
 
 struct Params {
@@ -49,7 +50,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             }
         }
     }
-    let moved = select(vec3f(0.0), sum.rgb / sum.a, sum.a > 1e-6);
+    let moved = select(vec3f(0.0), sum.rgb / sum.a, sum.a > LEAST_COVERAGE);
     if !outside(id) {
         textureStore(target_image, vec2i(id.xy), vec4f(origin.rgb + moved, origin.a));
     }

@@ -2,6 +2,7 @@
 // (§ 2.9.4): image and field are constant on pixels, and the Gaussian is integrated exactly (2.193).
 // Cost: per segment one colour and one tensor load with its tangent, two divisions and the error
 // function; up to 1.5 segments a pixel of length.
+#import shared/coverage
 #import shared/pixel_line
 
 struct Params {
@@ -42,7 +43,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let middle = fetch(source, 0u, p);
     // A line of no length is the pixel itself.
     var norm = select(0.0, 1.0, limit <= 0.0);
-    var sum = norm * vec4f(middle.rgb * middle.a, middle.a);
+    var sum = norm * premultiply(middle);
     for (var side = -1.0; side <= 1.0; side += 2.0) {
         var line = pixel_line_begin(p, side * tangent);
         var u = 0.0;
@@ -57,8 +58,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             }
             let end = min(u + h, limit);
             let weight = max(error_function(end * inverse) - error_function(u * inverse), 0.0);
-            let tap = fetch(source, 0u, line.pixel);
-            sum += weight * vec4f(tap.rgb * tap.a, tap.a);
+            sum += weight * fetch_covered(source, 0u, line.pixel);
             norm += weight;
             u = end;
             if !pixel_line_cross(&line, INPUT_TENSORS, h) {
@@ -66,6 +66,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             }
         }
     }
-    let color = select(vec3f(0.0), sum.rgb / sum.a, sum.a > 1e-6);
-    textureStore(target_image, vec2i(id.xy), vec4f(color, sum.a / max(norm, 1e-6)));
+    textureStore(target_image, vec2i(id.xy), vec4f(unpremultiply(sum).rgb, sum.a / max(norm, 1e-6)));
 }

@@ -7,13 +7,15 @@
 struct Params {
     /// 1 / lambda^2 (edge-enhancing) or 1 / contrast^2 (coherence-enhancing).
     falloff: f32,
-    /// 1: coherence-enhancing; 0: edge-enhancing.
-    coherence: u32,
+    /// 0: edge-enhancing; 1: coherence-enhancing.
+    scheme: u32,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var tensors: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+
+const COHERENCE_ENHANCING = 1u;
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -23,7 +25,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let eigen = tensor_eigen(fetch(tensors, 0u, pixel(id)));
     var across = 1.0;
     var along = 1.0;
-    if params.coherence != 0u {
+    if params.scheme == COHERENCE_ENHANCING {
         // 0.001 + 0.999 exp(-C / (lambda1 - lambda2)^2); 1e18 is far beyond any exponent.
         let q = min(params.falloff * (eigen.lambda1 - eigen.lambda2), 1e9);
         across = 0.001;

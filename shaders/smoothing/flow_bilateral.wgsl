@@ -12,12 +12,12 @@ struct Params {
     sigma_r: f32,
     /// Length of a side of the line, whole pixels.
     radius: f32,
-    /// 1: second-order Runge-Kutta; 0: Euler.
-    midpoint: u32,
-    /// 1: range weights before the interpolation (3.9); 0: after it.
-    manual: u32,
-    /// 1: samples where lines cross the centres of rows or columns; 0: at equal distances.
-    centres: u32,
+    /// How lines are stepped, a number of shared/stream.
+    integrator: u32,
+    /// Range weights, 0: after the interpolation; 1: before it (3.9).
+    sampling: u32,
+    /// Samples, 0: at equal distances; 1: where lines cross the centres of rows or columns.
+    placement: u32,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;
@@ -26,6 +26,8 @@ struct Params {
 @group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
 
 const INPUT_TENSORS = 1u;
+const SAMPLING_LINEAR = 0u;
+const PLACEMENT_CENTRES = 1u;
 
 // A pixel times its range weight, its coverage and its share.
 fn pixel_weighted(p: vec2i, origin: vec3f, domain: f32, range: f32, share: f32) -> vec4f {
@@ -36,9 +38,9 @@ fn pixel_weighted(p: vec2i, origin: vec3f, domain: f32, range: f32, share: f32) 
 
 // The sample at p times its domain and range weights and its coverage.
 fn weighted(p: vec2f, origin: vec3f, domain: f32, range: f32) -> vec4f {
-    if params.manual == 0u {
+    if params.sampling == SAMPLING_LINEAR {
         let tap = sample_covered(source, 0u, p);
-        let d = tap.rgb / max(tap.a, 1e-6) - origin;
+        let d = tap.rgb / max(tap.a, LEAST_COVERAGE) - origin;
         return exp2(range * dot(d, d) + domain) * tap;
     }
     let q = p - 0.5;
@@ -75,7 +77,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     // Both Gaussians as powers of two.
     let domain = -0.72134752 / max(params.sigma_d * params.sigma_d, 1e-6);
     let range = -0.72134752 / max(params.sigma_r * params.sigma_r, 1e-6);
-    let centres = params.centres != 0u;
+    let centres = params.placement == PLACEMENT_CENTRES;
 
     let first = vec4f(origin.rgb * origin.a, origin.a);
     var sum = select(first, vec4f(0.0), centres);
@@ -84,7 +86,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         var last = first;
         var last_u = 0.0;
         for (var u = 1.0; u <= params.radius; u += 1.0) {
-            stream_step(&line, tensors, INPUT_TENSORS, 1.0, params.midpoint);
+            stream_step(&line, tensors, INPUT_TENSORS, 1.0, params.integrator);
             var back = 0.0;
             if centres {
                 back = distance_back(line.position, line.direction);
@@ -109,6 +111,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
     }
     // No sample on either side leaves the pixel as it is.
-    let color = select(origin.rgb, sum.rgb / sum.a, sum.a > 1e-6);
+    let color = select(origin.rgb, sum.rgb / sum.a, sum.a > LEAST_COVERAGE);
     textureStore(target_image, vec2i(id.xy), vec4f(color, origin.a));
 }

@@ -21,7 +21,7 @@ struct Params {
 fn window_tap(p: vec2i) -> vec4f {
     let v = fetch(source, 0u, p);
     if (params.coverage & 1u) != 0u {
-        return vec4f(v.rgb * v.a, v.a);
+        return premultiply(v);
     }
     return v;
 }
@@ -41,7 +41,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
     }
     if (params.coverage & 2u) != 0u {
-        sum = vec4f(select(vec3f(0.0), sum.rgb / sum.a, sum.a > 1e-6), full_or(sum.a));
+        sum = vec4f(unpremultiply(sum).rgb, full_or(sum.a));
     }
     if !outside(id) {
         textureStore(target_image, vec2i(id.xy), sum);

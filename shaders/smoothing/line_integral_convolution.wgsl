@@ -77,6 +77,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             norm += weight;
         }
     }
-    let color = select(vec3f(0.0), sum.rgb / sum.a, sum.a > 1e-6);
-    textureStore(target_image, vec2i(id.xy), vec4f(color, full_or(sum.a / norm)));
+    textureStore(target_image, vec2i(id.xy), vec4f(unpremultiply(sum).rgb, full_or(sum.a / norm)));
 }

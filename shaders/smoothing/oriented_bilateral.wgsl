@@ -15,14 +15,16 @@ struct Params {
     elongation: f32,
     /// 1: along the tangent; 0: along the gradient.
     tangential: u32,
-    /// 1: range weights before the interpolation (3.9); 0: after it.
-    manual: u32,
+    /// Range weights, 0: after the interpolation; 1: before it (3.9).
+    sampling: u32,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var tensors: texture_2d<f32>;
 @group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+
+const SAMPLING_MANUAL = 1u;
 
 fn weight(color: vec3f, origin: vec3f, domain: f32, range: f32) -> f32 {
     let d = color - origin;
@@ -62,7 +64,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             let i = floor(o);
             let f = o - i;
             let q = p + select(vec2i(i32(i), side * k), vec2i(side * k, i32(i)), along_x);
-            if params.manual != 0u {
+            if params.sampling == SAMPLING_MANUAL {
                 let a = fetch(source, 0u, q);
                 let b = fetch(source, 0u, q + next);
                 let wa = (1.0 - f) * a.a * weight(a.rgb, origin.rgb, domain * distance * distance, range);
@@ -72,11 +74,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 let a = fetch_covered(source, 0u, q);
                 let b = fetch_covered(source, 0u, q + next);
                 let tap = a + (b - a) * f;
-                let color = tap.rgb / max(tap.a, 1e-6);
+                let color = tap.rgb / max(tap.a, LEAST_COVERAGE);
                 sum += weight(color, origin.rgb, domain * distance * distance, range) * tap;
             }
         }
     }
-    let color = select(origin.rgb, sum.rgb / sum.a, sum.a > 1e-6);
+    let color = select(origin.rgb, sum.rgb / sum.a, sum.a > LEAST_COVERAGE);
     textureStore(target_image, vec2i(id.xy), vec4f(color, origin.a));
 }

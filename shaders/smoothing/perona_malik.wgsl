@@ -7,13 +7,15 @@ struct Params {
     time_step: f32,
     /// 1 / K^2 or 1 / lambda^2 of 3.2.
     falloff: f32,
-    /// 1: the exponential diffusivity of 3.2; 0: the rational one.
-    exponential: u32,
+    /// The diffusivity of 3.2, 0: rational; 1: exponential.
+    diffusivity: u32,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+
+const DIFFUSIVITY_EXPONENTIAL = 1u;
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -29,7 +31,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let d = v.rgb - origin.rgb;
         let s = dot(d, d) * params.falloff;
         var g = 1.0 / (1.0 + s);
-        if params.exponential != 0u {
+        if params.diffusivity == DIFFUSIVITY_EXPONENTIAL {
             g = exp(-min(s, 87.0));
         }
         sum += g * v.a * d;

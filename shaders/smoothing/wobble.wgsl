@@ -29,5 +29,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let q = centre(id) * params.inverse_scale * params.frequency;
     let place = centre(id) + vec2f(offset(q, 3001u), offset(q, 5003u));
     let v = sample_covered(source, 0u, place);
-    textureStore(target_image, vec2i(id.xy), vec4f(select(vec3f(0.0), v.rgb / v.a, v.a > 1e-6), v.a));
+    textureStore(target_image, vec2i(id.xy), unpremultiply(v));
 }

@@ -20,6 +20,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             count += 1.0;
         }
     }
-    let color = select(vec3f(0.0), sum.rgb / sum.a, sum.a > 1e-6);
-    textureStore(target_image, vec2i(id.xy), vec4f(color, sum.a / count));
+    textureStore(target_image, vec2i(id.xy), vec4f(unpremultiply(sum).rgb, sum.a / count));
 }

@@ -1,11 +1,28 @@
-//! Choices: enums whose options are declared once, each with its id, its label and its document.
+//! Choices: enums whose options are declared once, each with its id, its label and its document; and enums
+//! that shaders know by numbers.
 
 use crate::value::Choice;
 
-/// An enum that a parameter offers as a choice.
-pub trait Selectable: Copy + 'static {
-    /// All options, in the order of panels.
+/// An enum that shaders know by numbers.
+pub trait Numbered: Copy + 'static {
+    /// All of them.
     const ALL: &'static [Self];
+
+    /// What shaders call it.
+    fn number(self) -> u32;
+
+    /// The one that shaders know by this number, which a uniform block of this library holds.
+    ///
+    /// # Panics
+    /// For a number that stands for none.
+    fn of(number: u32) -> Self {
+        let found = Self::ALL.iter().find(|option| option.number() == number);
+        *found.unwrap_or_else(|| panic!("{number} is none of {}", std::any::type_name::<Self>()))
+    }
+}
+
+/// An enum that a parameter offers as a choice, in the order of [`Numbered::ALL`].
+pub trait Selectable: Numbered {
     /// How people see them, in the same order.
     const OPTIONS: &'static [Choice];
 }
@@ -47,8 +64,15 @@ macro_rules! choice {
             $($(#[doc = $doc])+ $option $(= $number)?,)+
         }
 
-        impl $crate::choice::Selectable for $name {
+        impl $crate::choice::Numbered for $name {
             const ALL: &'static [Self] = &[$(Self::$option,)+];
+
+            fn number(self) -> u32 {
+                self as u32
+            }
+        }
+
+        impl $crate::choice::Selectable for $name {
             const OPTIONS: &'static [$crate::value::Choice] = &[$(
                 $crate::value::Choice { id: $id, label: $label, doc: concat!($($doc,)+).trim_ascii() },
             )+];
@@ -57,7 +81,7 @@ macro_rules! choice {
         impl $name {
             /// This option among all.
             $vis const fn selected(self) -> $crate::choice::Selection {
-                use $crate::choice::Selectable;
+                use $crate::choice::{Numbered, Selectable};
                 let mut index = 0;
                 while Self::ALL[index] as u32 != self as u32 {
                     index += 1;
@@ -68,6 +92,26 @@ macro_rules! choice {
     };
 }
 pub(crate) use choice;
+
+/// Declares an enum that shaders know by numbers and that no parameter offers.
+macro_rules! numbered {
+    ($(#[$meta:meta])* $vis:vis enum $name:ident { $($(#[$doc:meta])+ $option:ident = $number:literal,)+ }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        $vis enum $name {
+            $($(#[$doc])+ $option = $number,)+
+        }
+
+        impl $crate::choice::Numbered for $name {
+            const ALL: &'static [Self] = &[$(Self::$option,)+];
+
+            fn number(self) -> u32 {
+                self as u32
+            }
+        }
+    };
+}
+pub(crate) use numbered;
 
 #[cfg(test)]
 mod tests {
@@ -92,5 +136,12 @@ mod tests {
         let options = Smoothing::Box.selected().options;
         assert_eq!(options.iter().map(|o| o.id).collect::<Vec<_>>(), ["box", "gaussian"]);
         assert_eq!((options[0].label, options[0].doc), ("Box filter", "A mean over a square."));
+    }
+
+    #[test]
+    #[should_panic(expected = "2 is none of")]
+    fn numbers_name_their_options_and_nothing_else() {
+        assert_eq!([3, 1].map(Smoothing::of), [Smoothing::Box, Smoothing::Gaussian]);
+        Smoothing::of(2);
     }
 }

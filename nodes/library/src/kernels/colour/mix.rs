@@ -3,6 +3,8 @@
 //! Cost: eight multiply-adds and a division per pixel.
 
 pub use crate::kernels::shaders::mix::Params;
+use crate::kernels::simd::pixels::{for_blocks, unpremultiply, write};
+use isophote_engine::fearless_simd::{dispatch, f32x8};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(mix {
@@ -18,20 +20,14 @@ pub fn pass(plan: &mut PlanBuilder, first: ImageId, second: ImageId, amount: f32
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let amount = pass.params::<Params>().amount;
-    let (first, second) = (&pass.inputs[0], &pass.inputs[1]);
-    let window = band.window;
-    for y in window.y0..window.y1 {
-        let target = band.row_mut(0, y);
-        let row = |view: &isophote_engine::View<'_>| view.offset(window.x0, y);
-        let (a, b) = (&first.data()[row(first)..], &second.data()[row(second)..]);
-        let pixels = a.chunks_exact(4).zip(b.chunks_exact(4)).zip(target.chunks_exact_mut(4));
-        for ((a, b), t) in pixels {
-            let (wa, wb) = ((1.0 - amount) * a[3], amount * b[3]);
-            let alpha = wa + wb;
-            for c in 0..3 {
-                t[c] = if alpha > 1e-6 { (wa * a[c] + wb * b[c]) / alpha } else { 0.0 };
-            }
-            t[3] = alpha;
+    dispatch!(pass.level, simd => for_blocks::<4>(band, #[inline(always)] |block, target| {
+        let a: [f32x8<_>; 4] = block.read(simd, &pass.inputs[0]);
+        let b: [f32x8<_>; 4] = block.read(simd, &pass.inputs[1]);
+        let (wa, wb) = (a[3] * (1.0 - amount), b[3] * amount);
+        let mut mixed = [wa + wb; 4];
+        for c in 0..3 {
+            mixed[c] = wa * a[c] + wb * b[c];
         }
-    }
+        write(unpremultiply(mixed), target);
+    }));
 }

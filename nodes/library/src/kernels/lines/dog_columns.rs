@@ -7,8 +7,7 @@
 
 use crate::kernels::lines::dog_rows;
 pub use crate::kernels::shaders::dog_columns::Params;
-use crate::kernels::shared::coverage::LEAST_COVERAGE;
-use crate::kernels::shared::edge_threshold::{Xdog, dog_response, edge_threshold, edge_uncovered};
+use crate::kernels::shared::edge_threshold::{Xdog, dog_of_sums, edge_threshold, edge_uncovered};
 use crate::kernels::simd::pixels::{BLOCK, read, write};
 use crate::kernels::simd::window_sum::{RUN, flat, sum};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, f32x16, prelude::*};
@@ -106,10 +105,7 @@ fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
 /// The edge image of (narrow L, narrow alpha, wide L, wide alpha), `uncovered` where nothing is.
 #[inline(always)]
 fn edge<S: Simd>(simd: S, params: &Params, uncovered: f32, [nl, na, wl, wa]: [f32x8<S>; 4]) -> f32x8<S> {
-    let one = f32x8::splat(simd, 1.0);
-    let covered = na.min(wa).simd_gt(LEAST_COVERAGE);
-    let (na, wa) = (covered.select(na, one), covered.select(wa, one));
-    let u = dog_response(nl / na, wl / wa, params.base, params.edge);
+    let (u, covered) = dog_of_sums([nl, na], [wl, wa], params.base, params.edge);
     let line = edge_threshold(u, params.threshold, params.epsilon, params.phi);
     covered.select(line, f32x8::splat(simd, uncovered))
 }

@@ -6,8 +6,7 @@
 //! Cost: per step (about 3 k sigma_e of them) four reads of two values; four exponentials per pixel.
 
 pub use crate::kernels::shaders::flow_dog_gradient::Params;
-use crate::kernels::shared::coverage::LEAST_COVERAGE;
-use crate::kernels::shared::edge_threshold::{Xdog, dog_response};
+use crate::kernels::shared::edge_threshold::{Xdog, dog_of_sums};
 use crate::kernels::shared::tensor::tangent;
 use crate::kernels::simd::line_taps::{LineTaps, strips};
 use crate::kernels::simd::pixels::{BLOCK, Block, write};
@@ -220,9 +219,6 @@ fn differences<S: Simd, const OPAQUE: bool>(
             },
         );
     }
-    let covered = narrow_alpha.min(wide_alpha).simd_gt(LEAST_COVERAGE);
-    let narrow = narrow / covered.select(narrow_alpha, one);
-    let wide = wide / covered.select(wide_alpha, one);
-    let u = dog_response(narrow, wide, params.base, params.edge);
+    let (u, covered) = dog_of_sums([narrow, narrow_alpha], [wide, wide_alpha], params.base, params.edge);
     [covered.select(u, zero) * alpha, alpha]
 }

@@ -5,10 +5,10 @@
 //! Cost: the steps of the second pass times the samples of the first: about 4 sigma_m times 6 k sigma_e
 //! bilinear samples of two values.
 
+use crate::choice::Numbered;
 use crate::kernels::lines::flow_dog_gradient::halfwidth;
 pub use crate::kernels::shaders::flow_dog_two_dimensional::Params;
-use crate::kernels::shared::coverage::LEAST_COVERAGE;
-use crate::kernels::shared::edge_threshold::{Xdog, dog_response, edge_of_sums};
+use crate::kernels::shared::edge_threshold::{Xdog, dog_of_sums, edge_of_sums};
 use crate::kernels::shared::pixel_line::GaussianLines;
 use crate::kernels::shared::sampling::sample_linear2;
 use crate::kernels::shared::stream::{FieldView, Integrator, Stream, half_length};
@@ -200,10 +200,8 @@ impl Filter<'_> {
             wide = (l0 + l1).mul_add(w, wide);
             wide_alpha = (a0 + a1).mul_add(w, wide_alpha);
         }
-        let covered = narrow_alpha.min(wide_alpha).simd_gt(LEAST_COVERAGE);
-        let narrow = narrow / covered.select(narrow_alpha, one);
-        let wide = wide / covered.select(wide_alpha, one);
-        let u = covered.select(dog_response(narrow, wide, params.base, params.edge), zero);
+        let (u, covered) = dog_of_sums([narrow, narrow_alpha], [wide, wide_alpha], params.base, params.edge);
+        let u = covered.select(u, zero);
         sum[0] = weight.mul_add(u * alpha + lines, sum[0]);
         sum[1] = weight.mul_add(alpha, sum[1]);
     }

@@ -2,7 +2,7 @@
 //! line. Twin of `shaders/shared/edge_threshold.wgsl`.
 
 use crate::kernels::shared::coverage::LEAST_COVERAGE;
-use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
 
 crate::choice::choice! {
@@ -88,10 +88,20 @@ pub fn edge_of_sums<S: Simd>([sum, norm]: [f32x8<S>; 2], kind: u32, epsilon: f32
     covered.select(edge, f32x8::splat(sum.simd, edge_uncovered(kind)))
 }
 
-/// D = base G_sigma + edge (G_sigma - G_k sigma) (4.9).
+/// D = base G_sigma + edge (G_sigma - G_k sigma) (4.9) of two weighted sums of (L alpha, alpha), and where covered
+/// pixels contribute to both. Dividing by the weighted coverage normalises the weights too.
 #[inline(always)]
-pub fn dog_response<S: Simd>(narrow: f32x8<S>, wide: f32x8<S>, base: f32, edge: f32) -> f32x8<S> {
-    narrow * base + (narrow - wide) * edge
+pub fn dog_of_sums<S: Simd>(
+    [narrow, narrow_alpha]: [f32x8<S>; 2],
+    [wide, wide_alpha]: [f32x8<S>; 2],
+    base: f32,
+    edge: f32,
+) -> (f32x8<S>, mask32x8<S>) {
+    let one = f32x8::splat(narrow.simd, 1.0);
+    let covered = narrow_alpha.min(wide_alpha).simd_gt(LEAST_COVERAGE);
+    let narrow = narrow / covered.select(narrow_alpha, one);
+    let wide = wide / covered.select(wide_alpha, one);
+    (narrow * base + (narrow - wide) * edge, covered)
 }
 
 #[cfg(test)]

@@ -15,29 +15,21 @@ use crate::kernels::shared::tensor::{tangent, tangent_along};
 use isophote_engine::View;
 use isophote_engine::fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
 
-/// How a stream line goes on to its next point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Integrator {
-    /// Euler's method, first order (2.176, 2.177).
-    Euler = 0,
-    /// The midpoint method, a second-order Runge-Kutta method (2.182).
-    Midpoint = 1,
-    /// The midpoint method with the tangent here extrapolated from those halfway through the last two steps: only
-    /// where the next one is taken depends on it, so that the method is of second order too, with one sample of
-    /// the field a step instead of two. Its first step is the midpoint method's.
-    TwoStep = 2,
+crate::choice::numbered! {
+    /// How a stream line goes on to its next point.
+    pub enum Integrator {
+        /// Euler's method, first order (2.176, 2.177).
+        Euler = 0,
+        /// The midpoint method, a second-order Runge-Kutta method (2.182).
+        Midpoint = 1,
+        /// The midpoint method with the tangent here extrapolated from those halfway through the last two steps:
+        /// only where the next one is taken depends on it, so that the method is of second order too, with one
+        /// sample of the field a step instead of two. Its first step is the midpoint method's.
+        TwoStep = 2,
+    }
 }
 
 impl Integrator {
-    /// The integrator that shaders know by this number.
-    pub fn of(number: u32) -> Self {
-        match number {
-            0 => Self::Euler,
-            1 => Self::Midpoint,
-            _ => Self::TwoStep,
-        }
-    }
-
     /// Whether a step depends on the field where it starts; the tangent at a line's beginning is known.
     #[inline(always)]
     fn reads_start(self, begins: bool) -> bool {
@@ -171,12 +163,6 @@ impl<S: Simd> Stream<S> {
     #[inline(always)]
     pub fn begin(x: f32x8<S>, y: f32x8<S>, direction: [f32x8<S>; 2]) -> Self {
         Self { x, y, direction, turn: f32x8::splat(x.simd, 1.0), ahead: direction, begins: true }
-    }
-
-    /// Both sides of lines through (x, y), where the tangent is `tangent`.
-    #[inline(always)]
-    pub fn both_sides(x: f32x8<S>, y: f32x8<S>, [tx, ty]: [f32x8<S>; 2]) -> [Self; 2] {
-        [Self::begin(x, y, [-tx, -ty]), Self::begin(x, y, [tx, ty])]
     }
 
     /// Half a step of length `h` in the direction (kx, ky).

@@ -8,6 +8,7 @@
 //!
 //! Cost: an eigenanalysis and an exponential, about 80 operations.
 
+use crate::choice::Numbered;
 pub use crate::kernels::shaders::diffusion_tensor::Params;
 use crate::kernels::shared::tensor::{Eigen, eigen};
 use crate::kernels::simd::pixels::map_pixels;
@@ -27,19 +28,20 @@ crate::kernel!(diffusion_tensor {
     },
 });
 
-/// Which diffusion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scheme {
-    /// 1 - exp(-3.31488 / (lambda1 / lambda^2)^4) across edges, 1 along them.
-    EdgeEnhancing = 0,
-    /// 0.001 across, 0.001 + 0.999 exp(-(contrast^2 / (lambda1 - lambda2))^2) along.
-    CoherenceEnhancing = 1,
+crate::choice::numbered! {
+    /// Which diffusion.
+    pub enum Scheme {
+        /// 1 - exp(-3.31488 / (lambda1 / lambda^2)^4) across edges, 1 along them.
+        EdgeEnhancing = 0,
+        /// 0.001 across, 0.001 + 0.999 exp(-(contrast^2 / (lambda1 - lambda2))^2) along.
+        CoherenceEnhancing = 1,
+    }
 }
 
 /// The weights for `scheme`; `contrast` is lambda, or the fourth root of Weickert's C, in the unit of
 /// the gradients that the tensors are made of.
 pub fn pass(plan: &mut PlanBuilder, tensors: ImageId, scheme: Scheme, contrast: f32) -> ImageId {
-    let params = Params { falloff: 1.0 / (contrast * contrast).max(1e-12), coherence: scheme as u32 };
+    let params = Params { falloff: 1.0 / (contrast * contrast).max(1e-12), scheme: scheme.number() };
     plan.pass(&KERNEL, &[tensors], &params, Class::Field, Support::Pixels(0))
 }
 
@@ -52,7 +54,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 fn of<S: Simd>(simd: S, [e, f, g, _]: [f32x8<S>; 4], params: &Params) -> [f32x8<S>; 4] {
     let c = |v: f32| f32x8::splat(simd, v);
     let Eigen { lambda1, lambda2, major: [nx, ny] } = eigen(e, f, g);
-    let (across, along) = if params.coherence != 0 {
+    let (across, along) = if params.scheme == Scheme::CoherenceEnhancing as u32 {
         let q = ((lambda1 - lambda2) * params.falloff).min(c(1e9));
         let exponent = (c(1.0) / (q * q).max(c(1e-18))).min(c(87.0));
         (c(0.001), (-exponent).exp() * 0.999 + 0.001)

@@ -9,13 +9,14 @@
 //! Cost: 4 sigma steps per pixel, each one bilinear colour sample with one exponential (manual: four)
 //! and one (Euler) or two tensor samples with their tangents.
 
+use crate::choice::Numbered;
 use crate::kernels::lines::orientation_field;
 pub use crate::kernels::shaders::flow_bilateral::Params;
 use crate::kernels::shared::coverage::Covered;
 use crate::kernels::shared::sampling::sample_linear4;
 use crate::kernels::shared::stream::{FieldView, Integrator, Stream, half_length, in_bounds};
 use crate::kernels::shared::tensor::tangent;
-use crate::kernels::simd::pixels::{Block, for_blocks_in_tiles, load_pixel, write};
+use crate::kernels::simd::pixels::{Block, for_blocks_in_tiles, load_pixel, premultiply, write};
 use crate::kernels::simd::trace::{Lines, Point, both_sides};
 use crate::kernels::smoothing::oriented_bilateral::Sampling;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
@@ -25,8 +26,8 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(flow_bilateral {
     cpu: run,
     cost: |p| {
-        let field = if p.midpoint != 0 { 100.0 } else { 50.0 };
-        2.0 * f64::from(p.radius) * (field + if p.manual != 0 { 120.0 } else { 50.0 })
+        let field = if p.integrator == Integrator::Euler as u32 { 50.0 } else { 100.0 };
+        2.0 * f64::from(p.radius) * (field + if p.sampling == Sampling::Manual as u32 { 120.0 } else { 50.0 })
     },
     tolerance: Tolerance {
         absolute: 5e-3,
@@ -38,6 +39,16 @@ crate::kernel!(flow_bilateral {
     },
 });
 
+crate::choice::choice! {
+    /// Where stream lines are sampled.
+    pub enum Placement {
+        /// At every pixel of length.
+        Equidistant = 0 ("equidistant", "Equidistant"),
+        /// Where they cross the centre of a row or a column (Listings 3.2 and 3.3).
+        PixelCentres = 1 ("pixel_centres", "Pixel centres"),
+    }
+}
+
 /// What a pass is asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
@@ -45,12 +56,12 @@ pub struct Options {
     pub sigma_d: f32,
     /// Standard deviation of the range, in the unit of the colour.
     pub sigma_r: f32,
-    /// Second-order Runge-Kutta instead of Euler.
-    pub midpoint: bool,
+    /// How lines are stepped.
+    pub integrator: Integrator,
     /// Where range weights are applied.
     pub sampling: Sampling,
-    /// Samples where lines cross the centres of rows or columns, instead of at equal distances.
-    pub centres: bool,
+    /// Where lines are sampled.
+    pub placement: Placement,
 }
 
 /// Filters a colour, usually CIELAB, along the stream lines of `tensors`.
@@ -60,9 +71,9 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: &
         sigma_r: options.sigma_r,
         // Stream lines are cut early because they grow less accurate with length (§ 2.9.3).
         radius: half_length(options.sigma_d),
-        midpoint: u32::from(options.midpoint),
-        manual: options.sampling as u32,
-        centres: u32::from(options.centres),
+        integrator: options.integrator as u32,
+        sampling: options.sampling as u32,
+        placement: options.placement as u32,
     };
     // No sample lies further away than the line is long, and a bilinear one reads a pixel more.
     let support = Support::Pixels(reach(&params) as u32);
@@ -76,7 +87,8 @@ fn reach(params: &Params) -> i32 {
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    let covered = (params.manual == 0).then(|| Covered::new(&pass.inputs[0], band, reach(&params)));
+    let covered = (params.sampling == Sampling::Linear as u32)
+        .then(|| Covered::new(&pass.inputs[0], band, reach(&params)));
     let filter = Filter {
         params,
         origins: pass.inputs[0],
@@ -129,12 +141,12 @@ impl Filter<'_> {
         let range = -0.721_347_52 / (params.sigma_r * params.sigma_r).max(1e-6);
         let domain = f32x8::splat(simd, -0.721_347_52 / (params.sigma_d * params.sigma_d).max(1e-6));
         let origin = Origin { colour, range };
-        let at_crossings = params.centres != 0;
+        let at_crossings = params.placement == Placement::PixelCentres as u32;
         let alpha = colour[3];
-        let first = [colour[0] * alpha, colour[1] * alpha, colour[2] * alpha, alpha];
+        let first = premultiply(colour);
         let mut sum = if at_crossings { [zero; 4] } else { first };
         let sides = both_sides(simd, block, tangent(difference, f, zero));
-        let mut lines = Lines::new(simd, &self.field, Integrator::of(params.midpoint), sides);
+        let mut lines = Lines::new(simd, &self.field, Integrator::of(params.integrator), sides);
         // The sample before, and how far away it lies.
         let (mut before, mut before_u) = ([first; 2], [zero; 2]);
         lines.trace_beyond(
@@ -197,7 +209,7 @@ impl Filter<'_> {
         origin: &Origin<S>,
         domain: f32x8<S>,
     ) -> [f32x8<S>; 4] {
-        if self.params.manual == 0 {
+        if self.params.sampling == Sampling::Linear as u32 {
             let [r, g, b, a] = sample_linear4(simd, &self.source, x, y);
             let mut colour = [r, g, b];
             if !self.opaque {

@@ -4,6 +4,7 @@
 //! Cost: 4 sigma / h steps per pixel, two fifths of it where steps are stretched, each one bilinear colour sample
 //! and one (Euler, two-step) or two tensor samples with their tangents, about 90 or 130 operations.
 
+use crate::choice::Numbered;
 use crate::kernels::lines::orientation_field;
 pub use crate::kernels::shaders::line_integral_convolution::Params;
 use crate::kernels::shared::coverage::full_or;
@@ -12,7 +13,7 @@ use crate::kernels::shared::stream::{
     FEW_STEPS, FieldView, Integrator, Stream, acos, few_steps, half_length, stretched,
 };
 use crate::kernels::shared::tensor::{anisotropy, tangent};
-use crate::kernels::simd::pixels::Block;
+use crate::kernels::simd::pixels::{Block, premultiply, unpremultiply};
 use crate::kernels::simd::tile_copy::{FOUR, TileCopy};
 use crate::kernels::simd::trace::{AlongLines, FieldCopy, Inputs, Lines, along_lines, both_sides};
 use colour_taps::{ColourTaps, RUN, Sums};
@@ -228,8 +229,7 @@ impl Convolve<'_> {
     /// Sums of weighted colours with those of the centres, whose weight is 1.
     #[inline(always)]
     fn with_centre<S: Simd>(&self, simd: S, block: &Block, mut sum: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
-        let [r, g, b, alpha] = block.read(simd, &self.colour);
-        let centre = [r * alpha, g * alpha, b * alpha, alpha];
+        let centre = premultiply(block.read(simd, &self.colour));
         for c in 0..4 {
             sum[c] += centre[c];
         }
@@ -368,13 +368,7 @@ fn stretched_step<S: Simd>(params: &Params, radius: f32x8<S>) -> (f32x8<S>, f32x
 
 /// The colour and coverage of weighted sums of covered colours and of coverage.
 #[inline(always)]
-fn mean<S: Simd>([r, g, b, alpha]: [f32x8<S>; 4], norm: f32x8<S>) -> [f32x8<S>; 4] {
-    let zero = f32x8::splat(norm.simd, 0.0);
-    let seen = alpha.simd_gt(f32x8::splat(norm.simd, 1e-6));
-    [
-        seen.select(r / alpha, zero),
-        seen.select(g / alpha, zero),
-        seen.select(b / alpha, zero),
-        full_or(alpha / norm),
-    ]
+fn mean<S: Simd>(sum: [f32x8<S>; 4], norm: f32x8<S>) -> [f32x8<S>; 4] {
+    let [r, g, b, alpha] = unpremultiply(sum);
+    [r, g, b, full_or(alpha / norm)]
 }

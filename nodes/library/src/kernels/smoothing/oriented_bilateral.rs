@@ -10,14 +10,14 @@
 pub use crate::kernels::shaders::oriented_bilateral::Params;
 use crate::kernels::shared::tensor::{anisotropy, tangent};
 use crate::kernels::simd::line_taps::{LineTaps, Lines, STEPS, strips};
-use crate::kernels::simd::pixels::{read, write};
+use crate::kernels::simd::pixels::{premultiply, read, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance, View};
 
 crate::kernel!(oriented_bilateral {
     cpu: run,
-    cost: |p| 1.8 * f64::from(p.cutoff) * if p.manual != 0 { 50.0 } else { 35.0 },
+    cost: |p| 1.8 * f64::from(p.cutoff) * if p.sampling == Sampling::Manual as u32 { 50.0 } else { 35.0 },
     tolerance: Tolerance {
         absolute: 2e-3,
         relative: 2e-4,
@@ -76,7 +76,7 @@ pub fn pass(
         cutoff: (PRECISION * options.sigma_d).ceil(),
         elongation: options.elongation,
         tangential: direction as u32,
-        manual: options.sampling as u32,
+        sampling: options.sampling as u32,
     };
     plan.pass(&KERNEL, &[color, tensors], &params, Class::Colour, Support::Pixels(reach(&params) as u32))
 }
@@ -102,8 +102,8 @@ fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
     let zero = f32x8::splat(simd, 0.0);
     let mut block = Block { taps: [[[zero; 4]; 2]; STEPS], coverage: [[zero; 2]; STEPS] };
     for strip in strips(band, radius) {
-        colours.load(simd, &pass.inputs[0], strip, radius, params.manual == 0);
-        let mode = match (params.manual != 0, colours.is_opaque()) {
+        colours.load(simd, &pass.inputs[0], strip, radius, params.sampling == Sampling::Linear as u32);
+        let mode = match (params.sampling == Sampling::Manual as u32, colours.is_opaque()) {
             (true, _) => MANUAL,
             (false, true) => OPAQUE,
             (false, false) => COVERED,
@@ -198,7 +198,7 @@ impl Row<'_> {
             domain: f32x8::splat(simd, -0.721_347_52) / (sigma_d * sigma_d).max(f32x8::splat(simd, 1e-6)),
         };
         let alpha = origin[3];
-        let mut sum = [origin[0] * alpha, origin[1] * alpha, origin[2] * alpha, alpha];
+        let mut sum = premultiply(origin);
         // Lines along the other axis have no taps in a turn.
         for is_x in [true, false] {
             let along = if is_x { along_x } else { !along_x };

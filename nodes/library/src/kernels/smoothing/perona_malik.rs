@@ -7,6 +7,7 @@
 //!
 //! Cost: 60 operations (exponential: 100); memory takes longer.
 
+use crate::choice::Numbered;
 pub use crate::kernels::shaders::perona_malik::Params;
 use crate::kernels::simd::line_buffer::{Row, WIDE_STRIP, for_rows, pixels};
 use crate::kernels::simd::pixels::{BLOCK, write};
@@ -16,7 +17,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(perona_malik {
     cpu: run,
-    cost: |p| if p.exponential != 0 { 100.0 } else { 60.0 },
+    cost: |p| if p.diffusivity == Diffusivity::Exponential as u32 { 100.0 } else { 60.0 },
     tolerance: Tolerance {
         absolute: 1e-6,
         relative: 2e-6,
@@ -50,16 +51,19 @@ pub struct Options {
 pub fn pass(plan: &mut PlanBuilder, color: ImageId, options: &Options) -> ImageId {
     let Options { time_step, contrast, diffusivity } = *options;
     let falloff = 1.0 / (contrast * contrast).max(1e-12);
-    let params = Params { time_step, falloff, exponential: diffusivity as u32 };
+    let params = Params { time_step, falloff, diffusivity: diffusivity.number() };
     plan.pass(&KERNEL, &[color], &params, Class::Colour, Support::Pixels(1))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    if params.exponential != 0 {
-        dispatch!(pass.level, simd => diffused::<_, true>(simd, pass, &params, band));
-    } else {
-        dispatch!(pass.level, simd => diffused::<_, false>(simd, pass, &params, band));
+    match Diffusivity::of(params.diffusivity) {
+        Diffusivity::Rational => {
+            dispatch!(pass.level, simd => diffused::<_, false>(simd, pass, &params, band));
+        }
+        Diffusivity::Exponential => {
+            dispatch!(pass.level, simd => diffused::<_, true>(simd, pass, &params, band));
+        }
     }
 }
 

@@ -8,6 +8,7 @@
 //!
 //! NaN and infinities count as nothing there. Cost: about 60 operations a pixel.
 
+use crate::choice::Numbered;
 pub use crate::kernels::shaders::guide_tensor::Params;
 use crate::kernels::shared::outer_product::validity;
 use crate::kernels::simd::line_buffer::{LineBuffer, strips};
@@ -28,15 +29,16 @@ crate::kernel!(guide_tensor {
     },
 });
 
-/// What a guide image holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Guide {
-    /// View-space normal and validity.
-    Normal,
-    /// Distance from the camera, 0 or less where there is nothing.
-    Depth,
-    /// A whole number per object.
-    ObjectId,
+crate::choice::numbered! {
+    /// What a guide image holds.
+    pub enum Guide {
+        /// View-space normal and validity.
+        Normal = 0,
+        /// Distance from the camera, 0 or less where there is nothing.
+        Depth = 1,
+        /// A whole number per object.
+        ObjectId = 2,
+    }
 }
 
 /// How a guide counts.
@@ -59,10 +61,14 @@ pub fn pass(plan: &mut PlanBuilder, tensor: ImageId, guide: ImageId, options: &O
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    match params.kind {
-        0 => dispatch!(pass.level, simd => normals(simd, pass, &params, band)),
-        1 => dispatch!(pass.level, simd => scalars(simd, pass, &params, band, clean_depth, relative)),
-        _ => dispatch!(pass.level, simd => scalars(simd, pass, &params, band, clean_number, other)),
+    match Guide::of(params.kind) {
+        Guide::Normal => dispatch!(pass.level, simd => normals(simd, pass, &params, band)),
+        Guide::Depth => {
+            dispatch!(pass.level, simd => scalars(simd, pass, &params, band, clean_depth, relative));
+        }
+        Guide::ObjectId => {
+            dispatch!(pass.level, simd => scalars(simd, pass, &params, band, clean_number, other));
+        }
     }
 }
 

@@ -12,6 +12,7 @@
 //!
 //! Cost: about 30 operations.
 
+use crate::choice::Numbered;
 pub use crate::kernels::shaders::tensor_display::Params;
 use crate::kernels::shared::tensor;
 use crate::kernels::simd::pixels::map_pixels;
@@ -31,38 +32,46 @@ crate::kernel!(tensor_display {
     },
 });
 
-/// What to show.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Show {
-    /// Hue by the double angle of the tangent, saturation by anisotropy.
-    Orientation,
-    /// Anisotropy (2.137).
-    Anisotropy,
-    /// Anisotropy of the roots of the eigenvalues (2.138).
-    AnisotropySqrt,
-    /// Squared anisotropy (2.139).
-    AnisotropySquared,
-    /// Gradient magnitude, sqrt(lambda1).
-    Magnitude,
-    /// Corner response (2.159) with this k.
-    Harris(f32),
-    /// det / tr (2.160).
-    Foerstner,
-    /// lambda2 (2.161).
-    TomasiKanade,
-    /// The determinant.
-    Rohr,
-    /// Anisotropy where it is above what noise gives (2.154), at this level of significance and for
-    /// so many independent samples; 0 elsewhere.
-    Significance {
-        /// Share of noise that passes.
-        alpha: f32,
-        /// Samples that a window is worth, 4 pi rho^2 for a Gaussian (2.158).
-        samples: f32,
-    },
+crate::choice::numbered! {
+    /// What to show.
+    pub enum Show {
+        /// Hue by the double angle of the tangent, saturation by anisotropy.
+        Orientation = 0,
+        /// Anisotropy (2.137).
+        Anisotropy = 1,
+        /// Anisotropy of the roots of the eigenvalues (2.138).
+        AnisotropySqrt = 2,
+        /// Squared anisotropy (2.139).
+        AnisotropySquared = 3,
+        /// Gradient magnitude, sqrt(lambda1).
+        Magnitude = 4,
+        /// Corner response (2.159).
+        Harris = 5,
+        /// det / tr (2.160).
+        Foerstner = 6,
+        /// lambda2 (2.161).
+        TomasiKanade = 7,
+        /// The determinant.
+        Rohr = 8,
+        /// Anisotropy where it is above what noise gives (2.154); 0 elsewhere.
+        Significance = 9,
+    }
+}
+
+/// What to show, and its numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// What.
+    pub show: Show,
+    /// k of the Harris measure (2.159).
+    pub k: f32,
+    /// Anisotropy from which on a place is [`Significance`](Show::Significance), as [`least_significant`] gives it.
+    pub threshold: f32,
 }
 
 /// Anisotropy that noise exceeds with probability `alpha` in windows worth `samples` (2.154).
+///
+/// A Gaussian window is worth 4 pi rho^2 of them (2.158).
 pub fn least_significant(alpha: f32, samples: f32) -> f32 {
     // Tensors of one sample are all of anisotropy 1.
     let exponent = 2.0 / (f64::from(samples) - 1.0).max(1e-6);
@@ -70,40 +79,26 @@ pub fn least_significant(alpha: f32, samples: f32) -> f32 {
 }
 
 /// Adds the pass: tensor to opaque colour.
-pub fn pass(plan: &mut PlanBuilder, tensor: ImageId, show: Show) -> ImageId {
-    let plain = |show: u32| Params { show, k: 0.0, threshold: 0.0 };
-    let params = match show {
-        Show::Orientation => plain(0),
-        Show::Anisotropy => plain(1),
-        Show::AnisotropySqrt => plain(2),
-        Show::AnisotropySquared => plain(3),
-        Show::Magnitude => plain(4),
-        Show::Harris(k) => Params { k, ..plain(5) },
-        Show::Foerstner => plain(6),
-        Show::TomasiKanade => plain(7),
-        Show::Rohr => plain(8),
-        Show::Significance { alpha, samples } => {
-            Params { threshold: least_significant(alpha, samples), ..plain(9) }
-        }
-    };
+pub fn pass(plan: &mut PlanBuilder, tensor: ImageId, options: &Options) -> ImageId {
+    let Options { show, k, threshold } = *options;
+    let params = Params { show: show.number(), k, threshold };
     plan.pass(&KERNEL, &[tensor], &params, Class::Colour, Support::Pixels(0))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
+    let show = Show::of(params.show);
     dispatch!(pass.level, simd => map_pixels(
         simd,
         pass,
         band,
         #[inline(always)]
         |[e, f, g, _]| {
-            let one = f32x8::splat(simd, 1.0);
-            let [r, g, b] = match params.show {
-                0 => orientation(simd, e, f, g),
-                1..4 | 9 => [anisotropy(simd, &params, e, f, g); 3],
-                _ => [strength(simd, &params, [e, f, g]); 3],
+            let [r, g, b] = match show {
+                Show::Orientation => orientation(simd, e, f, g),
+                grey => [measure(simd, grey, &params, [e, f, g]); 3],
             };
-            [r, g, b, one]
+            [r, g, b, f32x8::splat(simd, 1.0)]
         },
     ));
 }
@@ -118,58 +113,62 @@ fn orientation<S: Simd>(simd: S, e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> [f32x
     [x * 0.5 + 0.5, c(0.5) - across + up, c(0.5) - across - up]
 }
 
-#[inline(always)]
-fn anisotropy<S: Simd>(simd: S, params: &Params, e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> f32x8<S> {
-    let a = tensor::anisotropy(e, f, g);
-    let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-    match params.show {
-        2 => a / (one + (one - a * a).max(zero).sqrt()),
-        3 => a * a,
-        9 => a.simd_gt(f32x8::splat(simd, params.threshold)).select(a, zero),
-        _ => a,
-    }
-}
-
 /// Values that are shown as middle grey: a gradient and, for corners, a squared one.
 const HALF_GRADIENT: f32 = 0.1;
 const HALF_SQUARE: f32 = 0.0025;
 
+/// What is shown as a grey; of orientation, its anisotropy.
 #[inline(always)]
-fn strength<S: Simd>(simd: S, params: &Params, t: [f32x8<S>; 3]) -> f32x8<S> {
+fn measure<S: Simd>(simd: S, show: Show, params: &Params, t: [f32x8<S>; 3]) -> f32x8<S> {
     let c = |v: f32| f32x8::splat(simd, v);
-    // Products of four gradients must not overflow.
-    let mut bounded = t;
-    for v in &mut bounded {
-        *v = v.max(c(-1e9)).min(c(1e9));
-    }
-    let [e, f, g] = bounded;
-    let trace = e + g;
-    let lambda1 = trace * 0.5 + tensor::axis((e - g) * 0.5, f).0;
-    // What rounding leaves of the determinant of a tensor of rank one is no corner.
-    let determinant = (e * g - f * f - trace * 1e-6 * trace).max(c(0.0));
-    match params.show {
-        4 => {
+    let a = tensor::anisotropy(t[0], t[1], t[2]);
+    let Corner { trace, lambda1, determinant } = Corner::of(simd, t);
+    match show {
+        Show::Orientation | Show::Anisotropy => a,
+        Show::AnisotropySqrt => a / (c(1.0) + (c(1.0) - a * a).max(c(0.0)).sqrt()),
+        Show::AnisotropySquared => a * a,
+        Show::Significance => a.simd_gt(c(params.threshold)).select(a, c(0.0)),
+        Show::Magnitude => {
             let gradient = lambda1.max(c(0.0)).sqrt();
             gradient / (gradient + HALF_GRADIENT)
         }
-        5 => {
+        Show::Harris => {
             let harris = determinant - trace * params.k * trace;
-            let square = harris.abs().sqrt();
-            let grey = square / (square + HALF_SQUARE) * 0.5;
+            let grey = half_at_square(harris.abs().sqrt()) * 0.5;
             harris.simd_lt(c(0.0)).select(-grey, grey) + 0.5
         }
-        6 => {
-            let square = determinant / trace.max(c(f32::MIN_POSITIVE));
-            square / (square + HALF_SQUARE)
+        Show::Foerstner => half_at_square(determinant / trace.max(c(f32::MIN_POSITIVE))),
+        Show::TomasiKanade => half_at_square(determinant / lambda1.max(c(f32::MIN_POSITIVE))),
+        Show::Rohr => half_at_square(determinant.sqrt()),
+    }
+}
+
+#[inline(always)]
+fn half_at_square<S: Simd>(square: f32x8<S>) -> f32x8<S> {
+    square / (square + HALF_SQUARE)
+}
+
+/// What measures of corners are made of.
+struct Corner<S: Simd> {
+    trace: f32x8<S>,
+    lambda1: f32x8<S>,
+    determinant: f32x8<S>,
+}
+
+impl<S: Simd> Corner<S> {
+    #[inline(always)]
+    fn of(simd: S, mut t: [f32x8<S>; 3]) -> Self {
+        let c = |v: f32| f32x8::splat(simd, v);
+        // Products of four gradients must not overflow.
+        for v in &mut t {
+            *v = v.max(c(-1e9)).min(c(1e9));
         }
-        7 => {
-            let square = determinant / lambda1.max(c(f32::MIN_POSITIVE));
-            square / (square + HALF_SQUARE)
-        }
-        _ => {
-            let square = determinant.sqrt();
-            square / (square + HALF_SQUARE)
-        }
+        let [e, f, g] = t;
+        let trace = e + g;
+        let lambda1 = trace * 0.5 + tensor::axis((e - g) * 0.5, f).0;
+        // What rounding leaves of the determinant of a tensor of rank one is no corner.
+        let determinant = (e * g - f * f - trace * 1e-6 * trace).max(c(0.0));
+        Self { trace, lambda1, determinant }
     }
 }
 
@@ -179,11 +178,11 @@ mod tests {
     use isophote_engine::cpu::{CallingThread, Control, CpuExecutor};
     use isophote_engine::{Image, Rect};
 
-    /// The grey that a tensor is shown as.
+    /// The grey that a tensor is shown as; of Harris with k 0.04, of significance above an anisotropy of 0.5.
     fn grey([e, f, g]: [f32; 3], show: Show) -> f64 {
         let mut plan = PlanBuilder::new(1, 1).unwrap();
         let tensor = plan.input("tensor", 4, Class::Field);
-        let shown = pass(&mut plan, tensor, show);
+        let shown = pass(&mut plan, tensor, &Options { show, k: 0.04, threshold: 0.5 });
         plan.output("color", shown);
         let image = Image::from_vec(1, 1, 4, vec![e, f, g, 1.0]).unwrap();
         let region = Rect::of_size(1, 1);
@@ -212,16 +211,17 @@ mod tests {
             (Show::AnisotropySqrt, root),
             (Show::AnisotropySquared, a * a),
             (Show::Magnitude, toned(l1.sqrt(), 0.1)),
-            (Show::Harris(0.04), 0.5 + 0.5 * toned(harris.signum() * harris.abs().sqrt(), 0.0025)),
+            (Show::Harris, 0.5 + 0.5 * toned(harris.signum() * harris.abs().sqrt(), 0.0025)),
             (Show::Foerstner, toned(l1 * l2 / (l1 + l2), 0.0025)),
             (Show::TomasiKanade, toned(l2, 0.0025)),
             (Show::Rohr, toned((l1 * l2).sqrt(), 0.0025)),
-            (Show::Significance { alpha: 0.05, samples: 50.0 }, a),
-            (Show::Significance { alpha: 0.05, samples: 4.0 }, 0.0),
+            (Show::Significance, a),
         ] {
             let got = grey(tensor, show);
             assert!((got - want).abs() < 1e-4, "{show:?}: {got} for {want}");
         }
+        // Eigenvalues 3 and 1 are of anisotropy 0.5, which is not above the threshold.
+        assert_eq!(grey([3.0, 0.0, 1.0], Show::Significance), 0.0);
     }
 
     #[test]
@@ -233,8 +233,7 @@ mod tests {
     #[test]
     fn extreme_tensors_are_shown_between_black_and_white() {
         for v in [0.0, 1e-38, 1.0, 1e30] {
-            for show in [Show::Magnitude, Show::Harris(0.04), Show::Foerstner, Show::TomasiKanade, Show::Rohr]
-            {
+            for show in [Show::Magnitude, Show::Harris, Show::Foerstner, Show::TomasiKanade, Show::Rohr] {
                 for tensor in [[v, 0.0, v], [v, v, v], [0.0, 0.0, v]] {
                     assert!((0.0..=1.0).contains(&grey(tensor, show)), "{show:?} of {tensor:?}");
                 }

@@ -5,7 +5,8 @@
 
 use crate::choice::choice;
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
-use crate::kernels::smoothing::flow_bilateral;
+use crate::kernels::shared::stream::Integrator;
+use crate::kernels::smoothing::flow_bilateral::{self, Placement};
 use crate::kernels::smoothing::oriented_bilateral::{self, Direction};
 use crate::nodes::smoothing::oriented_bilateral::SAMPLING;
 use crate::nodes::structure::structure_tensor;
@@ -74,13 +75,12 @@ choice! {
     }
 }
 
-choice! {
-    /// Where stream lines are sampled.
-    enum Placement {
-        /// At every pixel of length.
-        Equidistant ("equidistant", "Equidistant"),
-        /// Where they cross the centre of a row or a column (Listings 3.2 and 3.3).
-        PixelCentres ("pixel_centres", "Pixel centres"),
+impl Stepping {
+    fn integrator(self) -> Integrator {
+        match self {
+            Self::Euler => Integrator::Euler,
+            Self::Midpoint => Integrator::Midpoint,
+        }
     }
 }
 
@@ -107,9 +107,9 @@ impl Default for Passes {
             flow: flow_bilateral::Options {
                 sigma_d: SIGMA_DT.default_float(),
                 sigma_r: SIGMA_RT.default_float(),
-                midpoint: INTEGRATOR.default_option::<Stepping>() == Stepping::Midpoint,
+                integrator: INTEGRATOR.default_option::<Stepping>().integrator(),
                 sampling,
-                centres: PLACEMENT.default_option::<Placement>() == Placement::PixelCentres,
+                placement: PLACEMENT.default_option(),
             },
         }
     }
@@ -135,9 +135,9 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         flow: flow_bilateral::Options {
             sigma_d: scope.float("sigma_dt"),
             sigma_r: scope.float("sigma_rt"),
-            midpoint: scope.option::<Stepping>("integrator") == Stepping::Midpoint,
+            integrator: scope.option::<Stepping>("integrator").integrator(),
             sampling,
-            centres: scope.option::<Placement>("placement") == Placement::PixelCentres,
+            placement: scope.option("placement"),
         },
     };
     let iterations = scope.int("iterations");

@@ -3,7 +3,7 @@
 use crate::choice::choice;
 use crate::kernels::shared::stream::Integrator;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
-use crate::kernels::structure::tensor_display::{self, Show};
+use crate::kernels::structure::tensor_display::{self, Options as Display, Show, least_significant};
 use crate::kernels::structure::{colour_restrict, contrast, noise, tensor_interpolate, tensor_logarithm};
 use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::ports;
@@ -99,17 +99,16 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         View::AnisotropySqrt => Show::AnisotropySqrt,
         View::AnisotropySquared => Show::AnisotropySquared,
         View::Magnitude => Show::Magnitude,
-        View::Harris => Show::Harris(scope.float("k")),
+        View::Harris => Show::Harris,
         View::Foerstner => Show::Foerstner,
         View::TomasiKanade => Show::TomasiKanade,
         View::Rohr => Show::Rohr,
-        View::Significance => {
-            let rho = scope.float("rho");
-            let samples = 4.0 * std::f32::consts::PI * rho * rho;
-            Show::Significance { alpha: scope.float("alpha"), samples }
-        }
+        View::Significance => Show::Significance,
     };
-    tensor_display::pass(scope.plan, tensor, show)
+    let rho = scope.float("rho");
+    let samples = 4.0 * std::f32::consts::PI * rho * rho;
+    let threshold = least_significant(scope.float("alpha"), samples);
+    tensor_display::pass(scope.plan, tensor, &Display { show, k: scope.float("k"), threshold })
 }
 
 /// Levels beyond the picture's own at which a proxy's stream lines are traced.

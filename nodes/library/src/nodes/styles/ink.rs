@@ -376,7 +376,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::choice::Selectable;
+    use crate::choice::Numbered;
 
     const NEUTRAL: Look = Look {
         width: lines::LINE_WIDTH.default_float(),
