@@ -121,10 +121,9 @@ fn frames_are_applied_with_their_guides() {
         for name in ["R", "G", "B"] {
             let [ours, theirs, blind] = [&ours, &theirs, &blind].map(|image| channel(image, name));
             let far = |a: &[f32], b: &[f32]| a.iter().zip(b).filter(|(a, b)| (*a - *b).abs() > 0.01).count();
-            // The renderer knows that the background has no normal, whereas a file has three zeros there: lines
-            // along outlines, which are some 8 % of this picture, differ a little. All else is the same.
+            // The file's colours are halves; the renderer's own go to the filter as floats.
             let apart = far(&ours, &theirs);
-            assert!(apart * 25 <= ours.len(), "{name} of frame {frame}: {apart} of {} differ", ours.len());
+            assert!(apart * 1000 <= ours.len(), "{name} of frame {frame}: {apart} of {} differ", ours.len());
             let guided = far(&theirs, &blind);
             assert!(
                 guided > 2 * apart && guided * 20 > ours.len(),

@@ -188,8 +188,13 @@ fn guide(
         });
         return Ok(Pixels::new(size.0, size.1, 1, Samples::F32(depth.collect())));
     }
-    let channels = if source.guide == Guide::Normal { 3 } else { 1 };
-    Ok(Pixels::new(size.0, size.1, channels, Samples::F32(all)))
+    if source.guide == Guide::Normal {
+        // A normal of no length is no surface: renderers leave their backgrounds so.
+        let valid = |n: &[f32; 3]| [n[0], n[1], n[2], f32::from(*n != [0.0; 3])];
+        let normals = all.as_chunks::<3>().0.iter().flat_map(valid).collect();
+        return Ok(Pixels::new(size.0, size.1, 4, Samples::F32(normals)));
+    }
+    Ok(Pixels::new(size.0, size.1, 1, Samples::F32(all)))
 }
 
 /// As floats; integers that floats do not tell apart are folded into those that they do.
