@@ -9,8 +9,8 @@ use isophote_engine::{Class, Image, PlanBuilder, Rect};
 use isophote_tests::cases;
 use isophote_tests::compare::distance;
 use isophote_tests::pictures::{self, Kind, from_fn};
+use isophote_tests::run;
 use isophote_tests::trials::Trials;
-use isophote_tests::{plans, run};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -41,23 +41,15 @@ fn default_graph(spec: &'static NodeSpec) -> Graph {
     cases::setup(spec, false).graph
 }
 
-/// Size of the pictures that a graph is tried on. A filter of an extreme length does on a small picture all
-/// that it does on a large one.
-fn affordable(graph: &Graph) -> [u32; 2] {
-    let planned = run::planned(graph, Request::new(31, 23));
-    match plans::cost(planned.plan()) {
-        cost if cost < 2e7 => [31, 23],
-        cost if cost < 1e8 => [11, 9],
-        _ => [6, 5],
-    }
-}
+/// Size of the pictures that all settings are tried on.
+const SIZE: [u32; 2] = [31, 23];
 
 fn the_node_keeps_every_kind_of_picture_finite(spec: &'static NodeSpec) -> Vec<String> {
     let mut wrong = Vec::new();
     for setting in cases::settings(spec, 4) {
         let mut setup = cases::setup(spec, false);
         setting.apply(&mut setup.graph, setup.node);
-        let [width, height] = affordable(&setup.graph);
+        let [width, height] = SIZE;
         for kind in [Kind::Hdr, Kind::Broken, Kind::CutOut] {
             let picture = pictures::color(kind, width, height);
             for space in ColourSpace::ALL {
@@ -228,7 +220,7 @@ fn what_is_opaque_stays_opaque(spec: &'static NodeSpec) -> Vec<String> {
     for setting in cases::settings(spec, 4) {
         let mut setup = cases::setup(spec, false);
         setting.apply(&mut setup.graph, setup.node);
-        let [width, height] = affordable(&setup.graph);
+        let [width, height] = SIZE;
         let picture = pictures::color(Kind::Noise, width, height);
         assert!(picture.data().chunks_exact(4).all(|p| p[3] == 1.0));
         let out = run::graph(&setup.graph, Request::new(width, height), &picture);

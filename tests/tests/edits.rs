@@ -138,7 +138,7 @@ fn a_warm_frame_creates_nothing_and_submits_once(spec: &'static NodeSpec) -> Opt
     let device = device::device(spec.id)?;
     let executor = isophote_engine::gpu::Executor::new(device.clone());
     // Large enough for every level of the pyramids that people use.
-    let [width, height] = [96, 54];
+    let [width, height] = [320, 180];
     let mut setup = cases::setup(spec, false);
     let mut planned = run::planned(&setup.graph, Request::new(width, height));
     let region = Rect::of_size(width, height);
