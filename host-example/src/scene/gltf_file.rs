@@ -4,20 +4,21 @@
 //! lengths, hierarchies) is checked here before it is used, since its readers panic on such files.
 
 mod accessors;
+mod animations;
 mod materials;
 mod meshes;
 mod sources;
 
+use std::borrow::Cow;
 use std::fs;
 use std::path::Path;
 
 use glam::{Mat4, Quat, Vec3, Vec4};
-use gltf::animation::{Interpolation as GltfInterpolation, Property as GltfProperty};
 use gltf::json;
 use gltf::json::validation::{Error as Flaw, Validate};
 
 use self::accessors::Accessors;
-use super::animation::{Animation, Channel, Interpolation, Property};
+use self::animations::Outline;
 use super::model::{Bounds, Light, LightKind, Node, Projection, Scene, Skin, Transform};
 use crate::error::{Error, Result};
 pub use sources::resolve;
@@ -36,7 +37,11 @@ fn only_looks(extension: &str) -> bool {
     extension.starts_with("KHR_materials_")
         || matches!(
             extension,
-            "KHR_texture_basisu" | "EXT_texture_webp" | "MSFT_texture_dds" | "KHR_xmp_json_ld"
+            "KHR_animation_pointer"
+                | "KHR_texture_basisu"
+                | "EXT_texture_webp"
+                | "MSFT_texture_dds"
+                | "KHR_xmp_json_ld"
         )
 }
 
@@ -47,7 +52,7 @@ fn only_looks(extension: &str) -> bool {
 pub fn load(path: &Path) -> Result<Scene> {
     let bytes = fs::read(path).map_err(|e| Error::file(path, e, "give the path of a readable glTF file"))?;
     let malformed = |problem: String| Error::file(path, problem, "export the scene again");
-    let Parsed { document, blob, warnings } = parse(&bytes).map_err(malformed)?;
+    let Parsed { document, channels, blob, warnings } = parse(&bytes).map_err(malformed)?;
     let buffers = read_buffers(path, &document, blob)?;
     let accessors = Accessors { buffers: &buffers };
     let mut scene = Scene {
@@ -70,13 +75,15 @@ pub fn load(path: &Path) -> Result<Scene> {
     meshes::read(&document, &accessors, &mut scene).map_err(malformed)?;
     read_nodes(&document, &mut scene).map_err(malformed)?;
     read_skins(&document, &accessors, &mut scene).map_err(malformed)?;
-    read_animations(&document, &accessors, &mut scene).map_err(malformed)?;
+    animations::read(&document, &channels, &accessors, &mut scene).map_err(malformed)?;
     Ok(scene)
 }
 
 /// What a file says, before any of its buffers is read.
 struct Parsed {
     document: gltf::Document,
+    /// The channels of each animation, which the document leaves out.
+    channels: animations::Channels,
     /// The binary chunk of a `.glb`.
     blob: Option<Vec<u8>>,
     warnings: Vec<String>,
@@ -91,9 +98,16 @@ fn parse(bytes: &[u8]) -> std::result::Result<Parsed, String> {
             return Err(format!("claims {length} bytes but has {}", bytes.len()));
         }
     }
-    let gltf::Gltf { document, blob } =
-        gltf::Gltf::from_slice_without_validation(bytes).map_err(|e| format!("is not valid glTF: {e}"))?;
-    let mut root = document.into_json();
+    let invalid = |problem: String| format!("is not valid glTF: {problem}");
+    let (text, blob) = if bytes.starts_with(b"glTF") {
+        let glb = gltf::Glb::from_slice(bytes).map_err(|e| invalid(e.to_string()))?;
+        (glb.json, glb.bin.map(Cow::into_owned))
+    } else {
+        (Cow::Borrowed(bytes), None)
+    };
+    let text = std::str::from_utf8(&text).map_err(|e| invalid(format!("its JSON is no text: {e}")))?;
+    let Outline { text, channels } = Outline::of(text).map_err(invalid)?;
+    let mut root: json::Root = json::deserialize::from_str(&text).map_err(|e| invalid(e.to_string()))?;
     if root.asset.version.split('.').next() != Some("2") {
         return Err(format!("is glTF version {}, not 2.0", root.asset.version));
     }
@@ -108,7 +122,7 @@ fn parse(bytes: &[u8]) -> std::result::Result<Parsed, String> {
         }
     }
     validate(&root)?;
-    Ok(Parsed { document: gltf::Document::from_json_without_validation(root), blob, warnings })
+    Ok(Parsed { document: gltf::Document::from_json_without_validation(root), channels, blob, warnings })
 }
 
 fn validate(root: &json::Root) -> std::result::Result<(), String> {
@@ -122,21 +136,15 @@ fn validate(root: &json::Root) -> std::result::Result<(), String> {
             }
         }
     }
-    // Targets of animations are not part of it at all.
-    for (index, animation) in root.animations.iter().enumerate() {
-        for channel in &animation.channels {
-            let known = channel.target.node.value() < root.nodes.len();
-            if !known || channel.target.path == json::validation::Checked::Invalid {
-                return Err(format!("animation {index} has a target that does not exist"));
-            }
-        }
-    }
     let mut first = None;
     root.validate(root, json::Path::new, &mut |path, flaw| {
         let path = path();
         // Bounds of positions are computed here and not believed, so they may be missing.
         let bounds = path.as_str().ends_with(".min") || path.as_str().ends_with(".max");
-        if first.is_none() && !(bounds && matches!(flaw, Flaw::Missing | Flaw::Invalid)) {
+        // An accessor without data holds zeros.
+        let zeros = path.as_str().starts_with("accessors[") && path.as_str().ends_with("].bufferView");
+        let legal = bounds && matches!(flaw, Flaw::Missing | Flaw::Invalid) || zeros && flaw == Flaw::Missing;
+        if first.is_none() && !legal {
             first =
                 Some(format!("is not valid glTF: {} at {}", flaw.to_string().to_lowercase(), path.as_str()));
         }
@@ -291,48 +299,6 @@ fn read_skins(
         if influences.flat_map(|i| i.joints).any(|j| j as usize >= joints) {
             return Err(format!("mesh {mesh} names a joint that skin {skin} does not have"));
         }
-    }
-    Ok(())
-}
-
-fn read_animations(
-    document: &gltf::Document,
-    accessors: &Accessors,
-    scene: &mut Scene,
-) -> std::result::Result<(), String> {
-    for animation in document.animations() {
-        let mut channels = Vec::new();
-        for (index, channel) in animation.channels().enumerate() {
-            let (target, sampler) = (channel.target(), channel.sampler());
-            let node = target.node().index();
-            let (property, width) = match target.property() {
-                GltfProperty::Translation => (Property::Translation, 3),
-                GltfProperty::Rotation => (Property::Rotation, 4),
-                GltfProperty::Scale => (Property::Scale, 3),
-                GltfProperty::MorphTargetWeights => (Property::Weights, scene.nodes[node].weights.len()),
-            };
-            let widths: &[usize] = if property == Property::Weights { &[1] } else { &[3, 4] };
-            let channel = Channel {
-                node,
-                property,
-                interpolation: match sampler.interpolation() {
-                    GltfInterpolation::Step => Interpolation::Step,
-                    GltfInterpolation::Linear => Interpolation::Linear,
-                    GltfInterpolation::CubicSpline => Interpolation::CubicSpline,
-                },
-                times: accessors.floats(&sampler.input(), &[1])?.values,
-                values: accessors.floats(&sampler.output(), widths)?.values,
-                width,
-            };
-            match channel.validate() {
-                Ok(()) => channels.push(channel),
-                Err(problem) => scene.warnings.push(format!(
-                    "channel {index} of animation {} {problem}; it is left out",
-                    materials::label(animation.name(), animation.index())
-                )),
-            }
-        }
-        scene.animations.push(Animation { name: animation.name().unwrap_or_default().to_owned(), channels });
     }
     Ok(())
 }

@@ -1,28 +1,27 @@
 //! Reading of Wavefront OBJ with its MTL, if any. Normals that the file does not have are averaged from its
-//! faces up to a crease angle.
+//! faces up to a crease angle. `tobj` parses both files, once they are brought into a form that it reads well.
+
+mod materials;
+mod normal_form;
+mod statements;
 
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::fs;
 use std::io::Cursor;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::{Vec3, Vec4};
 
+use self::materials::{Loader, load_mtl, named_texture, plain_material};
+use self::normal_form::normal_form;
 use super::geometry;
-use super::gltf_file::resolve;
-use super::material::{AlphaMode, DecodeProblem, Image, Material, Sampler, Texture, TextureUse};
+use super::material::TextureUse;
 use super::model::{Bounds, Mesh, Node, Primitive, Scene, Vertex};
 use crate::error::{Error, Result};
 
 /// Faces that meet at more than this keep a sharp edge between them when normals are averaged.
 const CREASE: f32 = 60.0 * std::f32::consts::PI / 180.0;
-
-/// Colour of surfaces that say nothing about it.
-const PLAIN: Vec3 = Vec3::new(0.45, 0.44, 0.42);
-
-/// Roughness of surfaces that say nothing about it.
-const DEFAULT_ROUGHNESS: f32 = 0.55;
 
 /// Loads a file; `texture` colours materials that have no texture of their own. The order of nodes, draws and
 /// bounds are left to [`Scene::load`].
@@ -32,15 +31,18 @@ const DEFAULT_ROUGHNESS: f32 = 0.55;
 /// damaged `texture` is an error.
 pub fn load(path: &Path, texture: Option<&Path>) -> Result<Scene> {
     let bytes = fs::read(path).map_err(|e| Error::file(path, e, "give the path of a readable OBJ file"))?;
+    let invalid = |problem: String| {
+        Error::file(path, format!("is not a valid OBJ file: {problem}"), "export the model again")
+    };
     // Names in old files are in any encoding; numbers and keywords are ASCII.
-    let text = String::from_utf8_lossy(&bytes);
+    let text = normal_form(&String::from_utf8_lossy(&bytes)).map_err(invalid)?;
     let warnings = RefCell::new(Vec::new());
     let options =
         tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
     let (models, materials) = tobj::load_obj_buf(&mut Cursor::new(text.as_bytes()), &options, |name| {
         load_mtl(path, name, &warnings)
     })
-    .map_err(|e| Error::file(path, format!("is not a valid OBJ file: {e}"), "export the model again"))?;
+    .map_err(|e| invalid(e.to_string()))?;
     let mut loader = Loader { path, images: HashMap::new(), scene: empty_scene(warnings.into_inner()) };
     for material in materials.unwrap_or_default() {
         let converted = loader.material(&material);
@@ -92,139 +94,6 @@ fn empty_scene(warnings: Vec<String>) -> Scene {
     }
 }
 
-/// OBJ says nothing reliable about the side a face is seen from, so both are shown.
-fn plain_material() -> Material {
-    Material {
-        base_color: PLAIN.extend(1.0),
-        metallic: 0.0,
-        roughness: DEFAULT_ROUGHNESS,
-        double_sided: true,
-        ..Material::default()
-    }
-}
-
-fn load_mtl(path: &Path, name: &Path, warnings: &RefCell<Vec<String>>) -> tobj::MTLLoadResult {
-    let shown = name.display();
-    let problem = match resolve(path, &name.to_string_lossy()) {
-        Ok(file) => match fs::read(&file) {
-            Ok(bytes) => {
-                let text = String::from_utf8_lossy(&bytes);
-                match tobj::load_mtl_buf(&mut Cursor::new(text.as_bytes())) {
-                    Ok(materials) => return Ok(materials),
-                    Err(e) => format!("{shown} is not a valid MTL file: {e}"),
-                }
-            }
-            Err(e) => format!("{shown} cannot be read: {e}"),
-        },
-        Err(problem) => format!("the file {problem}"),
-    };
-    warnings.borrow_mut().push(format!("{problem}; plain materials are used"));
-    Ok((Vec::new(), Default::default()))
-}
-
-/// An image named by the caller.
-fn named_texture(scene: &mut Scene, path: &Path) -> Result<usize> {
-    let bytes =
-        fs::read(path).map_err(|e| Error::file(path, e, "give the path of a readable PNG or JPEG file"))?;
-    let image = Image::decode(&path.display().to_string(), &bytes).map_err(|problem| {
-        let problem = match problem {
-            DecodeProblem::Unsupported(_) => "is neither a PNG nor a JPEG image".into(),
-            DecodeProblem::Damaged(problem) => problem,
-        };
-        Error::file(path, problem, "give a whole PNG or JPEG file")
-    })?;
-    Ok(add_texture(scene, image))
-}
-
-fn add_texture(scene: &mut Scene, image: Image) -> usize {
-    scene.images.push(image);
-    scene.textures.push(Texture { image: Some(scene.images.len() - 1), sampler: Sampler::default() });
-    scene.textures.len() - 1
-}
-
-struct Loader<'a> {
-    path: &'a Path,
-    images: HashMap<PathBuf, Option<usize>>,
-    scene: Scene,
-}
-
-impl Loader<'_> {
-    fn material(&mut self, source: &tobj::Material) -> Material {
-        let base_color_texture = source.diffuse_texture.as_deref().and_then(|name| self.texture(name));
-        // Exporters write black Kd beside a texture; the texture is what was meant.
-        let diffuse = match source.diffuse {
-            Some(kd) if base_color_texture.is_none() || kd != [0.0; 3] => Vec3::from(kd),
-            _ if base_color_texture.is_some() => Vec3::ONE,
-            _ => PLAIN,
-        };
-        let opacity = source.dissolve.unwrap_or(1.0).clamp(0.0, 1.0);
-        let emissive = source.emissive.map_or(Vec3::ZERO, |ke| Vec3::from(ke).max(Vec3::ZERO));
-        Material {
-            name: source.name.clone(),
-            base_color: diffuse.max(Vec3::ZERO).extend(opacity),
-            base_color_texture,
-            // The Blinn-Phong exponent Ns of a lobe as wide as that of GGX.
-            roughness: source
-                .shininess
-                .filter(|ns| *ns > 0.0)
-                .map_or(DEFAULT_ROUGHNESS, |ns| (2.0 / (ns + 2.0)).powf(0.25).clamp(0.05, 1.0)),
-            normal_texture: source.unknown_param.get("norm").and_then(|name| self.texture(name)),
-            emissive,
-            alpha_mode: if opacity < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque },
-            ..plain_material()
-        }
-    }
-
-    /// A texture of the MTL file; options before its name are ignored.
-    fn texture(&mut self, statement: &str) -> Option<TextureUse> {
-        let name = without_options(statement);
-        let path = match resolve(self.path, &name.replace('%', "%25").replace('\\', "/")) {
-            Ok(path) => path,
-            Err(problem) => {
-                self.scene.warnings.push(format!("a material {problem}; it is left out"));
-                return None;
-            }
-        };
-        if let Some(known) = self.images.get(&path) {
-            return known.map(TextureUse::plain);
-        }
-        let decoded = fs::read(&path).map_err(|e| e.to_string()).and_then(|bytes| {
-            Image::decode(name, &bytes).map_err(|problem| match problem {
-                DecodeProblem::Unsupported(_) => "is neither PNG nor JPEG".to_owned(),
-                DecodeProblem::Damaged(problem) => problem,
-            })
-        });
-        let texture = match decoded {
-            Ok(image) => Some(add_texture(&mut self.scene, image)),
-            Err(problem) => {
-                self.scene.warnings.push(format!("texture '{name}': {problem}; it is left out"));
-                None
-            }
-        };
-        self.images.insert(path, texture);
-        texture.map(TextureUse::plain)
-    }
-}
-
-/// Drops options such as `-s 1 1 1` and `-clamp on` that may precede a file name, which itself may hold spaces.
-fn without_options(statement: &str) -> &str {
-    let mut rest = statement.trim();
-    while let Some(option) = rest.strip_prefix('-') {
-        let Some((_, mut after)) = option.split_once(char::is_whitespace) else { break };
-        loop {
-            after = after.trim_start();
-            match after.split_once(char::is_whitespace) {
-                Some((word, tail)) if word.parse::<f32>().is_ok() || matches!(word, "on" | "off") => {
-                    after = tail
-                }
-                _ => break,
-            }
-        }
-        rest = after.trim_start();
-    }
-    rest
-}
-
 fn primitive(mesh: &tobj::Mesh, plain: usize) -> std::result::Result<Primitive, String> {
     let positions = mesh.positions.as_chunks::<3>().0;
     let normals = mesh.normals.as_chunks::<3>().0;
@@ -265,16 +134,4 @@ fn primitive(mesh: &tobj::Mesh, plain: usize) -> std::result::Result<Primitive, 
         geometry::tangents(&mut primitive, 0);
     }
     Ok(primitive)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn options_of_textures_are_skipped() {
-        assert_eq!(without_options("wall.png"), "wall.png");
-        assert_eq!(without_options("-s 2 2 1 -clamp on old wall.png"), "old wall.png");
-        assert_eq!(without_options("-bm 0.5 stone.jpg"), "stone.jpg");
-    }
 }

@@ -75,7 +75,7 @@ const DATA: [Change; 16] = [
 ];
 
 /// Changes of what refers to data.
-const STRUCTURE: [Change; 10] = [
+const STRUCTURE: [Change; 12] = [
     ("attribute of another length", "as many", |b| {
         let short = b.floats("VEC3", &[0.0, 0.0, 1.0]);
         b.primitive()["attributes"]["NORMAL"] = json!(short);
@@ -103,8 +103,21 @@ const STRUCTURE: [Change; 10] = [
         b.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
     }),
     ("version 1", "version 1", |b| b.json["asset"]["version"] = json!("1.0")),
+    ("animation of an unknown node", "target that does not exist", |b| animate(b, 0, 7)),
+    ("animation without its sampler", "no sampler 1", |b| animate(b, 1, 0)),
     ("nothing to draw", "no triangles", |b| b.json["nodes"] = json!([{}])),
 ];
+
+fn animate(b: &mut Builder, sampler: usize, node: usize) {
+    let input = b.floats("SCALAR", &[0.0]);
+    b.push(
+        "animations",
+        json!({
+            "samplers": [{"input": input, "output": 0}],
+            "channels": [{"sampler": sampler, "target": {"node": node, "path": "scale"}}]
+        }),
+    );
+}
 
 /// Changes one thing in a good file with every feature, and expects an error that holds a word.
 #[test]
@@ -116,6 +129,26 @@ fn lying_documents_are_errors() {
         let error = b.load().map(|_| ()).expect_err(what);
         assert_clear(&error, what);
         assert!(error.to_string().contains(word), "{what}: '{word}' is not in '{error}'");
+    }
+}
+
+#[test]
+fn faults_of_the_text_are_found_by_their_line() {
+    let mut b = Builder::triangle();
+    animate(&mut b, 0, 0);
+    b.json["buffers"] = json!([{"byteLength": b.bytes.len()}]);
+    let whole = serde_json::to_string_pretty(&b.json).unwrap();
+    for (good, bad, reason) in [
+        ("\"byteOffset\": 0", "\"byteOffset\": -1", "integer `-1`"),
+        ("\"sampler\": 0", "\"sampler\": true", "boolean `true`"),
+        ("\"path\": \"scale\"", "\"path\": scale", "expected value"),
+    ] {
+        let line = whole.lines().position(|line| line.contains(good)).unwrap() + 1;
+        let error = load_bytes("scene.gltf", whole.replacen(good, bad, 1).as_bytes()).expect_err(bad);
+        assert_clear(&error, bad);
+        for words in [format!("at line {line} column"), reason.to_owned()] {
+            assert!(error.to_string().contains(&words), "'{words}' is not in '{error}'");
+        }
     }
 }
 

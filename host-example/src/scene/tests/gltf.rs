@@ -5,9 +5,9 @@ use std::fs;
 use glam::{Affine2, Mat4, Quat, Vec2, Vec3};
 use serde_json::json;
 
-use super::build::{Builder, U8, U16, load_bytes, png};
+use super::build::{Builder, F32, U8, U16, load_bytes, png};
 use crate::scene::pose::Pose;
-use crate::scene::{AlphaMode, LightKind, Scene, TextureUse};
+use crate::scene::{AlphaMode, LightKind, MorphDelta, Scene, TextureUse};
 
 #[test]
 fn a_triangle_gets_flat_normals_and_the_default_material() {
@@ -222,6 +222,39 @@ fn skins_follow_their_joints_and_not_their_node() {
     // Half of the way of 4 at that time, since half of its weight is on the joint that moves.
     assert_eq!(points, [Vec3::ZERO, Vec3::X, Vec3::new(0.0, 1.0, 2.0)]);
     assert!(scene.bounds.max.z > 3.0, "bounds hold the animation: {}", scene.bounds.max);
+}
+
+#[test]
+fn channels_that_drive_nothing_known_are_left_out() {
+    let mut b = skinned();
+    let channels = b.json["animations"][0]["channels"].as_array_mut().unwrap();
+    channels.push(json!({"sampler": 0, "target": {"path": "translation"}}));
+    let pointer = json!({"KHR_animation_pointer": {"pointer": "/materials/0/alphaCutoff"}});
+    channels.push(json!({"sampler": 0, "target": {"path": "pointer", "extensions": pointer}}));
+    channels.push(json!({"sampler": 0, "target": {"path": "pointer", "extensions": pointer}}));
+    channels.push(json!({"sampler": 0, "target": {"path": "visibility", "node": 1}}));
+    b.json["extensionsRequired"] = json!(["KHR_animation_pointer"]);
+    let scene = b.load().unwrap();
+    assert_eq!(scene.animations[0].channels.len(), 1);
+    assert_eq!(
+        scene.warnings[1..],
+        [
+            "2 of 5 channels of animation 'Lift' left out: KHR_animation_pointer is not supported",
+            "1 of 5 channels of animation 'Lift' left out: the property 'visibility' is not known",
+            "1 of 5 channels of animation 'Lift' left out: they name no node",
+        ]
+    );
+    assert!(scene.warnings[0].contains("demands KHR_animation_pointer"), "{:?}", scene.warnings);
+}
+
+#[test]
+fn accessors_without_data_hold_zeros() {
+    let mut b = Builder::triangle();
+    let zeros = b.push("accessors", json!({"componentType": F32, "type": "VEC3", "count": 3}));
+    b.primitive()["targets"] = json!([{"POSITION": zeros, "NORMAL": zeros}]);
+    let scene = b.load().unwrap();
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    assert_eq!(scene.primitive(&scene.draws[0]).morph_targets, [[MorphDelta::default(); 3]]);
 }
 
 #[test]
