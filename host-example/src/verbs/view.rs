@@ -11,6 +11,7 @@ use crate::view::viewer::{Options, Viewer, usable_styles};
 
 /// Options of `view`.
 #[derive(Args, Debug)]
+#[command(after_help = view::KEYS)]
 pub struct ViewArgs {
     #[command(flatten)]
     scene: SceneArgs,

@@ -1,13 +1,4 @@
-//! The viewer: a window that renders a scene and stylizes every frame.
-//!
-//! | input | does |
-//! |---|---|
-//! | drag | orbits; with shift or another button, pans |
-//! | wheel | zooms |
-//! | 1, 2, ... and Tab | switch the style |
-//! | space | plays and pauses the animation |
-//! | f, c | frames the scene; looks through the file's camera |
-//! | q, Escape | closes |
+//! The viewer: a window that renders a scene and stylizes every frame. [`KEYS`] says what can be done in it.
 
 mod app;
 mod present;
@@ -19,6 +10,17 @@ use winit::event_loop::EventLoop;
 use crate::error::{Error, Result};
 use app::App;
 use viewer::Viewer;
+
+/// What keys and mouse do, for the help of the program.
+pub const KEYS: &str = "\
+Keys and mouse:
+  drag         orbits; with Shift or another button, pans
+  wheel        zooms
+  1, 2, ...    show the style of that number; Tab the next one
+  Space        plays and pauses the animation
+  f            frames the scene
+  c            looks through the file's camera
+  q, Escape    close the window";
 
 /// Opens the window, returns when it is closed, and prints a report of what was shown if asked to.
 ///
