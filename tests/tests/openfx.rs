@@ -66,6 +66,7 @@ const OF_EVERY_EFFECT: &[OfAnEffect] = named! {
     quirks::rows_may_run_downwards_be_padded_and_begin_anywhere,
     quirks::hosts_that_lack_what_can_be_lacked_get_their_pictures,
     quirks::fields_are_rendered_from_their_own_lines,
+    regions::a_source_without_bounds_has_no_seams,
     regions::tiles_from_their_regions_of_interest_equal_the_full_frame,
     regions::the_mask_is_needed_where_it_is_used_and_the_result_covers_the_source,
     render::every_effect_equals_the_c_table_in_every_context_depth_and_component,

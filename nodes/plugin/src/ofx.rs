@@ -167,7 +167,7 @@ fn act_on_effect(
         }
         a if a == kOfxActionInstanceChanged => instance::changed(effect, host, handle, in_args),
         a if a == kOfxImageEffectActionGetRegionOfDefinition => {
-            instance::region_of_definition(host, handle, in_args, out_args)
+            instance::region_of_definition(effect, host, handle, in_args, out_args)
         }
         a if a == kOfxImageEffectActionGetRegionsOfInterest => {
             instance::regions_of_interest(effect, host, handle, in_args, out_args)

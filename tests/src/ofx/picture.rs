@@ -32,6 +32,8 @@ pub struct Layout {
     pub field: &'static CStr,
     /// Whether blue comes first.
     pub blue_first: bool,
+    /// What its clip's region of definition has for bounds, where it has none.
+    pub endless: Option<f64>,
 }
 
 impl Default for Layout {
@@ -49,6 +51,7 @@ impl Default for Layout {
             claimed_scale: 1.0,
             field: kOfxImageFieldNone,
             blue_first: false,
+            endless: None,
         }
     }
 }
@@ -203,6 +206,9 @@ impl Picture {
 
     /// The whole picture's region of definition, canonical.
     pub fn defined(&self) -> OfxRectD {
+        if let Some(far) = self.layout.endless {
+            return OfxRectD { x1: -far, y1: -far, x2: far, y2: far };
+        }
         let y = 1.0 / self.layout.scale;
         let x = y * self.layout.aspect / self.layout.squeeze;
         let [x1, y1, x2, y2] = self.whole.map(f64::from);

@@ -18,6 +18,7 @@ const SHAPES: &[(&CStr, char, i32)] = &[
     (kOfxImageEffectPropRegionOfDefinition, 'd', 4),
     (kOfxImageEffectPropRegionOfInterest, 'd', 4),
     (kOfxImageEffectPropRenderScale, 'd', 2),
+    (kOfxImageEffectPropProjectExtent, 'd', 2),
     (kOfxPropTime, 'd', 1),
     (kOfxImagePropPixelAspectRatio, 'd', 1),
     (kOfxParamPropIncrement, 'd', 4),

@@ -8,6 +8,7 @@ use isophote_tests::ofx::host::Host;
 use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::Binary;
+use isophote_tests::ofx::properties::Value;
 use isophote_tests::ofx::state::Behaviour;
 use std::ffi::CString;
 
@@ -22,8 +23,11 @@ pub fn tiles_from_their_regions_of_interest_equal_the_full_frame(binary: &Binary
     let name = CString::new(format!("{ROI_PREFIX}Source")).unwrap();
     let described = Described::new(&host, effect.plugin(binary));
     let declared = described.descriptor.set.int(kOfxImageEffectPropSupportsTiles).unwrap();
-    let support = Planned::new(&effect.graph(false), Request::new(256, 256)).unwrap().plan().support();
-    let local = support != isophote_engine::Support::Global;
+    // Far from every border of a large picture, a pixel needs no border.
+    let planned = Planned::new(&effect.graph(false), Request::new(8192, 8192)).unwrap();
+    let windows = planned.plan().windows(Rect { x0: 4096, y0: 4096, x1: 4097, y1: 4097 });
+    let inputs = || planned.plan().inputs().iter().map(|port| windows[port.image.index()]);
+    let local = inputs().all(|w| w.x0 > 0 && w.y0 > 0 && w.x1 < 8192 && w.y1 < 8192);
     assert_eq!(declared, i32::from(local), "{}", effect.plugin(binary).identifier());
     for (origin, aspect) in [([0, 0], 1.0), ([-13, 7], 1.0667), ([4, -3], 2.0)] {
         let layout = Layout { origin, aspect, padding: 6, ..Layout::default() };
@@ -78,6 +82,67 @@ pub fn a_host_without_tiles_may_give_parts_all_the_same(binary: &Binary) {
     let (status, tile) = instance.try_render(layout, SIZE, &Wanted::new(window));
     assert_eq!(status, kOfxStatOK);
     assert!(tile.crop(window).packed() == full.crop(window).packed());
+    host.no_faults();
+}
+
+/// A part of a picture that has no end.
+fn plane(layout: Layout, [x1, y1, x2, y2]: [i32; 4]) -> Picture {
+    let pixel = |x: i32, y: i32| {
+        let grain = (x * 7919 + y * 104_729).rem_euclid(97) as f32 / 970.0;
+        let waves = [0.5 + 0.3 * (x as f32 * 0.21).sin(), 0.5 + 0.3 * ((x + y) as f32 * 0.13).cos()];
+        let disc = (x.rem_euclid(60) - 30).pow(2) + (y.rem_euclid(50) - 25).pow(2) < 300;
+        [waves[0], if disc { 0.9 } else { waves[1] }, 0.3 + grain, 1.0]
+    };
+    let rgba: Vec<f32> = (y1..y2).rev().flat_map(|y| (x1..x2).flat_map(move |x| pixel(x, y))).collect();
+    let layout = Layout { origin: [x1, y1], ..layout };
+    Picture::packed_in(layout, x2 - x1, y2 - y1, &packed(&rgba, &layout))
+}
+
+pub fn a_source_without_bounds_has_no_seams(binary: &Binary, effect: Expected) {
+    let host = Host::new(Behaviour::default());
+    let name = CString::new(format!("{ROI_PREFIX}Source")).unwrap();
+    let described = Described::new(&host, effect.plugin(binary));
+    let local = described.descriptor.set.int(kOfxImageEffectPropSupportsTiles).unwrap() != 0;
+    let instance = described.instance(kOfxImageEffectContextFilter);
+    plain(&instance);
+    let extent = SIZE.map(f64::from);
+    instance.effect.set.put(kOfxImageEffectPropProjectExtent, extent.map(Value::from).to_vec());
+    for (endless, aspect) in [(f64::from(i32::MAX), 1.0), (f64::INFINITY, 2.0)] {
+        let layout = Layout { endless: Some(endless), aspect, ..Layout::default() };
+        let render = |window: [i32; 4]| {
+            instance.connect("Source", plane(layout, window));
+            let [x1, y1, x2, y2] = window.map(f64::from);
+            let roi = instance.regions([x1 * aspect, y1, x2 * aspect, y2], 1.0).expect("a region");
+            let roi = roi.numbers(&name);
+            let [x1, y1, x2, y2] =
+                [roi[0] / aspect, roi[1], roi[2] / aspect, roi[3]].map(|v| v.round() as i32);
+            if local {
+                assert!(x1 < window[0] && y1 < window[1] && x2 > window[2] && y2 > window[3], "{roi:?}");
+            }
+            instance.connect("Source", plane(layout, [x1, y1, x2, y2]));
+            let (status, picture) = instance.try_render(layout, SIZE, &Wanted::new(window));
+            assert_eq!(status, kOfxStatOK);
+            picture
+        };
+        let width = if local { SIZE[0] } else { (extent[0] / aspect).ceil() as i32 };
+        let full = render([0, 0, width, SIZE[1]]);
+        for window in [[0, 0, 31, 20], [31, 20, width.min(64), SIZE[1]]] {
+            let tile = render(window);
+            assert!(
+                tile.crop(window).packed() == full.crop(window).packed(),
+                "{} at {window:?}, {aspect}",
+                effect.plugin(binary).identifier()
+            );
+        }
+        // The result has no end either, unless the effect needs one.
+        let (args, answer) = (instance.args(), instance.args());
+        args.put(kOfxPropTime, vec![0.0.into()]);
+        let status = instance.act(kOfxImageEffectActionGetRegionOfDefinition, Some(&args), Some(&answer));
+        assert_eq!(status, kOfxStatOK);
+        let wanted =
+            if local { [-endless, -endless, endless, endless] } else { [0.0, 0.0, extent[0], extent[1]] };
+        assert_eq!(answer.numbers(kOfxImageEffectPropRegionOfDefinition), wanted);
+    }
     host.no_faults();
 }
 

@@ -108,6 +108,19 @@ pub struct Effect {
     pub local: bool,
 }
 
+/// Side of a picture that is larger than a tile, in pixels.
+const LARGE: u32 = 8192;
+
+/// Whether a tile needs only the pixels around it. A pyramid up to one pixel reaches as far as its picture does,
+/// which is far enough to be everything.
+///
+/// # Errors
+/// What planning fails with.
+pub fn is_local(graph: &Graph) -> isophote::Result<bool> {
+    let planned = Planned::new(graph, Request::new(LARGE, LARGE))?;
+    Ok(matches!(planned.plan().support(), Support::Pixels(halo) if halo < LARGE / 2))
+}
+
 /// All effects, in the order of the catalogue.
 pub static EFFECTS: LazyLock<Vec<Effect>> =
     LazyLock::new(|| isophote::registry::nodes().iter().filter_map(|node| Effect::of(node)).collect());
@@ -159,8 +172,7 @@ impl Effect {
         };
         effect.add_controls();
         let (graph, _) = effect.graph(false).ok()?;
-        let planned = Planned::new(&graph, Request::new(256, 256)).ok()?;
-        effect.local = planned.plan().support() != Support::Global;
+        effect.local = is_local(&graph).ok()?;
         Some(effect)
     }
 

@@ -24,6 +24,12 @@ pub struct Frame {
 const ROUNDING: f64 = 1e-3;
 /// Pixels are square up to this factor between their sides: proxies have whole numbers of rows and columns.
 const SQUARE: f64 = 1.01;
+/// A side of a region that lies farther out (canonical) has no bound. Hosts write infinities, the greatest
+/// float, the greatest integer or a million.
+const ENDLESS: f64 = 500_000.0;
+/// Where the picture ends on a side without a bound (canonical): farther out than hosts render, near enough for
+/// positions in floats to be exact to a hundredth of a pixel.
+const REACH: f64 = 16_384.0;
 
 impl Frame {
     /// The frame of a clip with the region of definition `defined` (canonical), rendered at `scale`, with
@@ -36,6 +42,7 @@ impl Frame {
         bounds: Option<Bounds>,
     ) -> Option<Self> {
         let mut ratio = [scale[0] / par, scale[1]];
+        let endless = defined.as_ref().is_some_and(is_endless);
         let rounded = defined.and_then(|region| to_pixels(&region, ratio));
         let picture = match (rounded, bounds) {
             (Some(picture), None) => picture,
@@ -51,7 +58,7 @@ impl Frame {
                     beyond <= 1
                 });
                 // Hosts without tiles have been seen to give parts as well; a part is not shaped like the whole.
-                let part = near && (host.tiles || !is_smaller_whole(&picture, &bounds));
+                let part = near && (host.tiles || endless || !is_smaller_whole(&picture, &bounds));
                 if part {
                     // The image is a part of the picture, or the picture itself with other rounding.
                     if (0..4).all(|i| picture[i].abs_diff(bounds[i]) <= 1) { bounds } else { picture }
@@ -61,6 +68,7 @@ impl Frame {
                     let widths = [picture, bounds].map(|b| f64::from(b[2]) - f64::from(b[0]));
                     let share = widths[1] / widths[0].max(1.0);
                     if scale == [1.0; 2]
+                        && !endless
                         && !(0.98..=1.02).contains(&share)
                         && share.is_finite()
                         && share > 0.0
@@ -133,8 +141,30 @@ fn is_smaller_whole(picture: &Bounds, bounds: &Bounds) -> bool {
     (0..4).all(|i| (f64::from(picture[i]) * share - f64::from(bounds[i])).abs() <= 1.0)
 }
 
-/// The pixels that a region touches; `None` when it is empty or has no end.
+/// Whether a region has a side without a bound.
+pub fn is_endless(region: &OfxRectD) -> bool {
+    let OfxRectD { x1, y1, x2, y2 } = *region;
+    [x1, y1, x2, y2].iter().any(|side| side.abs() > ENDLESS)
+}
+
+/// The region with the sides of `within` where it has no bound.
+pub fn bounded(region: &OfxRectD, within: &OfxRectD) -> OfxRectD {
+    let side = |side: f64, bound: f64| if side.abs() > ENDLESS { bound } else { side };
+    OfxRectD {
+        x1: side(region.x1, within.x1),
+        y1: side(region.y1, within.y1),
+        x2: side(region.x2, within.x2),
+        y2: side(region.y2, within.y2),
+    }
+}
+
+/// The pixels that a region touches; `None` when it is empty. Sides without a bound are put where no tile
+/// moves them, so that tiles are parts of one picture.
 fn to_pixels(region: &OfxRectD, ratio: [f64; 2]) -> Option<Bounds> {
+    // Halved until the picture is one that the engine can have.
+    let most = f64::from(MAX_SIDE / 2) / ratio[0].max(ratio[1]);
+    let reach = REACH * (most / REACH).log2().floor().min(0.0).exp2();
+    let region = bounded(region, &OfxRectD { x1: -reach, y1: -reach, x2: reach, y2: reach });
     let low = |v: f64, r: f64| (v * r + ROUNDING).floor();
     let high = |v: f64, r: f64| (v * r - ROUNDING).ceil();
     let sides = [
@@ -161,8 +191,26 @@ mod tests {
         }
         assert_eq!(frame.inside([-3, 44, -2, 45]), Rect { x0: 0, y0: 0, x1: 1, y1: 1 });
         assert_eq!(frame.inside([-100, -100, 100, 100]), Rect::of_size(64, 40));
-        let endless = OfxRectD { x1: f64::NEG_INFINITY, y1: 0.0, x2: 4.0, y2: 4.0 };
-        assert_eq!(frame.pixels(&endless), None);
+        let empty = OfxRectD { x1: 4.0, y1: 0.0, x2: 4.0, y2: 4.0 };
+        assert_eq!(frame.pixels(&empty), None);
+    }
+
+    #[test]
+    fn a_side_without_a_bound_is_put_where_every_tile_finds_it() {
+        let most = f64::from(i32::MAX);
+        for (low, high) in
+            [(-most - 1.0, most), (f64::NEG_INFINITY, f64::INFINITY), (-1e6, 1e6), (f64::MIN, f64::MAX)]
+        {
+            let all = OfxRectD { x1: low, y1: low, x2: high, y2: high };
+            assert!(is_endless(&all));
+            assert_eq!(to_pixels(&all, [1.0; 2]), Some([-16384, -16384, 16384, 16384]));
+            assert_eq!(to_pixels(&all, [0.25, 0.5]), Some([-4096, -8192, 4096, 8192]));
+            // No picture has more pixels on a side than the engine's may.
+            assert_eq!(to_pixels(&all, [64.0, 1.0]), Some([-32768, -512, 32768, 512]));
+            let above = OfxRectD { x1: 5.0, y1: 7.0, x2: 90.0, y2: high };
+            assert_eq!(to_pixels(&above, [1.0; 2]), Some([5, 7, 90, 16384]));
+        }
+        assert!(!is_endless(&OfxRectD { x1: -7680.0, y1: 0.0, x2: 60_000.0, y2: 4.0 }));
     }
 
     #[test]

@@ -2,14 +2,14 @@
 
 use super::describe::{MASK, OUTPUT, SOURCE, guide_clip};
 use super::effects::Effect;
-use super::frame::Frame;
+use super::frame::{Frame, bounded, is_endless};
 use super::host::{Host, Outcome, Properties};
 use super::image::Clip;
 use super::interface::*;
 use super::memory::{LEAST_ROWS, WORKING_MEMORY};
 use super::pixel_aspect::SquarePixels;
 use super::settings::Settings;
-use isophote::engine::{Plan, Rect, Support};
+use isophote::engine::{Plan, Rect};
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
 use isophote::{ColourSpace, Graph, Planned, Request};
@@ -117,14 +117,48 @@ fn least_memory(plan: &Plan) -> u64 {
     plan.peak_bytes(&plan.windows(Rect { y0: middle, y1: middle + rows, ..all }))
 }
 
+/// The region of definition of a clip, as far as it can be computed. An effect that looks at the whole picture
+/// takes the project for it where the clip has no bounds; `None` where the host names none either.
+///
+/// # Errors
+/// Failed, when the graph cannot be planned.
+pub fn defined(
+    host: &Host,
+    instance: Handle,
+    clip: &Clip<'_>,
+    time: f64,
+    settings: &Settings,
+) -> Outcome<Option<OfxRectD>> {
+    let Some(region) = clip.defined(time) else { return Ok(None) };
+    if !is_endless(&region) || settings.is_local()? {
+        return Ok(Some(region));
+    }
+    let extent = host.effect(instance).doubles::<2>(kOfxImageEffectPropProjectExtent);
+    let project = extent.map(|[x2, y2]| OfxRectD { x1: 0.0, y1: 0.0, x2, y2 });
+    Ok(project.map(|project| bounded(&region, &project)))
+}
+
 /// The region of definition: the source's, whatever else is connected.
 ///
 /// # Errors
-/// None; the host's default counts where the source has no region.
-pub fn region_of_definition(host: &Host, instance: Handle, in_args: Handle, out_args: Handle) -> Outcome {
+/// Failed, when the host has no parameters; the host's default counts where the source has no region.
+pub fn region_of_definition(
+    effect: &Effect,
+    host: &Host,
+    instance: Handle,
+    in_args: Handle,
+    out_args: Handle,
+) -> Outcome {
     let moment = Moment::of(host.set(in_args));
-    let defined = Clip::of(host, instance, SOURCE).and_then(|clip| clip.defined(moment.time));
-    let Some(OfxRectD { x1, y1, x2, y2 }) = defined else { return Ok(kOfxStatReplyDefault) };
+    let Some(source) = Clip::of(host, instance, SOURCE) else { return Ok(kOfxStatReplyDefault) };
+    let region = match source.defined(moment.time).filter(is_endless) {
+        Some(_) => {
+            let settings = Settings::read(effect, host, instance, moment.time)?;
+            defined(host, instance, &source, moment.time, &settings)?
+        }
+        None => source.defined(moment.time),
+    };
+    let Some(OfxRectD { x1, y1, x2, y2 }) = region else { return Ok(kOfxStatReplyDefault) };
     let answered = host.set(out_args).set_doubles(kOfxImageEffectPropRegionOfDefinition, &[x1, y1, x2, y2]);
     Ok(if answered { kOfxStatOK } else { kOfxStatReplyDefault })
 }
@@ -143,7 +177,9 @@ pub fn regions_of_interest(
     let (args, answer) = (host.set(in_args), host.set(out_args));
     let moment = Moment::of(args);
     let Some(source) = Clip::of(host, instance, SOURCE) else { return Ok(kOfxStatReplyDefault) };
-    let frame = Frame::new(host, source.defined(moment.time), moment.scale, source.aspect(), None);
+    let settings = Settings::read(effect, host, instance, moment.time)?;
+    let defined = defined(host, instance, &source, moment.time, &settings)?;
+    let frame = Frame::new(host, defined, moment.scale, source.aspect(), None);
     let wanted = args.doubles::<4>(kOfxImageEffectPropRegionOfInterest).map(|[x1, y1, x2, y2]| OfxRectD {
         x1,
         y1,
@@ -151,7 +187,6 @@ pub fn regions_of_interest(
         y2,
     });
     let (Some(frame), Some(wanted)) = (frame, wanted) else { return Ok(kOfxStatReplyDefault) };
-    let settings = Settings::read(effect, host, instance, moment.time)?;
     let Some(bounds) = frame.pixels(&wanted) else { return Ok(kOfxStatReplyDefault) };
     let region = frame.inside(bounds);
     if region.is_empty() || settings.is_identity(frame.scale) {
@@ -266,9 +301,7 @@ pub fn is_identity(
 pub fn changed(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -> Outcome {
     let moment = Moment::of(host.set(in_args));
     let settings = Settings::read(effect, host, instance, moment.time)?;
-    let planned = Planned::new(&settings.graph, Request::new(256, 256)).map_err(|_| kOfxStatFailed)?;
-    let local = planned.plan().support() != Support::Global;
-    host.effect(instance).set_int(kOfxImageEffectPropSupportsTiles, local.into());
+    host.effect(instance).set_int(kOfxImageEffectPropSupportsTiles, settings.is_local()?.into());
     Ok(kOfxStatOK)
 }
 

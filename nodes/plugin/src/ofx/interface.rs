@@ -118,6 +118,7 @@ strings! {
     kOfxImageClipPropFieldExtraction = c"OfxImageClipPropFieldExtraction";
     kOfxImageClipPropFieldOrder = c"OfxImageClipPropFieldOrder";
 
+    kOfxImageEffectPropProjectExtent = c"OfxImageEffectPropProjectExtent";
     kOfxImageEffectPropRenderScale = c"OfxImageEffectPropRenderScale";
     kOfxImageEffectPropRenderWindow = c"OfxImageEffectPropRenderWindow";
     kOfxImageEffectPropFieldToRender = c"OfxImageEffectPropFieldToRender";

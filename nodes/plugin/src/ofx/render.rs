@@ -60,9 +60,9 @@ pub fn render(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -
         return clear(host, &output, window).map(|()| kOfxStatOK);
     };
     let aspect = source.aspect.unwrap_or_else(|| clip.aspect());
-    let frame = Frame::new(host, clip.defined(moment.time), moment.scale, aspect, Some(source.bounds))
-        .ok_or(kOfxStatFailed)?;
     let mut settings = Settings::read(effect, host, instance, moment.time)?;
+    let defined = instance::defined(host, instance, &clip, moment.time, &settings)?;
+    let frame = Frame::new(host, defined, moment.scale, aspect, Some(source.bounds)).ok_or(kOfxStatFailed)?;
     if let Some(name) = clip.properties.string(kOfxImageClipPropColourspace, 0) {
         settings.space = settings.space_of(&name);
     }

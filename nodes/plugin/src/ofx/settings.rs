@@ -1,7 +1,7 @@
 //! The values of an instance's controls at one time, as a graph. Read when they are needed and never
 //! kept, since hosts change them without a word.
 
-use super::effects::{AS_IS, Effect, Form, SPACES, Target};
+use super::effects::{self, AS_IS, Effect, Form, SPACES, Target};
 use super::host::{Host, Outcome};
 use super::interface::*;
 use isophote::spec::{Param, Unit};
@@ -85,6 +85,14 @@ impl Settings {
             b"ofx_scene_linear" if self.space == ColourSpace::Srgb => ColourSpace::Linear,
             _ => self.space,
         }
+    }
+
+    /// Whether a tile needs only the pixels around it.
+    ///
+    /// # Errors
+    /// Failed, when the graph cannot be planned.
+    pub fn is_local(&self) -> Outcome<bool> {
+        effects::is_local(&self.graph).map_err(|_| kOfxStatFailed)
     }
 
     /// Whether the values leave a picture that is rendered at `scale` as it is.
