@@ -50,6 +50,7 @@ const OF_THE_BINARY: &[OfTheBinary] = named! {
     regions::a_host_without_tiles_may_give_parts_all_the_same,
     regions::regions_shrink_with_the_scale,
     render::the_colour_space_that_a_host_names_counts,
+    render::a_host_that_returns_before_its_threads_gets_the_same_pixels,
     render::unknown_depths_are_refused,
 };
 

@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::ffi::{CStr, c_int};
 use std::sync::atomic::{AtomicI32, AtomicU32};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
+use std::thread::JoinHandle;
 
 /// Locks, also after a test has failed.
 pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -25,6 +26,8 @@ pub struct Behaviour {
     pub half: bool,
     /// Processors of its multi-thread suite; 0 for a host without the suite.
     pub processors: u32,
+    /// Whether its multi-thread suite returns while its threads still have to begin.
+    pub returns_early: bool,
     /// Whether the multi-thread suite and the message suite consist of null functions.
     pub null_functions: bool,
     /// Whether a text that was asked for is destroyed at the next call.
@@ -50,6 +53,7 @@ impl Default for Behaviour {
             tiles: true,
             half: true,
             processors: 0,
+            returns_early: false,
             null_functions: false,
             strings_die: false,
             all_connected: false,
@@ -83,6 +87,8 @@ pub struct Inner {
     pub asked: AtomicU32,
     /// Runs of its multi-thread suite.
     pub runs: AtomicU32,
+    /// Threads that were left running.
+    pub(super) late: Mutex<Vec<JoinHandle<()>>>,
     /// Messages that it shows.
     pub messages: Mutex<Vec<String>>,
     /// What its plugins did against the standard.
@@ -106,10 +112,20 @@ impl Inner {
             lent: AtomicI32::new(0),
             asked: AtomicU32::new(0),
             runs: AtomicU32::new(0),
+            late: Mutex::default(),
             messages: Mutex::default(),
             faults: Mutex::default(),
             suites: OnceLock::new(),
         }
+    }
+
+    /// Waits for the threads that were left running, and says how many there were.
+    ///
+    /// # Panics
+    /// When one did.
+    pub fn wait(&self) -> usize {
+        let late = std::mem::take(&mut *lock(&self.late));
+        late.into_iter().map(|thread| thread.join().expect("a thread ends well")).count()
     }
 
     /// Notes that the plugin broke a rule.

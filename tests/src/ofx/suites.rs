@@ -10,6 +10,7 @@ use std::ffi::{c_char, c_int, c_uint, c_void};
 use std::process::Command;
 use std::sync::OnceLock;
 use std::sync::atomic::Ordering;
+use std::time::Duration;
 
 /// The structures that a host gives out.
 #[derive(Debug)]
@@ -403,14 +404,27 @@ const EFFECTS: OfxImageEffectSuiteV1 = OfxImageEffectSuiteV1 {
 
 // ----- threads -----
 
+/// How long threads that are left running take to begin.
+const LATE: Duration = Duration::from_millis(2);
+
 thread_local! {
     static SPAWNED: Cell<bool> = const { Cell::new(false) };
 }
 
+#[derive(Clone, Copy)]
 struct Argument(*mut c_void);
+
+impl Argument {
+    /// The argument, as it was given.
+    fn get(self) -> *mut c_void {
+        self.0
+    }
+}
 
 // SAFETY: the plugin gives it to be used by several threads.
 unsafe impl Sync for Argument {}
+// SAFETY: as above.
+unsafe impl Send for Argument {}
 
 unsafe extern "C" fn multi_thread(
     work: Option<ThreadFunction>,
@@ -428,6 +442,18 @@ unsafe extern "C" fn multi_thread(
         host.runs.fetch_add(1, Ordering::SeqCst);
     }
     let argument = Argument(argument);
+    if let Some(host) = host.as_ref().filter(|host| host.behaviour.returns_early) {
+        let begin_late = |index| {
+            std::thread::spawn(move || {
+                SPAWNED.set(true);
+                std::thread::sleep(LATE);
+                // SAFETY: the plugin's function; that it is called late is what such a host does.
+                unsafe { work(index, threads, argument.get()) };
+            })
+        };
+        lock(&host.late).extend((0..threads).map(begin_late));
+        return kOfxStatOK;
+    }
     std::thread::scope(|scope| {
         for index in 0..threads {
             let (argument, host) = (&argument, &host);
@@ -435,7 +461,7 @@ unsafe extern "C" fn multi_thread(
                 SPAWNED.set(true);
                 host.iter().for_each(state::enter);
                 // SAFETY: the plugin's function, called as the standard has it.
-                unsafe { work(index, threads, argument.0) };
+                unsafe { work(index, threads, argument.get()) };
             });
         }
     });

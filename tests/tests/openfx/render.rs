@@ -319,6 +319,24 @@ pub fn the_threads_of_the_host_give_the_same_pixels(binary: &Binary, effect: Exp
     assert!(render(1, false).0 == alone && render(0, true).0 == alone);
 }
 
+pub fn a_host_that_returns_before_its_threads_gets_the_same_pixels(binary: &Binary) {
+    let layout = Layout::default();
+    let render = |processors, returns_early| {
+        let host = Host::new(Behaviour { processors, returns_early, ..Behaviour::default() });
+        let described = Described::new(&host, binary.plugin("org.isophote.cartoon"));
+        let instance = described.instance(kOfxImageEffectContextFilter);
+        instance.connect("Source", source(layout, true));
+        let pictures: Vec<_> = (0..4).map(|_| instance.render(layout, SIZE).packed()).collect();
+        let late = host.inner.wait();
+        host.no_faults();
+        (pictures, late)
+    };
+    let (alone, _) = render(0, false);
+    let (got, late) = render(3, true);
+    assert!(late > 0, "no thread was left running");
+    assert!(got == alone);
+}
+
 pub fn twelve_renders_on_four_threads_are_the_same(binary: &Binary, effect: Expected) {
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();

@@ -1,16 +1,19 @@
 //! Threads for a frame: the host's own by its multi-thread suite, else the library's pool.
 //!
 //! The suite runs one function on several threads; which job each takes is decided here. What a host
-//! leaves out, runs twice or refuses is made good by the batches of [`crate::abi::threads`].
+//! leaves out, runs twice, runs late or refuses is made good by the batches of [`crate::abi::threads`].
 
 use super::host::Host;
 use super::interface::*;
 use crate::abi::contract::IsophoteJob;
+use crate::abi::guard::lock;
 use crate::abi::threads::{self, HostThreads, User};
 use isophote::engine::cpu::{CallingThread, Pool, Threads};
+use std::collections::HashMap;
 use std::ffi::{c_uint, c_void};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::ptr::without_provenance_mut;
+use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
+use std::sync::{Arc, LazyLock, Mutex};
 
 /// The host's functions, where they live while a frame is rendered.
 pub struct Suite {
@@ -72,19 +75,27 @@ struct Batch {
     batch: u64,
 }
 
+/// The batches that hosts have, by the number that their threads are given for an argument. The standard has a
+/// host return after all its threads have; the threads of one that does not find no batch, where a pointer would
+/// lead to memory that is something else by now.
+static BATCHES: LazyLock<Mutex<HashMap<usize, Arc<Batch>>>> = LazyLock::new(Mutex::default);
+static NEXT: AtomicUsize = AtomicUsize::new(1);
+
 unsafe extern "C" fn run_batch(user: *mut c_void, jobs: u32, job: IsophoteJob, batch: u64) {
     // SAFETY: `user` is the suite that `FrameThreads::of` boxed, which lives as long as the threads.
     let suite = unsafe { &*user.cast::<Suite>() };
-    let work = Batch { next: AtomicU32::new(0), jobs, job, batch };
+    let number = NEXT.fetch_add(1, Ordering::Relaxed);
+    lock(&BATCHES).insert(number, Arc::new(Batch { next: AtomicU32::new(0), jobs, job, batch }));
     let count = suite.count.min(jobs.max(1));
     // A host that refuses leaves everything to the caller, who does what was left out.
-    // SAFETY: the standard has the function return after all its threads have.
-    unsafe { (suite.run)(Some(work_off), count, (&raw const work).cast_mut().cast()) };
+    // SAFETY: a function of the host's, one of ours that takes any argument, and a number in its place.
+    unsafe { (suite.run)(Some(work_off), count, without_provenance_mut(number)) };
+    lock(&BATCHES).remove(&number);
 }
 
 unsafe extern "C" fn work_off(_: c_uint, _: c_uint, work: *mut c_void) {
-    // SAFETY: the batch of `run_batch`, which waits for this thread.
-    let work = unsafe { &*work.cast::<Batch>() };
+    let found = lock(&BATCHES).get(&work.addr()).cloned();
+    let Some(work) = found else { return };
     let Some(job) = work.job else { return };
     loop {
         let index = work.next.fetch_add(1, Ordering::Relaxed);
