@@ -2,7 +2,7 @@
 //!
 //! Its worker threads and their thread-locals, and those of the graphics drivers it loads, would run
 //! code that `dlclose` had taken away. With `-z nodelete` unloading and loading again is safe, and
-//! gives the same library.
+//! gives the same library. Linkers for Windows have no such flag; `src/pinned.rs` does it there.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

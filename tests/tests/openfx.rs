@@ -6,6 +6,8 @@
 
 #[path = "openfx/aspect.rs"]
 mod aspect;
+#[path = "openfx/controls.rs"]
+mod controls;
 #[path = "openfx/describe.rs"]
 mod describe;
 #[path = "openfx/memory.rs"]
@@ -41,6 +43,9 @@ type OfAnEffect = (&'static str, fn(&Binary, Expected));
 
 /// What holds for the binary, whatever its effects.
 const OF_THE_BINARY: &[OfTheBinary] = named! {
+    controls::tiles_are_supported_as_saved_values_say,
+    controls::another_time_is_no_edit,
+    controls::hosts_without_a_window_are_not_told_of_controls,
     describe::every_node_that_can_be_an_effect_is_one,
     describe::the_working_space_follows_the_host,
     describe::hosts_that_manage_colours_are_asked_for_the_working_space,
@@ -59,6 +64,8 @@ const OF_EVERY_EFFECT: &[OfAnEffect] = named! {
     aspect::oblong_pixels_show_what_square_ones_show,
     aspect::guides_have_oblong_pixels_too,
     aspect::alpha_and_masks_are_those_of_the_hosts_pixels,
+    controls::what_is_grey_has_no_effect,
+    controls::controls_become_usable_with_what_they_need,
     describe::descriptors_say_what_the_standard_asks_for,
     describe::clips_are_source_and_output_and_in_general_a_mask_and_guides,
     describe::controls_are_the_parameters_of_the_nodes,

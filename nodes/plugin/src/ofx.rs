@@ -5,6 +5,7 @@
 //! runs the plan. Nothing is kept between calls but the host's functions, so that any action may come on any
 //! thread, in any number.
 
+mod controls;
 mod describe;
 mod effects;
 mod faults;
@@ -160,12 +161,12 @@ fn act_on_effect(
             describe::in_context(effect, host, handle, in_args)
         }
         // Nothing is kept for an instance but whether it shows a message.
-        a if a == kOfxActionCreateInstance => Ok(kOfxStatOK),
+        a if a == kOfxActionCreateInstance => controls::created(effect, host, handle),
         a if a == kOfxActionDestroyInstance => {
             host.clear_message(handle);
             Ok(kOfxStatOK)
         }
-        a if a == kOfxActionInstanceChanged => instance::changed(effect, host, handle, in_args),
+        a if a == kOfxActionInstanceChanged => controls::changed(effect, host, handle, in_args),
         a if a == kOfxImageEffectActionGetRegionOfDefinition => {
             instance::region_of_definition(effect, host, handle, in_args, out_args)
         }
@@ -230,6 +231,7 @@ static PLUGINS: LazyLock<Plugins> = LazyLock::new(|| {
 // SAFETY: the standard claims the name for this function.
 #[unsafe(no_mangle)]
 pub extern "C" fn OfxGetNumberOfPlugins() -> c_int {
+    crate::pinned::pin();
     catch_unwind(|| PLUGINS.0.len() as c_int).unwrap_or(0)
 }
 
@@ -237,6 +239,7 @@ pub extern "C" fn OfxGetNumberOfPlugins() -> c_int {
 // SAFETY: the standard claims the name for this function.
 #[unsafe(no_mangle)]
 pub extern "C" fn OfxGetPlugin(nth: c_int) -> *const OfxPlugin {
+    crate::pinned::pin();
     let find = || usize::try_from(nth).ok().and_then(|n| PLUGINS.0.get(n)).map_or(null(), |p| &raw const *p);
     catch_unwind(find).unwrap_or(null())
 }

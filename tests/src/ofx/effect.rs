@@ -72,16 +72,27 @@ impl<'h> Described<'h> {
     /// # Panics
     /// When it cannot be created.
     pub fn instance(&self, context: &CStr) -> Instance<'h> {
+        self.saved_instance(context, &[])
+    }
+
+    /// An instance as a project saved it: with values that it has before it is created, by their names.
+    ///
+    /// # Panics
+    /// When it cannot be created.
+    pub fn saved_instance(&self, context: &CStr, saved: &[(&str, Value)]) -> Instance<'h> {
         let described = self.in_context(context);
         let effect = Effect::new(&self.host.inner, true);
         effect.set.put(kOfxImageEffectPropContext, vec![context.into()]);
         for param in lock(&described.params).iter() {
+            let saved = saved.iter().find(|(name, _)| *name == param.name.to_string_lossy());
+            let value = saved.map_or_else(|| param.set.get(kOfxParamPropDefault), |(_, v)| vec![v.clone()]);
             let mut new = Box::new(Param {
                 magic: MAGIC,
                 kind: param.kind.clone(),
                 name: param.name.clone(),
                 set: Set::new(&self.host.inner, "parameter"),
-                value: Mutex::new(param.set.get(kOfxParamPropDefault)),
+                value: Mutex::new(value),
+                keys: Mutex::default(),
             });
             new.set = param.set.copy("parameter", handle_of(&*new) as usize);
             lock(&effect.params).push(new);
@@ -166,10 +177,43 @@ impl Instance<'_> {
     /// # Panics
     /// When there is none of this name.
     pub fn set(&self, name: &str, value: impl Into<Value>) {
+        self.with(name, |param| *lock(&param.value) = vec![value.into()]);
+    }
+
+    /// Animates a parameter: the values that it has from a time on, in the order of time.
+    ///
+    /// # Panics
+    /// When there is none of this name.
+    pub fn animate(&self, name: &str, keys: Vec<(f64, Value)>) {
+        self.with(name, |param| *lock(&param.keys) = keys);
+    }
+
+    /// Whether the control of a parameter can be used, and is not grey.
+    ///
+    /// # Panics
+    /// When there is none of this name.
+    pub fn is_enabled(&self, name: &str) -> bool {
+        self.with(name, |param| param.set.int(kOfxParamPropEnabled) != Some(0))
+    }
+
+    fn with<T>(&self, name: &str, act: impl FnOnce(&Param) -> T) -> T {
         let params = lock(&self.effect.params);
         let param = params.iter().find(|p| p.name.to_string_lossy() == name);
-        let param = param.unwrap_or_else(|| panic!("{} has no {name}", self.plugin.identifier()));
-        *lock(&param.value) = vec![value.into()];
+        act(param.unwrap_or_else(|| panic!("{} has no {name}", self.plugin.identifier())))
+    }
+
+    /// Says that something changed: of which type, and why.
+    ///
+    /// # Panics
+    /// When the plugin does not take it.
+    pub fn changed(&self, what: &CStr, reason: &CStr, time: f64) {
+        let args = self.args();
+        args.put(kOfxPropType, vec![what.into()]);
+        args.put(kOfxPropChangeReason, vec![reason.into()]);
+        args.put(kOfxPropTime, vec![time.into()]);
+        args.put(kOfxImageEffectPropRenderScale, vec![1.0.into(); 2]);
+        let status = self.act(kOfxActionInstanceChanged, Some(&args), None);
+        assert_eq!(status, kOfxStatOK, "InstanceChanged of {}", self.plugin.identifier());
     }
 
     /// Sets a property of the clip of this name.

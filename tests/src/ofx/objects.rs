@@ -21,6 +21,8 @@ pub struct Param {
     /// Its properties.
     pub set: Box<Set>,
     pub(super) value: Mutex<Vec<Value>>,
+    /// Values from a time on, in the order of time; without any, `value` holds at all times.
+    pub(super) keys: Mutex<Vec<(f64, Value)>>,
 }
 
 /// A clip, described or with a picture.

@@ -48,6 +48,8 @@ const SHAPES: &[(&CStr, char, i32)] = &[
     (kOfxImageClipPropIsMask, 'i', 1),
     (kOfxImageClipPropConnected, 'i', 1),
     (kOfxParamPropAnimates, 'i', 1),
+    (kOfxParamPropEnabled, 'i', 1),
+    (kOfxImageEffectHostPropIsBackground, 'i', 1),
     (kOfxParamPropDigits, 'i', 1),
     (kOfxParamPropGroupOpen, 'i', 1),
 ];

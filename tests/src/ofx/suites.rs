@@ -157,9 +157,15 @@ unsafe extern "C" fn count_of(param: *mut c_void) -> c_int {
     if param.magic == MAGIC && param.kind.as_c_str() == kOfxParamTypeRGBA { 4 } else { 1 }
 }
 
-unsafe extern "C" fn get_value(param: *mut c_void, _: f64, count: c_int, places: *mut *mut c_void) -> c_int {
+unsafe extern "C" fn get_value(
+    param: *mut c_void,
+    time: f64,
+    count: c_int,
+    places: *mut *mut c_void,
+) -> c_int {
     let param = thing!(param, Param, "paramGetValue");
-    let values = lock(&param.value);
+    let keyed = lock(&param.keys).iter().rev().find(|(from, _)| *from <= time).map(|(_, v)| vec![v.clone()]);
+    let values = keyed.unwrap_or_else(|| lock(&param.value).clone());
     for (index, value) in values.iter().enumerate().take(count as usize) {
         // SAFETY: the plugin gave as many places of the parameter's type, of which the standard has ints and
         // doubles here.
@@ -219,7 +225,8 @@ unsafe extern "C" fn param_define(
     }
     let set = Set::new(&effect.host, "descriptor");
     let handle = set.handle();
-    params.push(Box::new(Param { magic: MAGIC, kind, name, set, value: Default::default() }));
+    let (value, keys) = Default::default();
+    params.push(Box::new(Param { magic: MAGIC, kind, name, set, value, keys }));
     // SAFETY: the plugin gave a place, or null.
     if let Some(place) = unsafe { place.as_mut() } {
         *place = handle;
@@ -255,6 +262,13 @@ unsafe extern "C" fn param_handle(
     kOfxStatOK
 }
 
+unsafe extern "C" fn param_keys(param: Handle, place: *mut c_uint) -> OfxStatus {
+    let param = thing!(param, Param, "paramGetNumKeys");
+    // SAFETY: the plugin gave a place.
+    unsafe { place.write(lock(&param.keys).len() as c_uint) };
+    kOfxStatOK
+}
+
 const PARAMS: OfxParameterSuiteV1 = OfxParameterSuiteV1 {
     paramDefine: Some(param_define),
     paramGetHandle: Some(param_handle),
@@ -266,7 +280,7 @@ const PARAMS: OfxParameterSuiteV1 = OfxParameterSuiteV1 {
     paramGetIntegral: None,
     paramSetValue: None,
     paramSetValueAtTime: None,
-    paramGetNumKeys: None,
+    paramGetNumKeys: Some(param_keys),
     paramGetKeyTime: None,
     paramGetKeyIndex: None,
     paramDeleteKey: None,

@@ -7,5 +7,6 @@ use super::contract::{ISOPHOTE_ABI_VERSION, IsophoteApi};
 // SAFETY: the name is claimed by nothing else, as every name that begins with `isophote_`.
 #[unsafe(no_mangle)]
 pub extern "C" fn isophote_api(abi_version: u32) -> *const IsophoteApi {
+    crate::pinned::pin();
     if abi_version == ISOPHOTE_ABI_VERSION { (&raw const super::API).cast() } else { std::ptr::null() }
 }

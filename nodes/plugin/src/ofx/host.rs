@@ -34,6 +34,8 @@ pub struct Host {
     pub quirks: Quirks,
     /// Whether images may hold only a part of the picture.
     pub tiles: bool,
+    /// Whether nobody looks at controls.
+    pub background: bool,
     /// Whether half floats may be offered.
     pub half: bool,
 }
@@ -74,16 +76,19 @@ impl Host {
                 showing: Mutex::default(),
                 quirks: Quirks::default(),
                 tiles: true,
+                background: false,
                 half: false,
             }
         };
         let about = found.set(host.host);
         let quirks = Quirks::of(&about.string(kOfxPropName, 0).unwrap_or_default());
         let tiles = about.int(kOfxImageEffectPropSupportsTiles, 0) != Some(0);
+        let background = about.int(kOfxImageEffectHostPropIsBackground, 0) == Some(1);
         let half = (0..8).any(|i| {
             about.string(kOfxImageEffectPropSupportedPixelDepths, i).as_deref() == Some(kOfxBitDepthHalf)
         });
         (found.quirks, found.tiles, found.half) = (quirks, tiles, half);
+        found.background = background;
         Ok(found)
     }
 

@@ -192,9 +192,7 @@ pub fn regions_of_interest(
     if region.is_empty() || settings.is_identity(frame.scale) {
         return Ok(kOfxStatReplyDefault);
     }
-    let open = |name: &CStr| Clip::of(host, instance, name).is_none_or(|clip| clip.is_open());
-    let has = |guide| effect.guides.contains(&guide) && guide_clip(guide).is_some_and(|name| !open(name));
-    let guides = Guides { normal: has(GraphInput::Normal), depth: has(GraphInput::Depth), object_id: false };
+    let guides = connected_guides(effect, host, instance);
     let prepared = Prepared::new(&settings, &frame, true, guides).map_err(|_| kOfxStatFailed)?;
     let windows = prepared.windows(region);
     // The first and last line of a field have neighbours in the other field.
@@ -209,10 +207,22 @@ pub fn regions_of_interest(
             None => {}
         }
     }
-    if !open(MASK) {
+    if is_connected(host, instance, MASK) {
         interest.add(MASK, region);
     }
     Ok(if interest.answered { kOfxStatOK } else { kOfxStatReplyDefault })
+}
+
+/// Whether the instance has a clip of this name, and the host does not say that it is open.
+pub fn is_connected(host: &Host, instance: Handle, name: &CStr) -> bool {
+    Clip::of(host, instance, name).is_some_and(|clip| !clip.is_open())
+}
+
+/// The guides whose clips are connected.
+pub fn connected_guides(effect: &Effect, host: &Host, instance: Handle) -> Guides {
+    let connected = |guide| guide_clip(guide).is_some_and(|name| is_connected(host, instance, name));
+    let has = |guide| effect.guides.contains(&guide) && connected(guide);
+    Guides { normal: has(GraphInput::Normal), depth: has(GraphInput::Depth), object_id: false }
 }
 
 /// The regions of interest that a host has been given.
@@ -292,17 +302,6 @@ pub fn is_identity(
     let answered = answer.answer(kOfxPropName, SOURCE);
     answer.set_doubles(kOfxPropTime, &[moment.time]);
     Ok(if answered { kOfxStatOK } else { kOfxStatReplyDefault })
-}
-
-/// Says of an instance whether a tile needs only the pixels around it, which some modes change.
-///
-/// # Errors
-/// Failed, when the host has no parameters.
-pub fn changed(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -> Outcome {
-    let moment = Moment::of(host.set(in_args));
-    let settings = Settings::read(effect, host, instance, moment.time)?;
-    host.effect(instance).set_int(kOfxImageEffectPropSupportsTiles, settings.is_local()?.into());
-    Ok(kOfxStatOK)
 }
 
 /// The clip that is written.

@@ -43,6 +43,13 @@ strings! {
 
     kOfxPropName = c"OfxPropName";
     kOfxPropTime = c"OfxPropTime";
+    kOfxPropType = c"OfxPropType";
+    kOfxTypeParameter = c"OfxTypeParameter";
+    kOfxTypeClip = c"OfxTypeClip";
+    kOfxPropChangeReason = c"OfxPropChangeReason";
+    kOfxChangeUserEdited = c"OfxChangeUserEdited";
+    kOfxChangePluginEdited = c"OfxChangePluginEdited";
+    kOfxChangeTime = c"OfxChangeTime";
     kOfxPropLabel = c"OfxPropLabel";
     kOfxPropShortLabel = c"OfxPropShortLabel";
     kOfxPropLongLabel = c"OfxPropLongLabel";
@@ -118,6 +125,7 @@ strings! {
     kOfxImageClipPropFieldExtraction = c"OfxImageClipPropFieldExtraction";
     kOfxImageClipPropFieldOrder = c"OfxImageClipPropFieldOrder";
 
+    kOfxImageEffectHostPropIsBackground = c"OfxImageEffectHostPropIsBackground";
     kOfxImageEffectPropProjectExtent = c"OfxImageEffectPropProjectExtent";
     kOfxImageEffectPropRenderScale = c"OfxImageEffectPropRenderScale";
     kOfxImageEffectPropRenderWindow = c"OfxImageEffectPropRenderWindow";
@@ -133,6 +141,7 @@ strings! {
     kOfxParamTypeGroup = c"OfxParamTypeGroup";
     kOfxParamTypePage = c"OfxParamTypePage";
     kOfxParamPropAnimates = c"OfxParamPropAnimates";
+    kOfxParamPropEnabled = c"OfxParamPropEnabled";
     kOfxParamPropScriptName = c"OfxParamPropScriptName";
     kOfxParamPropHint = c"OfxParamPropHint";
     kOfxParamPropDefault = c"OfxParamPropDefault";

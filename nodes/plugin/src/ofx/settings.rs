@@ -1,11 +1,11 @@
 //! The values of an instance's controls at one time, as a graph. Read when they are needed and never
 //! kept, since hosts change them without a word.
 
-use super::effects::{self, AS_IS, Effect, Form, SPACES, Target};
+use super::effects::{self, AS_IS, Control, Effect, Form, SPACES, Target};
 use super::host::{Host, Outcome};
 use super::interface::*;
 use isophote::spec::{Param, Unit};
-use isophote::{ColourSpace, Graph, Value};
+use isophote::{ColourSpace, Graph, NodeId, Value};
 use std::ffi::{CStr, c_int};
 use std::ptr::null_mut;
 
@@ -14,6 +14,8 @@ use std::ptr::null_mut;
 pub struct Settings {
     /// The effect's graph with its values.
     pub graph: Graph,
+    /// Its nodes, in the order of the effect's.
+    pub ids: Vec<NodeId>,
     /// What the pixels mean.
     pub space: ColourSpace,
     /// Whether the user says so, whatever the host does.
@@ -70,7 +72,7 @@ impl Settings {
                 least[kind] = least[kind].min(value.form().numbers[0].abs() as f32);
             }
         }
-        Ok(Self { graph, space, as_is, process_alpha, mask_apply, least })
+        Ok(Self { graph, ids, space, as_is, process_alpha, mask_apply, least })
     }
 
     /// What the pixels are by the host's name of their colour space, which counts more than what they
@@ -101,6 +103,19 @@ impl Settings {
     }
 }
 
+/// The parameters that have values of their own at different times, each with the position of its node.
+///
+/// # Errors
+/// Failed, when the host has no parameters.
+pub fn animated(effect: &Effect, host: &Host, instance: Handle) -> Outcome<Vec<(usize, &'static Param)>> {
+    let values = Values { host, set: host.params(instance)?, time: 0.0 };
+    let of_node = |control: &Control| match control.target {
+        Target::Param(node, param) if values.is_animated(&control.name) => Some((node, param)),
+        _ => None,
+    };
+    Ok(effect.controls.iter().filter_map(of_node).collect())
+}
+
 /// Parameters of an instance at a time.
 struct Values<'h> {
     host: &'h Host,
@@ -116,6 +131,15 @@ impl Values<'_> {
         // wish for the properties.
         let status = unsafe { get(self.set, name.as_ptr(), &raw mut param, null_mut()) };
         (status == kOfxStatOK && !param.is_null()).then_some(param)
+    }
+
+    fn is_animated(&self, name: &CStr) -> bool {
+        let Some((param, count)) = self.handle(name).zip(self.host.parameters.paramGetNumKeys) else {
+            return false;
+        };
+        let mut keys = 0;
+        // SAFETY: a parameter that the host gave, and a place for the answer.
+        unsafe { count(param, &raw mut keys) == kOfxStatOK && keys > 0 }
     }
 
     fn int(&self, name: &CStr) -> Option<c_int> {

@@ -1,0 +1,153 @@
+//! What an instance says of itself: whether it may be rendered in tiles, and which controls have an effect at the
+//! moment. Both depend on its values, so that they are said when it is created and when values change.
+
+use super::describe::{MASK, SOURCE};
+use super::effects::{Effect, Target, is_local};
+use super::host::{Host, Outcome};
+use super::image::Clip;
+use super::instance::{Moment, connected_guides, is_connected};
+use super::interface::*;
+use super::settings::{Settings, animated};
+use isophote::engine::plan::Pass;
+use isophote::engine::{Plan, Rect};
+use isophote::spec::Param;
+use isophote::{Graph, Planned, Request, Value};
+use std::ffi::CStr;
+use std::ptr::null_mut;
+
+/// Side of the picture that plans are compared for.
+const SIDE: u32 = 1024;
+
+/// Says everything of a new instance, which may have the values of a saved project.
+pub fn created(effect: &Effect, host: &Host, instance: Handle) -> Outcome {
+    // Some hosts have no values yet; the descriptor's word and all controls then stand.
+    let _ = refresh(effect, host, instance, 0.0, true);
+    Ok(kOfxStatOK)
+}
+
+/// Says what has become other, by what changed.
+///
+/// The user, and the host in the user's place (a paste, an undo, a script), may change anything. A clip that is
+/// connected changes only which controls have an effect. Another time changes values that are animated: nothing
+/// is looked at where there are none, and whether tiles may be rendered holds for all times.
+///
+/// # Errors
+/// Failed, when the host has no parameters.
+pub fn changed(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -> Outcome {
+    let args = host.set(in_args);
+    let time = Moment::of(args).time;
+    let reason = args.string(kOfxPropChangeReason, 0);
+    let of_time = reason.is_some_and(|reason| reason.as_c_str() == kOfxChangeTime);
+    if of_time && animated(effect, host, instance)?.is_empty() {
+        return Ok(kOfxStatOK);
+    }
+    let what = args.string(kOfxPropType, 0);
+    let of_clip = what.is_some_and(|what| what.as_c_str() == kOfxTypeClip);
+    refresh(effect, host, instance, time, !of_time && !of_clip)?;
+    Ok(kOfxStatOK)
+}
+
+/// Says which controls have an effect and, where `tiles`, whether tiles may be rendered.
+fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: bool) -> Outcome<()> {
+    let settings = Settings::read(effect, host, instance, time)?;
+    if tiles {
+        let local = is_local_at_all_times(effect, host, instance, &settings)?;
+        host.effect(instance).set_int(kOfxImageEffectPropSupportsTiles, local.into());
+    }
+    if host.background {
+        return Ok(());
+    }
+    let guides = connected_guides(effect, host, instance);
+    let plan = |graph: &Graph| Planned::new(graph, Request { guides, ..Request::new(SIDE, SIDE) });
+    let now = plan(&settings.graph).map_err(|_| kOfxStatFailed)?;
+    let params = host.params(instance)?;
+    for control in &effect.controls {
+        let has_effect = match control.target {
+            Target::Param(node, param) => others(&settings, node, param).any(|graph| {
+                // What cannot be planned is at least not the same.
+                plan(&graph).map_or(true, |other| !are_same(now.plan(), other.plan()))
+            }),
+            Target::ProcessAlpha => has_alpha(host, instance),
+            Target::MaskApply => is_connected(host, instance, MASK),
+            Target::LinesOutput | Target::WorkingSpace => true,
+        };
+        enable(host, params, &control.name, has_effect);
+    }
+    Ok(())
+}
+
+/// Whether a tile needs only the pixels around it, whatever values animated controls take.
+fn is_local_at_all_times(
+    effect: &Effect,
+    host: &Host,
+    instance: Handle,
+    settings: &Settings,
+) -> Outcome<bool> {
+    if !settings.is_local()? {
+        return Ok(false);
+    }
+    let animated = animated(effect, host, instance)?;
+    let mut graphs = animated.into_iter().flat_map(|(node, param)| others(settings, node, param));
+    Ok(graphs.all(|graph| is_local(&graph).unwrap_or(false)))
+}
+
+/// The graph with other values of a parameter: all that differ in kind, and numbers from end to end.
+fn others(settings: &Settings, node: usize, param: &'static Param) -> impl Iterator<Item = Graph> {
+    let id = settings.ids[node];
+    let current = settings.graph.value(id, param.id).ok();
+    let ends = [param.slider, param.range].concat().into_iter().map(f64::from);
+    let numbers: Vec<f64> = match param.default {
+        Value::Choice(_) => (0..param.options.len()).map(|index| index as f64).collect(),
+        Value::Bool(_) | Value::Color(_) => vec![0.0, 1.0],
+        Value::Float(_) | Value::Int(_) => {
+            ends.chain([f64::midpoint(param.slider[0].into(), param.slider[1].into())]).collect()
+        }
+    };
+    let values = numbers.into_iter().map(|number| param.nearest([number; 4]));
+    values.filter(move |value| Some(*value) != current).filter_map(move |value| {
+        let mut graph = settings.graph.clone();
+        graph.set(id, param.id, value).ok().map(|()| graph)
+    })
+}
+
+/// Whether two plans compute the same, as far as it is needed.
+fn are_same(a: &Plan, b: &Plan) -> bool {
+    let same = |(a, b): (&Pass, &Pass)| {
+        std::ptr::eq(a.kernel, b.kernel)
+            && a.params == b.params
+            && a.inputs == b.inputs
+            && a.outputs == b.outputs
+            && a.support == b.support
+    };
+    let (a_passes, b_passes) = (needed(a), needed(b));
+    a.inputs() == b.inputs()
+        && a.outputs() == b.outputs()
+        && a_passes.len() == b_passes.len()
+        && a_passes.into_iter().zip(b_passes).all(same)
+}
+
+fn needed(plan: &Plan) -> Vec<&Pass> {
+    let windows = plan.windows(Rect::of_size(SIDE, SIDE));
+    plan.passes().iter().filter(|pass| !windows[pass.outputs[0].index()].is_empty()).collect()
+}
+
+/// Whether the source has, or may have, an alpha of its own.
+fn has_alpha(host: &Host, instance: Handle) -> bool {
+    let Some(source) = Clip::of(host, instance, SOURCE).filter(|clip| !clip.is_open()) else { return true };
+    let says = |property, value: &CStr| source.properties.string(property, 0).as_deref() == Some(value);
+    !(says(kOfxImageEffectPropComponents, kOfxImageComponentRGB)
+        || says(kOfxImageEffectPropComponents, kOfxImageComponentAlpha)
+        || says(kOfxImageEffectPropPreMultiplication, kOfxImageOpaque))
+}
+
+/// Lets a control be used, or greys it.
+fn enable(host: &Host, params: Handle, name: &CStr, on: bool) {
+    let Some(get) = host.parameters.paramGetHandle else { return };
+    let (mut param, mut set) = (null_mut(), null_mut());
+    // SAFETY: a set that the host gave, a string with a closing zero, and places for the answers.
+    let status = unsafe { get(params, name.as_ptr(), &raw mut param, &raw mut set) };
+    let set = host.set(set);
+    if status == kOfxStatOK && set.int(kOfxParamPropEnabled, 0).unwrap_or(1) != i32::from(on) {
+        set.set_int(kOfxParamPropEnabled, on.into());
+    }
+}
