@@ -7,6 +7,7 @@
 pub use crate::kernels::shaders::watercolor_wash::Params;
 use crate::kernels::shared::value_noise::noise;
 use crate::kernels::simd::pixels::{for_blocks, write};
+use isophote_engine::dispatch::at_most_avx2;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -53,7 +54,8 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, blurred: ImageId, wash: &Was
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => washed(simd, pass, &params, band));
+    // By AVX-512 it takes a third longer.
+    dispatch!(at_most_avx2(pass.level), simd => washed(simd, pass, &params, band));
 }
 
 #[inline(always)]

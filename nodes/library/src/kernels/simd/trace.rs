@@ -9,6 +9,7 @@ use crate::kernels::shared::coverage::Covered;
 use crate::kernels::shared::stream::{Field, FieldView, Integrator, Stream, in_bounds, step};
 use crate::kernels::simd::pixels::{BLOCK, Block, for_blocks_in_tiles, write};
 use crate::kernels::simd::tile_copy::{FOUR, Frame, Place, TWO, TileCopy};
+use isophote_engine::dispatch::at_most_avx2;
 use isophote_engine::fearless_simd::{Level, Simd, dispatch, f32x8, mask32x8, prelude::*};
 use isophote_engine::{Band, View};
 
@@ -220,8 +221,13 @@ pub fn along_lines<const VALUES: usize, const OUT: usize>(
             (Integrator::TwoStep, edges) => {
                 dispatch!(level, simd => near(simd, &field(edges), Integrator::TwoStep, &source, kernel, band));
             }
-            (other, None) => dispatch!(level, simd => near(simd, &field(None), other, &source, kernel, band)),
+            // With a sample of the field to wait for before each step, lines are slower by AVX-512.
+            (other, None) => {
+                let level = at_most_avx2(level);
+                dispatch!(level, simd => near(simd, &field(None), other, &source, kernel, band))
+            }
             (other, edges) => {
+                let level = at_most_avx2(level);
                 dispatch!(level, simd => near(simd, &field(edges), other, &source, kernel, band))
             }
         }
