@@ -21,7 +21,7 @@ pub enum Role {
     Input(String),
     /// A result; the host's own texture or one it allocates.
     Output(String),
-    /// Scratch memory; contents do not survive the program, and equal shapes are reused.
+    /// Scratch memory; contents do not survive the program, and images of one level and format share it.
     Transient,
 }
 
@@ -34,7 +34,8 @@ pub struct Texture {
     pub channels: u32,
     /// Precision needed.
     pub class: Class,
-    /// Part of the picture (at its pyramid level) that the texture holds, in pixels.
+    /// Part of the picture (at its pyramid level) that the texture holds, in pixels. That of a transient one begins
+    /// at (0, 0) and is as large as the largest image in each direction; where an image lies is in the passes' grids.
     pub window: Rect,
 }
 
@@ -175,6 +176,8 @@ struct Lowering<'p> {
     plan: &'p Plan,
     windows: Vec<Rect>,
     textures: Vec<Texture>,
+    /// By texture: the level of its images.
+    levels: Vec<i8>,
     /// By virtual image: its texture, once it has one.
     places: Vec<Option<u32>>,
     /// Transient textures whose images are needed no longer.
@@ -187,6 +190,7 @@ impl<'p> Lowering<'p> {
             plan,
             windows,
             textures: Vec::new(),
+            levels: Vec::new(),
             places: vec![None; plan.images().len()],
             free: Vec::new(),
         }
@@ -211,33 +215,47 @@ impl<'p> Lowering<'p> {
 
     fn add_port(&mut self, port: &Port, role: Role) {
         if !self.windows[port.image.index()].is_empty() {
-            let texture = self.texture(port.image, role);
-            self.places[port.image.index()] = Some(self.push(texture));
+            let texture = self.texture(port.image, role, self.windows[port.image.index()]);
+            self.places[port.image.index()] = Some(self.push(port.image, texture));
         }
     }
 
-    fn texture(&self, image: ImageId, role: Role) -> Texture {
+    fn texture(&self, image: ImageId, role: Role, window: Rect) -> Texture {
         let desc = self.plan.desc(image);
         let channels = if desc.channels == 3 { 4 } else { desc.channels };
-        Texture { role, channels, class: desc.class, window: self.windows[image.index()] }
+        Texture { role, channels, class: desc.class, window }
     }
 
-    fn push(&mut self, texture: Texture) -> u32 {
+    fn push(&mut self, image: ImageId, texture: Texture) -> u32 {
         self.textures.push(texture);
+        self.levels.push(self.plan.desc(image).level);
         self.textures.len() as u32 - 1
     }
 
-    /// Gives textures to the transient images that a pass writes: free ones of their shape, or new ones.
+    /// Gives textures to the transient images that a pass writes: free ones of their level and format, which grow
+    /// where an image is larger, or new ones. The size does not choose, so that tiles of all sizes connect their
+    /// passes alike and one prepared program runs them all.
     fn make_room(&mut self, pass: &Pass) {
         for output in &pass.outputs {
             if self.places[output.index()].is_some() {
                 continue;
             }
-            let wanted = self.texture(*output, Role::Transient);
-            let found = self.free.iter().position(|free| self.textures[*free as usize] == wanted);
-            let place = match found {
-                Some(at) => self.free.swap_remove(at),
-                None => self.push(wanted),
+            let held = self.windows[output.index()];
+            let wanted = self.texture(*output, Role::Transient, Rect::of_size(held.width(), held.height()));
+            let fits = |free: &u32| {
+                let texture = &self.textures[*free as usize];
+                (texture.channels, texture.class) == (wanted.channels, wanted.class)
+                    && self.levels[*free as usize] == self.plan.desc(*output).level
+            };
+            let place = match self.free.iter().position(fits) {
+                Some(at) => {
+                    let place = self.free.swap_remove(at);
+                    let window = &mut self.textures[place as usize].window;
+                    window.x1 = window.x1.max(wanted.window.x1);
+                    window.y1 = window.y1.max(wanted.window.y1);
+                    place
+                }
+                None => self.push(*output, wanted),
             };
             self.places[output.index()] = Some(place);
         }
