@@ -18,7 +18,7 @@ struct Axis {
 }
 
 const TENSOR_SMALLEST: f32 = 1.1754944e-38;
-const TENSOR_LARGEST: f32 = 3.4028235e38;
+const TENSOR_LARGEST: f32 = 3.40282346e38;
 
 // 2^-n for 2^n <= v < 2^(n+1), v normal and below 2^127; finite for 0.
 fn tensor_scale(v: f32) -> f32 {

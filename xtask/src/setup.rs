@@ -48,6 +48,15 @@ pub const VALGRIND: Need = Need {
     packages: &["valgrind", "libc6-dbg"],
 };
 
+/// A browser without a window, whose compiler is the second one that shaders are tried by.
+pub const BROWSER: Need = Need {
+    what: "Chromium without a window",
+    present: || {
+        ["chromium-headless-shell", "chromium", "chromium-browser", "google-chrome"].into_iter().any(program)
+    },
+    packages: &["chromium-headless-shell"],
+};
+
 /// A display without a screen, and what winit loads to open a window on it.
 pub const XVFB: Need = Need {
     what: "Xvfb and the X11 libraries",

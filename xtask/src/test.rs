@@ -1,7 +1,9 @@
 //! `cargo xtask test`: everything that must hold before a change lands, or the tests of one thing.
 
 use crate::error::{Context, Failure, Result};
-use crate::setup::{self, BINUTILS, C_COMPILER, CPP_COMPILER, VALGRIND, VULKAN, VULKAN_HEADERS, XVFB};
+use crate::setup::{
+    self, BINUTILS, BROWSER, C_COMPILER, CPP_COMPILER, VALGRIND, VULKAN, VULKAN_HEADERS, XVFB,
+};
 use crate::tools::{cargo, cargo_command, heading, root, target_dir};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -28,7 +30,16 @@ pub struct Options {
 /// # Errors
 /// The checks that fail.
 pub fn run(options: &Options) -> Result<()> {
-    setup::ensure(&[&C_COMPILER, &CPP_COMPILER, &BINUTILS, &VULKAN, &VULKAN_HEADERS, &VALGRIND, &XVFB])?;
+    setup::ensure(&[
+        &C_COMPILER,
+        &CPP_COMPILER,
+        &BINUTILS,
+        &VULKAN,
+        &VULKAN_HEADERS,
+        &VALGRIND,
+        &XVFB,
+        &BROWSER,
+    ])?;
     let is_everything = options.filter.is_none() && !options.list;
     if is_everything && !options.tests_only {
         check_sources()?;
