@@ -13,6 +13,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let v = fetch(lightness, 0u, pixel(id));
-    let ink = 1.0 - clamp(fetch(edges, 1u, pixel(id)).x, 0.0, 1.0);
-    textureStore(target_image, vec2i(id.xy), vec4f(v.x * (1.0 - ink), v.y, 0.0, 0.0));
+    let edge = clamp(fetch(edges, 1u, pixel(id)).x, 0.0, 1.0);
+    textureStore(target_image, vec2i(id.xy), vec4f(v.x * edge, v.y, 0.0, 0.0));
 }

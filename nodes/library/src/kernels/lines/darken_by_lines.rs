@@ -10,12 +10,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(darken_by_lines {
     cpu: run,
     cost: |_| 3.0,
-    tolerance: Tolerance {
-        absolute: 1e-4,
-        relative: 1e-6,
-        outliers: 0.0,
-        reason: "1 - (1 - edge) may be taken for edge, which differs by a rounding of 1, times the lightness of HDR",
-    },
+    tolerance: Tolerance { absolute: 1e-6, relative: 1e-6, outliers: 0.0, reason: "one rounding of L" },
 });
 
 /// (L alpha, alpha) with L multiplied by the `edges` (1 = paper, 0 = line).
@@ -27,9 +22,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let (lightness, edges) = (&pass.inputs[0], &pass.inputs[1]);
     dispatch!(pass.level, simd => for_blocks::<2>(band, #[inline(always)] |block, target| {
         let [l, alpha] = block.read(simd, lightness);
-        let one = f32x8::splat(simd, 1.0);
-        let [edge] = block.read(simd, edges);
-        let ink = one - edge.max(0.0).min(1.0);
-        write([l * (one - ink), alpha], target);
+        let [edge]: [f32x8<_>; 1] = block.read(simd, edges);
+        write([l * edge.max(0.0).min(1.0), alpha], target);
     }));
 }
