@@ -159,10 +159,11 @@ impl TensorOptions {
         (self.rho * self.rho - 0.5 * wider * (operator + 1.0 / 12.0)).max(0.0).sqrt()
     }
 
-    /// The defaults for a picture rendered at `scale` of its full size.
+    /// The defaults for a picture rendered at `scale` of its full size: what the node `structure_tensor` makes
+    /// with its own.
     pub fn at_scale(scale: f32) -> Self {
         let default = Self::default();
-        Self { rho: default.rho * scale, ..default }
+        Self { rho: default.rho * scale, scale, ..default }
     }
 }
 

@@ -107,3 +107,33 @@ fn cycles_and_wrong_values_are_refused_and_leave_the_graph_as_it_was() {
     }
     assert!(graph.connect_input(GraphInput::Depth, a, "color").is_err());
 }
+
+#[test]
+fn an_open_tensor_port_is_a_structure_tensor_with_its_defaults() {
+    let mut tried = 0;
+    for spec in isophote::registry::nodes() {
+        if !spec.inputs.iter().any(|port| port.id == "tensor" && port.optional) {
+            continue;
+        }
+        tried += 1;
+        let mut open = Graph::new();
+        let node = open.add("node", spec.id).unwrap();
+        open.connect_input(GraphInput::Color, node, "color").unwrap();
+        open.set_output(node).unwrap();
+        let mut connected = open.clone();
+        let tensor = connected.add("tensor", "structure_tensor").unwrap();
+        connected.connect_input(GraphInput::Color, tensor, "color").unwrap();
+        connected.connect(tensor, node, "tensor").unwrap();
+        for scale in [1.0, 0.5, 0.3] {
+            let passes = |graph: &Graph| -> Vec<_> {
+                let planned = Planned::new(graph, Request { scale, ..Request::new(48, 32) }).unwrap();
+                let passes = planned.plan().passes().iter();
+                passes
+                    .map(|p| (p.kernel.name, p.params.clone(), p.inputs.clone(), p.outputs.clone()))
+                    .collect()
+            };
+            assert_eq!(passes(&open), passes(&connected), "{} at {scale}", spec.id);
+        }
+    }
+    assert!(tried > 5, "{tried} nodes have the port");
+}
