@@ -127,6 +127,25 @@ pub fn settings(spec: &'static NodeSpec, count: usize) -> Vec<Setting> {
     sets
 }
 
+/// Sets with some sliders low and the others high, so that with the sets of [`settings`] any two parameters meet at
+/// all four pairs of their ends: by each binary digit of the parameters' indices, and the other way round. Two indices
+/// differ in some digit.
+///
+/// They are none for twins: long lines through fields that are hardly smoothed turn on the last bit.
+pub fn mixed_ends(spec: &'static NodeSpec) -> Vec<Setting> {
+    let count = spec.params().count();
+    let digits = usize::BITS - count.saturating_sub(1).leading_zeros();
+    let sets = (0..digits).flat_map(|digit| [0, 1].map(|ones| (digit, ones)));
+    sets.map(|(digit, ones)| Setting {
+        label: format!("sliders by digit {digit}, ones {}", ["low", "high"][ones]),
+        values: (0..)
+            .zip(spec.params())
+            .map(|(index, p): (usize, _)| (p.id, extreme(p, (index >> digit & 1) ^ ones ^ 1, true)))
+            .collect(),
+    })
+    .collect()
+}
+
 /// A value other than `now` for a parameter, somewhere inside its slider; `None` for a parameter that
 /// has only one value.
 pub fn other(param: &Param, now: Value, random: &mut Random) -> Option<Value> {

@@ -19,4 +19,5 @@ pub mod shaders;
 pub mod sweep;
 pub mod table;
 pub mod trials;
+pub mod uniforms;
 pub mod zone_plates;

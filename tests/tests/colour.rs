@@ -46,7 +46,7 @@ const SIZE: [u32; 2] = [31, 23];
 
 fn the_node_keeps_every_kind_of_picture_finite(spec: &'static NodeSpec) -> Vec<String> {
     let mut wrong = Vec::new();
-    for setting in cases::settings(spec, 4) {
+    for setting in cases::settings(spec, 4).into_iter().chain(cases::mixed_ends(spec)) {
         let mut setup = cases::setup(spec, false);
         setting.apply(&mut setup.graph, setup.node);
         let [width, height] = SIZE;

@@ -4,15 +4,16 @@ use isophote::kernels::KERNELS;
 use isophote::spec::NodeSpec;
 use isophote::{Graph, Planned, Request, Value};
 use isophote_engine::Kernel;
-use isophote_tests::cases;
 use isophote_tests::trials::Trials;
-use std::collections::BTreeSet;
+use isophote_tests::{cases, uniforms};
+use std::collections::{BTreeSet, HashMap};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let mut trials = Trials::new();
     for spec in isophote::registry::nodes() {
         trials.add("declarations", spec.id, || faults_of(spec));
+        trials.add("finite_uniforms", spec.id, || no_parameters_make_numbers_that_are_none(spec));
         trials.add("graph_files", spec.id, || every_parameter_set_plans_and_goes_through_json(spec));
     }
     for kernel in KERNELS {
@@ -71,6 +72,29 @@ fn the_tolerance_has_a_reason_and_is_small(kernel: &Kernel) {
     assert!((0.0..=0.1).contains(&t.absolute), "absolute {}", t.absolute);
     assert!((0.0..=0.01).contains(&t.relative), "relative {}", t.relative);
     assert!((0.0..=0.03).contains(&t.outliers), "outliers {}", t.outliers);
+}
+
+/// Drivers may take either side of a comparison with what is not a number, so that none may reach a shader.
+fn no_parameters_make_numbers_that_are_none(spec: &'static NodeSpec) -> Vec<String> {
+    let mut floats = HashMap::new();
+    let mut wrong = Vec::new();
+    for setting in cases::settings(spec, 16).into_iter().chain(cases::mixed_ends(spec)) {
+        let mut setup = cases::setup(spec, true);
+        setting.apply(&mut setup.graph, setup.node);
+        for scale in [0.37, 1.0] {
+            let request = Request { scale, ..Request::new(19, 23) };
+            let planned = Planned::new(&setup.graph, request).unwrap();
+            for pass in planned.plan().passes() {
+                let name = pass.kernel.name;
+                let places = floats.entry(name).or_insert_with(|| uniforms::floats(pass.kernel));
+                let found = uniforms::not_finite(pass, places);
+                wrong.extend(
+                    found.iter().map(|(at, value)| format!("({}) {name}: {value} at {at}", setting.label)),
+                );
+            }
+        }
+    }
+    wrong
 }
 
 fn every_parameter_set_plans_and_goes_through_json(spec: &'static NodeSpec) {

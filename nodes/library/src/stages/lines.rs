@@ -49,7 +49,7 @@ impl Lines {
     /// The values after the controls of artists: `width` in pixels of the full picture, `amount` and
     /// `suppress` in 0..=1.
     fn with_look(self, width: f32, amount: f32, suppress: f32) -> Self {
-        let base = ((1.0 - self.tau) * base_factor(amount)).clamp(0.0, 1.0);
+        let base = base(1.0 - self.tau, amount);
         Self {
             sigma_e: self.sigma_e * width_factor(width),
             sigma_m: self.sigma_m * length_factor(width) * (1.0 + 2.0 * suppress),
@@ -98,17 +98,16 @@ pub(crate) fn length_factor(width: f32) -> f32 {
     width_factor(width).max(1.0).sqrt()
 }
 
-/// Factor on 1 - tau: infinite at 0, where no line is left; 1 at the default, which is the middle; 1/4 at 1,
-/// since nothing at all would let the noise of flat parts through.
-fn base_factor(amount: f32) -> f32 {
+/// 1 - tau for `amount`: 1 at 0, where no line is left, whatever tau is; times 1 at the default, which is the
+/// middle; times 1/4 at 1, since nothing at all would let the noise of flat parts through.
+fn base(technical: f32, amount: f32) -> f32 {
     const NEUTRAL: f32 = LINE_AMOUNT.default_float();
     if amount <= 0.0 {
-        f32::INFINITY
-    } else if amount <= NEUTRAL {
-        (1.0 - amount) / amount
-    } else {
-        4f32.powf(2.0 * (NEUTRAL - amount))
+        return 1.0;
     }
+    let factor =
+        if amount <= NEUTRAL { (1.0 - amount) / amount } else { 4f32.powf(2.0 * (NEUTRAL - amount)) };
+    (technical * factor).clamp(0.0, 1.0)
 }
 
 #[cfg(test)]
@@ -147,6 +146,8 @@ mod tests {
             assert!(a.sigma_e < b.sigma_e && a.sigma_m <= b.sigma_m);
         }
         assert_eq!(THESIS.with_look(WIDTH, 0.0, SUPPRESS).tau, 0.0);
+        // All inhibition and no lines: no lines.
+        assert_eq!(Lines { tau: 1.0, ..THESIS }.with_look(WIDTH, 0.0, SUPPRESS).tau, 0.0);
         assert!(THESIS.with_look(WIDTH, 1.0, SUPPRESS).tau < 1.0);
     }
 }
