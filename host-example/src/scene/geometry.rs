@@ -67,7 +67,8 @@ pub fn flat_normals(primitive: &mut Primitive) {
 
 /// Smooth normals: the mean of the faces around a position, weighted by their angles there so that it does
 /// not matter how polygons were cut into triangles. Faces that meet this one at more than `crease` radians
-/// are left out, so that the sharp edges of machined parts stay sharp.
+/// are left out, so that the sharp edges of machined parts stay sharp. The time grows with the number of faces,
+/// however many of them meet at a point.
 pub fn smooth_normals(primitive: &mut Primitive, crease: f32) {
     let position =
         |primitive: &Primitive, index: u32| Vec3::from(primitive.vertices[index as usize].position);
@@ -85,6 +86,9 @@ pub fn smooth_normals(primitive: &mut Primitive, crease: f32) {
             around.entry(key(p)).or_default().push((normal, angle));
         }
     }
+    for faces in around.values_mut().filter(|faces| faces.len() > MOST_FACES) {
+        *faces = by_direction(faces);
+    }
     let cosine = crease.cos();
     let mut corner_normals = Vec::with_capacity(primitive.indices.len());
     for (slot, &corner) in primitive.indices.iter().enumerate() {
@@ -99,6 +103,32 @@ pub fn smooth_normals(primitive: &mut Primitive, crease: f32) {
         corner_normals.push(sum.normalize_or(own.normalize_or(Vec3::Z)));
     }
     weld_normals(primitive, &corner_normals);
+}
+
+/// Faces around one position up to which all are compared with each other. Poles and fans can have far more.
+const MOST_FACES: usize = 64;
+
+/// Cells along each side of the cube that directions are sorted by; a cell spans at most 15 degrees.
+const CELLS: usize = 8;
+
+/// Faces of nearly one direction as one, so that there is a bounded number of them. A face is its normal and
+/// its angle.
+fn by_direction(faces: &[(Vec3, f32)]) -> Vec<(Vec3, f32)> {
+    let mut places = [None; 6 * CELLS * CELLS];
+    let mut sums: Vec<Vec3> = Vec::new();
+    for (normal, angle) in faces {
+        let axis = normal.abs().max_position();
+        let longest = normal[axis];
+        let cell = |value: f32| ((value / longest.abs() * 0.5 + 0.5) * CELLS as f32) as usize;
+        let [u, v] = [1, 2].map(|k| cell(normal[(axis + k) % 3]).min(CELLS - 1));
+        let side = axis * 2 + usize::from(longest < 0.0);
+        let place = *places[(side * CELLS + u) * CELLS + v].get_or_insert_with(|| {
+            sums.push(Vec3::ZERO);
+            sums.len() - 1
+        });
+        sums[place] += *normal * *angle;
+    }
+    sums.into_iter().map(|sum| (sum.normalize_or_zero(), sum.length())).collect()
 }
 
 /// Angle at `p` in a triangle; 0 where it has none.

@@ -10,18 +10,19 @@ mod meshes;
 mod sources;
 
 use std::borrow::Cow;
-use std::fs;
+use std::fs::File;
 use std::path::Path;
 
 use glam::{Mat4, Quat, Vec3, Vec4};
 use gltf::json;
 use gltf::json::validation::{Error as Flaw, Validate};
 
-use self::accessors::Accessors;
+use self::accessors::{Accessors, Pick};
 use self::animations::Outline;
+use super::budget::Budget;
 use super::model::{Bounds, Light, LightKind, Node, Projection, Scene, Skin, Transform};
 use crate::error::{Error, Result};
-pub use sources::resolve;
+pub use sources::open;
 
 /// Extensions that are understood.
 const SUPPORTED: [&str; 5] = [
@@ -49,12 +50,15 @@ fn only_looks(extension: &str) -> bool {
 ///
 /// # Errors
 /// [`Error::Input`] as [`Scene::load`].
-pub fn load(path: &Path) -> Result<Scene> {
-    let bytes = fs::read(path).map_err(|e| Error::file(path, e, "give the path of a readable glTF file"))?;
-    let malformed = |problem: String| Error::file(path, problem, "export the scene again");
-    let Parsed { document, channels, blob, warnings } = parse(&bytes).map_err(malformed)?;
-    let buffers = read_buffers(path, &document, blob)?;
-    let accessors = Accessors { buffers: &buffers };
+pub fn load(path: &Path, budget: &Budget) -> Result<Scene> {
+    let unreadable =
+        |problem: String| Error::file(path, problem, budget.fix("give the path of a readable glTF file"));
+    let file = File::open(path).map_err(|e| unreadable(e.to_string()))?;
+    let bytes = budget.read(file).map_err(unreadable)?;
+    let malformed = |problem: String| Error::file(path, problem, budget.fix("export the scene again"));
+    let Parsed { document, channels, blob, warnings } = parse(&bytes, budget).map_err(malformed)?;
+    let buffers = read_buffers(path, &document, blob, budget)?;
+    let accessors = Accessors { buffers: &buffers, budget };
     let mut scene = Scene {
         name: String::new(),
         meshes: Vec::new(),
@@ -73,7 +77,7 @@ pub fn load(path: &Path) -> Result<Scene> {
     };
     materials::read(path, &document, &accessors, &mut scene)?;
     meshes::read(&document, &accessors, &mut scene).map_err(malformed)?;
-    read_nodes(&document, &mut scene).map_err(malformed)?;
+    read_nodes(&document, budget, &mut scene).map_err(malformed)?;
     read_skins(&document, &accessors, &mut scene).map_err(malformed)?;
     animations::read(&document, &channels, &accessors, &mut scene).map_err(malformed)?;
     Ok(scene)
@@ -89,8 +93,12 @@ struct Parsed {
     warnings: Vec<String>,
 }
 
+/// Memory of an entry of a list, and of an object with its entry, of a document once it is parsed, at most.
+const ENTRY: usize = 64;
+const OBJECT: usize = 1024;
+
 /// Parses and validates.
-fn parse(bytes: &[u8]) -> std::result::Result<Parsed, String> {
+fn parse(bytes: &[u8], budget: &Budget) -> std::result::Result<Parsed, String> {
     if bytes.starts_with(b"glTF") {
         let word = |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
         let length = word(8).filter(|_| bytes.len() >= 20).ok_or("is cut off within its header")?;
@@ -101,11 +109,15 @@ fn parse(bytes: &[u8]) -> std::result::Result<Parsed, String> {
     let invalid = |problem: String| format!("is not valid glTF: {problem}");
     let (text, blob) = if bytes.starts_with(b"glTF") {
         let glb = gltf::Glb::from_slice(bytes).map_err(|e| invalid(e.to_string()))?;
+        budget.take(glb.bin.as_ref().map_or(0, |bin| bin.len()), 1)?;
         (glb.json, glb.bin.map(Cow::into_owned))
     } else {
         (Cow::Borrowed(bytes), None)
     };
     let text = std::str::from_utf8(&text).map_err(|e| invalid(format!("its JSON is no text: {e}")))?;
+    let count = |byte: u8| text.bytes().filter(|b| *b == byte).count();
+    budget.take(count(b','), ENTRY)?;
+    budget.take(count(b'{'), OBJECT)?;
     let Outline { text, channels } = Outline::of(text).map_err(invalid)?;
     let mut root: json::Root = json::deserialize::from_str(&text).map_err(|e| invalid(e.to_string()))?;
     if root.asset.version.split('.').next() != Some("2") {
@@ -152,11 +164,16 @@ fn validate(root: &json::Root) -> std::result::Result<(), String> {
     first.map_or(Ok(()), Err)
 }
 
-fn read_buffers(path: &Path, document: &gltf::Document, mut blob: Option<Vec<u8>>) -> Result<Vec<Vec<u8>>> {
+fn read_buffers(
+    path: &Path,
+    document: &gltf::Document,
+    mut blob: Option<Vec<u8>>,
+    budget: &Budget,
+) -> Result<Vec<Vec<u8>>> {
     let mut buffers = Vec::new();
     for buffer in document.buffers() {
         let bytes = match buffer.source() {
-            gltf::buffer::Source::Uri(uri) => sources::read_uri(path, uri)?,
+            gltf::buffer::Source::Uri(uri) => sources::read_uri(path, uri, budget)?,
             gltf::buffer::Source::Bin => blob.take().unwrap_or_default(),
         };
         if bytes.len() < buffer.length() {
@@ -214,7 +231,11 @@ fn read_lights(document: &gltf::Document) -> Vec<Light> {
         .collect()
 }
 
-fn read_nodes(document: &gltf::Document, scene: &mut Scene) -> std::result::Result<(), String> {
+fn read_nodes(
+    document: &gltf::Document,
+    budget: &Budget,
+    scene: &mut Scene,
+) -> std::result::Result<(), String> {
     for node in document.nodes() {
         let transform = match node.transform() {
             gltf::scene::Transform::Matrix { matrix } => Transform::Matrix(Mat4::from_cols_array_2d(&matrix)),
@@ -226,6 +247,7 @@ fn read_nodes(document: &gltf::Document, scene: &mut Scene) -> std::result::Resu
         };
         let mesh = node.mesh().map(|m| m.index());
         let defaults = mesh.map(|m| scene.meshes[m].weights.as_slice()).unwrap_or_default();
+        budget.take(defaults.len(), size_of::<f32>())?;
         scene.nodes.push(Node {
             name: node.name().unwrap_or_default().to_owned(),
             parent: None,
@@ -277,7 +299,7 @@ fn read_skins(
         let joints: Vec<usize> = skin.joints().map(|j| j.index()).collect();
         let inverse_bind = match skin.inverse_bind_matrices() {
             Some(accessor) => accessors
-                .floats(&accessor, &[16])?
+                .floats(&accessor, &[16], Pick::All)?
                 .arrays([0.0; 16])
                 .iter()
                 .map(Mat4::from_cols_array)
@@ -292,6 +314,7 @@ fn read_skins(
     for node in &mut scene.nodes {
         let Some(mesh) = node.mesh else { continue };
         let targets = scene.meshes[mesh].primitives.iter().map(|p| p.morph_targets.len()).max().unwrap_or(0);
+        accessors.budget.take(targets, size_of::<f32>())?;
         node.weights.resize(targets, 0.0);
         let Some(skin) = node.skin else { continue };
         let joints = scene.skins[skin].joints.len();

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::budget::Budget;
 use super::model::{Draw, Scene};
 use super::{gltf_file, obj_file, pose};
 use crate::error::{Error, Result};
@@ -11,13 +12,22 @@ impl Scene {
     /// materials have none.
     ///
     /// # Errors
-    /// [`Error::Input`] naming the file when it is missing, malformed, of another kind, or holds nothing
-    /// to draw; what can be drawn in spite of a flaw ends in [`Scene::warnings`].
+    /// [`Error::Input`] naming the file when it is missing, malformed, of another kind, needs more than
+    /// 4 GiB of memory, or holds nothing to draw; what can be drawn in spite of a flaw ends in
+    /// [`Scene::warnings`].
     pub fn load(path: &Path, texture: Option<&Path>) -> Result<Self> {
+        Self::load_within(path, texture, &Budget::default())
+    }
+
+    /// As [`Scene::load`], within another bound of memory.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn load_within(path: &Path, texture: Option<&Path>, budget: &Budget) -> Result<Self> {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
         let mut scene = match extension.as_str() {
-            "gltf" | "glb" => gltf_file::load(path)?,
-            "obj" => obj_file::load(path, texture)?,
+            "gltf" | "glb" => gltf_file::load(path, budget)?,
+            "obj" => obj_file::load(path, texture, budget)?,
             _ => {
                 return Err(Error::file(
                     path,

@@ -4,6 +4,8 @@ use std::io::Cursor;
 
 use glam::{Affine2, Vec2, Vec3, Vec4};
 
+use super::budget::Budget;
+
 /// How the bytes of an image are to be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ColorSpace {
@@ -31,7 +33,7 @@ pub struct Image {
 pub enum DecodeProblem {
     /// A format that this program does not read; the scene can do without.
     Unsupported(&'static str),
-    /// The file is damaged.
+    /// The file is damaged or too large.
     Damaged(String),
 }
 
@@ -39,8 +41,8 @@ impl Image {
     /// Decodes PNG or JPEG, recognized by their first bytes.
     ///
     /// # Errors
-    /// [`DecodeProblem`]: another format, or a damaged file.
-    pub fn decode(name: &str, bytes: &[u8]) -> Result<Self, DecodeProblem> {
+    /// [`DecodeProblem`]: another format, a damaged file, or one whose pixels are more than the budget.
+    pub fn decode(name: &str, bytes: &[u8], budget: &Budget) -> Result<Self, DecodeProblem> {
         let format = match bytes {
             [0x89, b'P', b'N', b'G', ..] => image::ImageFormat::Png,
             [0xff, 0xd8, 0xff, ..] => image::ImageFormat::Jpeg,
@@ -50,13 +52,19 @@ impl Image {
             [] => return Err(DecodeProblem::Damaged("the image is empty".into())),
             _ => return Err(DecodeProblem::Unsupported("unknown")),
         };
-        let mut reader = image::ImageReader::with_format(Cursor::new(bytes), format);
-        let mut limits = image::Limits::default();
-        limits.max_image_width = Some(1 << 15);
-        limits.max_image_height = Some(1 << 15);
-        limits.max_alloc = Some(1 << 30);
-        reader.limits(limits);
-        let decoded = reader.decode().map_err(|e| DecodeProblem::Damaged(e.to_string()))?.into_rgba8();
+        let reader = || {
+            let mut reader = image::ImageReader::with_format(Cursor::new(bytes), format);
+            let mut limits = image::Limits::default();
+            limits.max_image_width = Some(1 << 15);
+            limits.max_image_height = Some(1 << 15);
+            limits.max_alloc = Some(1 << 30);
+            reader.limits(limits);
+            reader
+        };
+        let damaged = |e: image::ImageError| DecodeProblem::Damaged(e.to_string());
+        let (width, height) = reader().into_dimensions().map_err(damaged)?;
+        budget.take(width as usize * height as usize, 4).map_err(DecodeProblem::Damaged)?;
+        let decoded = reader().decode().map_err(damaged)?.into_rgba8();
         Ok(Self {
             name: name.to_owned(),
             width: decoded.width(),

@@ -4,6 +4,7 @@
 //! coordinates with (0, 0) at the upper left of the image.
 
 pub mod animation;
+pub mod budget;
 pub mod camera;
 pub mod geometry;
 pub mod gltf_file;

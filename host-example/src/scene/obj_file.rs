@@ -7,7 +7,7 @@ mod statements;
 
 use std::cell::RefCell;
 use std::collections::HashMap;
-use std::fs;
+use std::fs::File;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -15,6 +15,7 @@ use glam::{Vec3, Vec4};
 
 use self::materials::{Loader, load_mtl, named_texture, plain_material};
 use self::normal_form::normal_form;
+use super::budget::{Budget, TOO_LARGE};
 use super::geometry;
 use super::material::TextureUse;
 use super::model::{Bounds, Mesh, Node, Primitive, Scene, Vertex};
@@ -23,34 +24,44 @@ use crate::error::{Error, Result};
 /// Faces that meet at more than this keep a sharp edge between them when normals are averaged.
 const CREASE: f32 = 60.0 * std::f32::consts::PI / 180.0;
 
+/// Memory of one corner of a face, here and in the parser.
+const CORNER: usize = 256;
+
 /// Loads a file; `texture` colours materials that have no texture of their own. The order of nodes, draws and
 /// bounds are left to [`Scene::load`].
 ///
 /// # Errors
 /// [`Error::Input`] as [`Scene::load`]. A missing or damaged MTL file or texture named there is a warning; a
 /// damaged `texture` is an error.
-pub fn load(path: &Path, texture: Option<&Path>) -> Result<Scene> {
-    let bytes = fs::read(path).map_err(|e| Error::file(path, e, "give the path of a readable OBJ file"))?;
+pub fn load(path: &Path, texture: Option<&Path>, budget: &Budget) -> Result<Scene> {
+    let unreadable =
+        |problem: String| Error::file(path, problem, budget.fix("give the path of a readable OBJ file"));
+    let file = File::open(path).map_err(|e| unreadable(e.to_string()))?;
+    let bytes = budget.read(file).map_err(unreadable)?;
     let invalid = |problem: String| {
         Error::file(path, format!("is not a valid OBJ file: {problem}"), "export the model again")
     };
     // Names in old files are in any encoding; numbers and keywords are ASCII.
-    let text = normal_form(&String::from_utf8_lossy(&bytes)).map_err(invalid)?;
+    let (text, corners) = normal_form(&String::from_utf8_lossy(&bytes)).map_err(invalid)?;
+    drop(bytes);
+    let counted = budget.take(text.len(), 1).and_then(|()| budget.take(corners, CORNER));
+    counted.map_err(|problem| Error::file(path, problem, TOO_LARGE))?;
     let warnings = RefCell::new(Vec::new());
     let options =
         tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
     let (models, materials) = tobj::load_obj_buf(&mut Cursor::new(text.as_bytes()), &options, |name| {
-        load_mtl(path, name, &warnings)
+        load_mtl(path, name, budget, &warnings)
     })
     .map_err(|e| invalid(e.to_string()))?;
-    let mut loader = Loader { path, images: HashMap::new(), scene: empty_scene(warnings.into_inner()) };
+    let mut loader =
+        Loader { path, budget, images: HashMap::new(), scene: empty_scene(warnings.into_inner()) };
     for material in materials.unwrap_or_default() {
         let converted = loader.material(&material);
         loader.scene.materials.push(converted);
     }
     loader.scene.materials.push(plain_material());
     if let Some(texture) = texture {
-        let texture = named_texture(&mut loader.scene, texture)?;
+        let texture = named_texture(&mut loader.scene, texture, budget)?;
         for material in loader.scene.materials.iter_mut().filter(|m| m.base_color_texture.is_none()) {
             material.base_color_texture = Some(TextureUse::plain(texture));
             material.base_color = Vec4::ONE.with_w(material.base_color.w);

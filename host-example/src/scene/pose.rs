@@ -124,7 +124,9 @@ pub fn parents_first(nodes: &[Node]) -> Result<Vec<usize>, String> {
         order.extend_from_slice(&children[order[done]]);
         done += 1;
     }
-    match (0..nodes.len()).find(|index| order.len() < nodes.len() && !order.contains(index)) {
+    let mut reached = vec![false; nodes.len()];
+    order.iter().for_each(|&index| reached[index] = true);
+    match reached.iter().position(|reached| !reached) {
         Some(node) => Err(format!("node {node} is its own ancestor")),
         None => Ok(order),
     }

@@ -4,14 +4,49 @@
 use gltf::accessor::{Accessor, DataType, Dimensions};
 use gltf::buffer::View;
 
+use crate::scene::budget::Budget;
+
 /// Reads accessors from loaded buffers.
 pub struct Accessors<'a> {
     /// Bytes of each buffer.
     pub buffers: &'a [Vec<u8>],
+    /// Counts what is read.
+    pub budget: &'a Budget,
 }
 
-/// Elements allowed in an accessor that is all zeros and so is not bounded by the size of any file.
-const MOST_ZEROS: usize = 1 << 24;
+/// Which elements of an accessor are read.
+#[derive(Clone, Copy)]
+pub enum Pick<'a> {
+    /// All of them.
+    All,
+    /// These, in ascending order. Many primitives may share one accessor and need little of it each.
+    These(&'a [u32]),
+}
+
+impl Pick<'_> {
+    fn count(self, count: usize) -> usize {
+        match self {
+            Self::All => count,
+            Self::These(elements) => elements.len(),
+        }
+    }
+
+    /// Element of the accessor that ends up at `place`.
+    fn element(self, place: usize) -> usize {
+        match self {
+            Self::All => place,
+            Self::These(elements) => elements[place] as usize,
+        }
+    }
+
+    /// Where an element ends up, if it is read.
+    fn place(self, element: usize) -> Option<usize> {
+        match self {
+            Self::All => Some(element),
+            Self::These(elements) => elements.binary_search_by(|e| (*e as usize).cmp(&element)).ok(),
+        }
+    }
+}
 
 /// What an accessor holds, as plain numbers.
 #[derive(Debug, PartialEq)]
@@ -44,7 +79,7 @@ impl Accessors<'_> {
     ///
     /// # Errors
     /// A clause naming the accessor and what is wrong with it.
-    pub fn floats(&self, accessor: &Accessor, widths: &[usize]) -> Result<Floats, String> {
+    pub fn floats(&self, accessor: &Accessor, widths: &[usize], pick: Pick) -> Result<Floats, String> {
         let width = accessor.dimensions().multiplicity();
         if !widths.contains(&width) {
             return Err(format!(
@@ -53,16 +88,7 @@ impl Accessors<'_> {
             ));
         }
         let normalized = accessor.normalized();
-        let mut values = Vec::new();
-        self.visit(accessor, |kind, bytes, at| {
-            let value = number(kind, normalized, bytes)?;
-            if at < values.len() {
-                values[at] = value;
-            } else {
-                values.push(value);
-            }
-            Some(())
-        })?;
+        let values = self.read(accessor, pick, |kind, bytes| number(kind, normalized, bytes))?;
         Ok(Floats { width, values })
     }
 
@@ -70,61 +96,78 @@ impl Accessors<'_> {
     ///
     /// # Errors
     /// As [`Accessors::floats`]; also for signed and floating-point accessors.
-    pub fn integers(&self, accessor: &Accessor, width: usize) -> Result<Vec<u32>, String> {
+    pub fn integers(&self, accessor: &Accessor, width: usize, pick: Pick) -> Result<Vec<u32>, String> {
         if accessor.dimensions().multiplicity() != width {
             return Err(format!("accessor {} does not have {width} numbers per element", accessor.index()));
         }
-        let mut values = Vec::new();
-        self.visit(accessor, |kind, bytes, at| {
-            let value = match (kind, bytes) {
+        self.read(accessor, pick, |kind, bytes| {
+            Some(match (kind, bytes) {
                 (DataType::U8, [a, ..]) => u32::from(*a),
                 (DataType::U16, [a, b, ..]) => u32::from(u16::from_le_bytes([*a, *b])),
                 (DataType::U32, [a, b, c, d, ..]) => u32::from_le_bytes([*a, *b, *c, *d]),
                 _ => return None,
-            };
-            if at < values.len() {
-                values[at] = value;
-            } else {
-                values.push(value);
-            }
-            Some(())
-        })?;
-        Ok(values)
+            })
+        })
     }
 
-    /// Hands every component to `put` with its place in the flat result: first all of the dense part in
-    /// order, then the sparse replacements.
-    fn visit(
+    /// Reads the components of all picked elements, each by `convert`: first the dense part, then the sparse
+    /// replacements. Picked elements lie within the accessor.
+    fn read<T>(
         &self,
         accessor: &Accessor,
-        mut put: impl FnMut(DataType, &[u8], usize) -> Option<()>,
-    ) -> Result<(), String> {
+        pick: Pick,
+        convert: impl Fn(DataType, &[u8]) -> Option<T>,
+    ) -> Result<Vec<T>, String> {
         let name = accessor.index();
         let (kind, width, count) =
             (accessor.data_type(), accessor.dimensions().multiplicity(), accessor.count());
         let layout = Layout::of(kind, accessor.dimensions());
-        let wrong_type = || format!("accessor {name} has an unsuitable component type");
-        match accessor.view() {
+        let convert = |bytes: &[u8]| {
+            convert(kind, bytes).ok_or_else(|| format!("accessor {name} has an unsuitable component type"))
+        };
+        let dense = match accessor.view() {
             Some(view) => {
                 let bytes = self
                     .range(&view, accessor.offset(), count, layout.size)
                     .ok_or_else(|| format!("accessor {name} reaches beyond the end of its buffer"))?;
-                let stride = view.stride().unwrap_or(layout.size);
-                for element in 0..count {
-                    for component in 0..width {
-                        let start = element * stride + layout.offset(component);
-                        put(kind, &bytes[start..], element * width + component).ok_or_else(wrong_type)?;
+                Some((bytes, view.stride().unwrap_or(layout.size)))
+            }
+            None => None,
+        };
+        let picked = pick.count(count);
+        self.budget
+            .take(picked, width * size_of::<T>())
+            .map_err(|problem| format!("accessor {name} of {count} elements {problem}"))?;
+        let mut values = Vec::with_capacity(picked * width);
+        for place in 0..picked {
+            for component in 0..width {
+                values.push(match dense {
+                    Some((bytes, stride)) => {
+                        convert(&bytes[pick.element(place) * stride + layout.offset(component)..])?
                     }
-                }
+                    None => convert(&[0; 4])?,
+                });
             }
-            None if count <= MOST_ZEROS => {
-                for at in 0..count * width {
-                    put(kind, &[0; 4], at).ok_or_else(wrong_type)?;
-                }
-            }
-            None => return Err(format!("accessor {name} claims {count} elements but names no data")),
         }
+        self.replace(accessor, &layout, |element, bytes| {
+            let Some(place) = pick.place(element) else { return Ok(()) };
+            for component in 0..width {
+                values[place * width + component] = convert(&bytes[layout.offset(component)..])?;
+            }
+            Ok(())
+        })?;
+        Ok(values)
+    }
+
+    /// Hands the number and the bytes of each element of the sparse part to `put`.
+    fn replace(
+        &self,
+        accessor: &Accessor,
+        layout: &Layout,
+        mut put: impl FnMut(usize, &[u8]) -> Result<(), String>,
+    ) -> Result<(), String> {
         let Some(sparse) = accessor.sparse() else { return Ok(()) };
+        let (name, count) = (accessor.index(), accessor.count());
         let beyond = || format!("the sparse part of accessor {name} reaches beyond its buffer");
         let (indices, values) = (sparse.indices(), sparse.values());
         let index_size = indices.index_type().size();
@@ -140,10 +183,7 @@ impl Accessors<'_> {
             if target >= count {
                 return Err(format!("the sparse part of accessor {name} names element {target} of {count}"));
             }
-            for component in 0..width {
-                let start = entry * value_stride + layout.offset(component);
-                put(kind, &value_bytes[start..], target * width + component).ok_or_else(wrong_type)?;
-            }
+            put(target, &value_bytes[entry * value_stride..])?;
         }
         Ok(())
     }

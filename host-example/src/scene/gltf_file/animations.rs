@@ -8,7 +8,7 @@ use gltf::animation::Interpolation as GltfInterpolation;
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
-use super::accessors::Accessors;
+use super::accessors::{Accessors, Pick};
 use super::materials::label;
 use crate::scene::animation::{Animation, Channel, Interpolation, Property};
 use crate::scene::model::Scene;
@@ -119,10 +119,10 @@ pub fn read(
                     GltfInterpolation::Linear => Interpolation::Linear,
                     GltfInterpolation::CubicSpline => Interpolation::CubicSpline,
                 },
-                times: accessors.floats(&sampler.input(), &[1])?.values,
+                times: accessors.floats(&sampler.input(), &[1], Pick::All)?.values,
                 values: {
                     let widths: &[usize] = if property == Property::Weights { &[1] } else { &[3, 4] };
-                    accessors.floats(&sampler.output(), widths)?.values
+                    accessors.floats(&sampler.output(), widths, Pick::All)?.values
                 },
                 width: match property {
                     Property::Translation | Property::Scale => 3,

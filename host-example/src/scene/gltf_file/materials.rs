@@ -84,11 +84,11 @@ fn read_images(
             Error::file(
                 path,
                 format!("image {name}: {problem}"),
-                "replace the image or export the scene again",
+                accessors.budget.fix("replace the image or export the scene again"),
             )
         };
         let read: std::borrow::Cow<[u8]> = match (&image.uri, image.buffer_view) {
-            (Some(uri), _) => sources::read_uri(path, uri)?.into(),
+            (Some(uri), _) => sources::read_uri(path, uri, accessors.budget)?.into(),
             (None, Some(view)) => document
                 .views()
                 .nth(view.value())
@@ -97,7 +97,7 @@ fn read_images(
                 .into(),
             (None, None) => return Err(damaged("it has neither a file nor a buffer view".into())),
         };
-        match Image::decode(&name, &read) {
+        match Image::decode(&name, &read, accessors.budget) {
             Ok(image) => {
                 places.push(Some(scene.images.len()));
                 scene.images.push(image);

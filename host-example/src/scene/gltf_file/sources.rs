@@ -1,10 +1,12 @@
 //! Where the bytes of a glTF come from: the binary chunk, data URIs, and files beside it. A file may only name
 //! others in its own folder or below, so that opening a scene from anywhere cannot read anything else.
 
-use std::fs;
+use std::fs::{self, File};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
+use crate::scene::budget::{Budget, TOO_LARGE};
 
 /// Decodes `%41` and its like.
 fn percent_decode(text: &str) -> Option<Vec<u8>> {
@@ -55,11 +57,44 @@ fn has_scheme(uri: &str) -> bool {
     })
 }
 
-/// The path of a file that `owner` refers to, which must lie in the folder of `owner` or below.
+/// Opens a file that `owner` refers to, which must lie in the folder of `owner` or below; yields its path too.
 ///
 /// # Errors
 /// A clause saying why the reference is refused.
-pub fn resolve(owner: &Path, reference: &str) -> std::result::Result<PathBuf, String> {
+pub fn open(owner: &Path, reference: &str) -> std::result::Result<(File, PathBuf), String> {
+    let path = resolve(owner, reference)?;
+    let opened = || {
+        let file = File::open(&path)?;
+        let place = place_of(&file, &path)?;
+        Ok::<_, io::Error>((place.starts_with(fs::canonicalize(folder_of(owner))?), file))
+    };
+    // A link may have come in the way since the path was checked, so the file itself is checked again.
+    match opened() {
+        Ok((true, file)) => Ok((file, path)),
+        Ok((false, _)) => Err(format!("refers to '{reference}', which leads outside its folder")),
+        Err(e) => Err(format!("refers to '{reference}', which cannot be read: {e}")),
+    }
+}
+
+/// Where an open file really lies. Only Linux says so; elsewhere its path is followed once more.
+fn place_of(file: &File, path: &Path) -> io::Result<PathBuf> {
+    #[cfg(target_os = "linux")]
+    if let Ok(place) = fs::read_link(format!("/proc/self/fd/{}", std::os::fd::AsRawFd::as_raw_fd(file))) {
+        return Ok(place);
+    }
+    let _ = file;
+    fs::canonicalize(path)
+}
+
+fn folder_of(owner: &Path) -> &Path {
+    match owner.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// The path of a file that `owner` refers to, which must lie in the folder of `owner` or below.
+fn resolve(owner: &Path, reference: &str) -> std::result::Result<PathBuf, String> {
     let refuse = |why: &str| Err(format!("refers to '{reference}', which {why}"));
     if has_scheme(reference) {
         return refuse("is a URL and not a file beside it");
@@ -74,10 +109,7 @@ pub fn resolve(owner: &Path, reference: &str) -> std::result::Result<PathBuf, St
     if name.starts_with('/') || has_scheme(&name) || name.split('/').any(|part| part == "..") {
         return refuse("lies outside its folder");
     }
-    let folder = match owner.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
+    let folder = folder_of(owner);
     let path = folder.join(&name);
     match (fs::canonicalize(folder), fs::canonicalize(&path)) {
         (Ok(folder), Ok(real)) if real.starts_with(&folder) && real.is_file() => Ok(path),
@@ -90,9 +122,12 @@ pub fn resolve(owner: &Path, reference: &str) -> std::result::Result<PathBuf, St
 /// The bytes behind a URI of the glTF file `owner`.
 ///
 /// # Errors
-/// [`Error::Input`] when the URI is refused, or its file missing or unreadable.
-pub fn read_uri(owner: &Path, uri: &str) -> Result<Vec<u8>> {
+/// [`Error::Input`] when the URI is refused, or its file missing, unreadable or too large.
+pub fn read_uri(owner: &Path, uri: &str, budget: &Budget) -> Result<Vec<u8>> {
     if let Some(data) = uri.strip_prefix("data:") {
+        budget
+            .take(data.len(), 1)
+            .map_err(|problem| Error::file(owner, format!("holds a data URI that {problem}"), TOO_LARGE))?;
         let decoded = match data.split_once(',') {
             Some((head, body)) if head.ends_with(";base64") => base64_decode(body.as_bytes()),
             Some((_, body)) => percent_decode(body),
@@ -102,9 +137,9 @@ pub fn read_uri(owner: &Path, uri: &str) -> Result<Vec<u8>> {
             Error::file(owner, "holds a data URI that cannot be decoded", "export the scene again")
         });
     }
-    let path = resolve(owner, uri)
+    let (file, path) = open(owner, uri)
         .map_err(|problem| Error::file(owner, problem, "keep its files in the same folder, or below"))?;
-    fs::read(&path).map_err(|e| Error::file(&path, e, "make the file readable"))
+    budget.read(file).map_err(|e| Error::file(&path, e, budget.fix("make the file readable")))
 }
 
 #[cfg(test)]
@@ -159,5 +194,34 @@ mod tests {
         fs::write(folder.path().join("secret.bin"), b"x").unwrap();
         std::os::unix::fs::symlink("../secret.bin", inner.join("link.bin")).unwrap();
         assert!(resolve(&inner.join("scene.gltf"), "link.bin").unwrap_err().contains("outside"));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn links_that_appear_between_check_and_reading_lead_nowhere() {
+        use std::sync::atomic::{AtomicBool, Ordering};
+        let folder = tempfile::tempdir().unwrap();
+        let inner = folder.path().join("inner");
+        fs::create_dir(&inner).unwrap();
+        fs::write(folder.path().join("secret.bin"), b"secret").unwrap();
+        let done = AtomicBool::new(false);
+        let owner = inner.join("scene.gltf");
+        let read = std::thread::scope(|scope| {
+            scope.spawn(|| {
+                let spare = inner.join("spare");
+                while !done.load(Ordering::Relaxed) {
+                    fs::write(&spare, b"public").unwrap();
+                    fs::rename(&spare, inner.join("a.bin")).unwrap();
+                    std::os::unix::fs::symlink("../secret.bin", &spare).unwrap();
+                    fs::rename(&spare, inner.join("a.bin")).unwrap();
+                }
+            });
+            let tries = (0..20_000).filter_map(|_| read_uri(&owner, "a.bin", &Budget::default()).ok());
+            let read: Vec<Vec<u8>> = tries.collect();
+            done.store(true, Ordering::Relaxed);
+            read
+        });
+        assert!(!read.is_empty(), "the file was never read at all");
+        assert!(read.iter().all(|bytes| bytes == b"public"));
     }
 }

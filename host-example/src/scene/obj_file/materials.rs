@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::fmt::Write;
-use std::fs;
+use std::fs::File;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,8 @@ use glam::Vec3;
 
 use super::statements::{UNNAMED, number, statements, words};
 use crate::error::{Error, Result};
-use crate::scene::gltf_file::resolve;
+use crate::scene::budget::Budget;
+use crate::scene::gltf_file::open;
 use crate::scene::material::{AlphaMode, DecodeProblem, Image, Material, Sampler, Texture, TextureUse};
 use crate::scene::model::Scene;
 
@@ -35,15 +36,20 @@ pub fn plain_material() -> Material {
 
 /// Reads what an OBJ file at `path` names as its material library: one file, whose name may hold spaces, or
 /// several with spaces between them.
-pub fn load_mtl(path: &Path, names: &Path, warnings: &RefCell<Vec<String>>) -> tobj::MTLLoadResult {
+pub fn load_mtl(
+    path: &Path,
+    names: &Path,
+    budget: &Budget,
+    warnings: &RefCell<Vec<String>>,
+) -> tobj::MTLLoadResult {
     let names = names.to_string_lossy();
-    let several: Vec<&str> = match resolve(path, &reference(&names)) {
+    let several: Vec<&str> = match open(path, &reference(&names)) {
         Err(_) if names.contains(char::is_whitespace) => names.split_whitespace().collect(),
         _ => vec![&names],
     };
     let mut text = String::new();
     for name in several {
-        match read_mtl(path, name, warnings) {
+        match read_mtl(path, name, budget, warnings) {
             Ok(more) => text.push_str(&more),
             Err(problem) => warnings.borrow_mut().push(format!("{problem}; plain materials are used")),
         }
@@ -52,9 +58,14 @@ pub fn load_mtl(path: &Path, names: &Path, warnings: &RefCell<Vec<String>>) -> t
 }
 
 /// The normal form of one file.
-fn read_mtl(path: &Path, name: &str, warnings: &RefCell<Vec<String>>) -> std::result::Result<String, String> {
-    let file = resolve(path, &reference(name)).map_err(|problem| format!("the file {problem}"))?;
-    let bytes = fs::read(&file).map_err(|e| format!("{name} cannot be read: {e}"))?;
+fn read_mtl(
+    path: &Path,
+    name: &str,
+    budget: &Budget,
+    warnings: &RefCell<Vec<String>>,
+) -> std::result::Result<String, String> {
+    let (file, _) = open(path, &reference(name)).map_err(|problem| format!("the file {problem}"))?;
+    let bytes = budget.read(file).map_err(|e| format!("{name} cannot be read: {e}"))?;
     Ok(normal_form(&String::from_utf8_lossy(&bytes), |line, problem| {
         warnings.borrow_mut().push(format!("{name}, line {line}: {problem}; it is left out"));
     }))
@@ -110,15 +121,18 @@ fn one_number(rest: &str) -> std::result::Result<String, String> {
 }
 
 /// An image named by the caller.
-pub fn named_texture(scene: &mut Scene, path: &Path) -> Result<usize> {
-    let bytes =
-        fs::read(path).map_err(|e| Error::file(path, e, "give the path of a readable PNG or JPEG file"))?;
-    let image = Image::decode(&path.display().to_string(), &bytes).map_err(|problem| {
+pub fn named_texture(scene: &mut Scene, path: &Path, budget: &Budget) -> Result<usize> {
+    let unreadable = |problem: String| {
+        Error::file(path, problem, budget.fix("give the path of a readable PNG or JPEG file"))
+    };
+    let file = File::open(path).map_err(|e| unreadable(e.to_string()))?;
+    let bytes = budget.read(file).map_err(unreadable)?;
+    let image = Image::decode(&path.display().to_string(), &bytes, budget).map_err(|problem| {
         let problem = match problem {
             DecodeProblem::Unsupported(_) => "is neither a PNG nor a JPEG image".into(),
             DecodeProblem::Damaged(problem) => problem,
         };
-        Error::file(path, problem, "give a whole PNG or JPEG file")
+        Error::file(path, problem, budget.fix("give a whole PNG or JPEG file"))
     })?;
     Ok(add_texture(scene, image))
 }
@@ -133,6 +147,8 @@ fn add_texture(scene: &mut Scene, image: Image) -> usize {
 pub struct Loader<'a> {
     /// The OBJ file.
     pub path: &'a Path,
+    /// Counts what is read.
+    pub budget: &'a Budget,
     /// The texture of each file read so far, where it could be read.
     pub images: HashMap<PathBuf, Option<usize>>,
     /// Receives images, textures and warnings.
@@ -170,8 +186,8 @@ impl Loader<'_> {
     /// A texture of the MTL file; options before its name are ignored.
     fn texture(&mut self, statement: &str) -> Option<TextureUse> {
         let name = without_options(statement);
-        let path = match resolve(self.path, &reference(name)) {
-            Ok(path) => path,
+        let (file, path) = match open(self.path, &reference(name)) {
+            Ok(opened) => opened,
             Err(problem) => {
                 self.scene.warnings.push(format!("a material {problem}; it is left out"));
                 return None;
@@ -180,8 +196,8 @@ impl Loader<'_> {
         if let Some(known) = self.images.get(&path) {
             return known.map(TextureUse::plain);
         }
-        let decoded = fs::read(&path).map_err(|e| e.to_string()).and_then(|bytes| {
-            Image::decode(name, &bytes).map_err(|problem| match problem {
+        let decoded = self.budget.read(file).and_then(|bytes| {
+            Image::decode(name, &bytes, self.budget).map_err(|problem| match problem {
                 DecodeProblem::Unsupported(_) => "is neither PNG nor JPEG".to_owned(),
                 DecodeProblem::Damaged(problem) => problem,
             })

@@ -40,13 +40,14 @@ impl Totals {
     }
 }
 
-/// Brings a file into its normal form.
+/// Brings a file into its normal form; yields the number of corners of its faces too.
 ///
 /// # Errors
 /// A clause that names the line and says what is wrong with it.
-pub fn normal_form(text: &str) -> Result<String, String> {
+pub fn normal_form(text: &str) -> Result<(String, usize), String> {
     let totals = Totals::of(text);
-    let mut writer = Writer { totals, seen: Totals::default(), vertices: String::new(), rest: String::new() };
+    let mut writer =
+        Writer { totals, seen: Totals::default(), vertices: String::new(), rest: String::new(), corners: 0 };
     if writer.totals.texcoords > 0 {
         writer.vertices.push_str(NO_TEXTURE);
     }
@@ -56,9 +57,9 @@ pub fn normal_form(text: &str) -> Result<String, String> {
             .statement(keyword, rest)
             .map_err(|problem| format!("line {}: {keyword} {problem}", statement.line))?;
     }
-    let Writer { mut vertices, rest, .. } = writer;
+    let Writer { mut vertices, rest, corners, .. } = writer;
     vertices.push_str(&rest);
-    Ok(vertices)
+    Ok((vertices, corners))
 }
 
 struct Writer {
@@ -67,6 +68,7 @@ struct Writer {
     seen: Totals,
     vertices: String,
     rest: String,
+    corners: usize,
 }
 
 impl Writer {
@@ -126,7 +128,7 @@ impl Writer {
 
     fn face(&mut self, rest: &str) -> Result<(), String> {
         self.rest.push('f');
-        let mut corners = 0;
+        let before = self.corners;
         for corner in words(rest) {
             let mut parts = corner.split('/');
             let mut index = |seen, total| {
@@ -148,10 +150,10 @@ impl Writer {
             if let Some(normal) = normal {
                 put(&mut self.rest, format_args!("/{normal}"));
             }
-            corners += 1;
+            self.corners += 1;
         }
         self.rest.push('\n');
-        if corners == 0 { Err("has no corners".into()) } else { Ok(()) }
+        if self.corners == before { Err("has no corners".into()) } else { Ok(()) }
     }
 }
 
@@ -199,8 +201,8 @@ mod tests {
                     f -3/-1 2 \\\n3/1/\nl 1 2 3\nusemtl\twall\nvn 0 0 1\nf 1//1 2//-1 4//1\nv 9 9 9 1 1 1 0.5\ng\n";
         let expected = "vt 0 1\nv 1 2 3 1 1 1\nv 1 0 0 1 0 0\nv 0 1 0 1 1 1\nvt 0.5 0\nvn 0 0 1\nv 9 9 9 1 1 1\n\
                         mtllib a.mtl\nusemtl \0\nf 1/2 2/1 3/2\nusemtl wall\nf 1/1/1 2/1/1 4/1/1\ng \n";
-        assert_eq!(normal_form(text).unwrap(), expected);
-        assert_eq!(normal_form("v 0 0 0\nf 1 1// 1/0/0\n").unwrap(), "v 0 0 0\nf 1/ 1/ 1/\n");
+        assert_eq!(normal_form(text).unwrap(), (expected.to_owned(), 6));
+        assert_eq!(normal_form("v 0 0 0\nf 1 1// 1/0/0\n").unwrap().0, "v 0 0 0\nf 1/ 1/ 1/\n");
     }
 
     #[test]
