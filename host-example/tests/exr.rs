@@ -2,6 +2,8 @@
 //! crate's own reader, which the program does not use for this.
 
 mod support;
+#[path = "../exr-edit/tests/support/two_parts.rs"]
+mod two_parts;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -218,6 +220,24 @@ fn layers_views_and_alpha_are_chosen() {
     command.current_dir(folder.path()).args(["apply", "gaussian", "in.png", "no.png", "--layer", "a"]);
     fails(&mut command, 2, &["--layer", "no EXR file"]);
     assert!(!listing(folder.path()).contains(&"no.exr".to_owned()));
+}
+
+#[test]
+fn parts_under_other_compressions_pass_untouched() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    // HTJ2K in chunks of 256 and of 32 lines. The second part is the depth that guides a cartoon, were it read.
+    for (compression, lines, name) in [(10, 256, "HTJ2K256"), (11, 32, "HTJ2K32")] {
+        let (bytes, chunks) = two_parts::file(compression, lines);
+        fs::write(at("in.exr"), &bytes).expect("the folder is writable");
+        apply(folder.path(), "cartoon", "in.exr", "out.exr", &[]);
+        let out = fs::read(at("out.exr")).expect("a result");
+        let tail: usize = chunks.iter().map(|chunk| 12 + chunk.len()).sum();
+        assert!(out[out.len() - tail..] == bytes[bytes.len() - tail..], "{name}");
+        assert!(out != bytes, "{name}");
+        let asked = ["apply", "cartoon", "in.exr", "no.exr", "--guide", "depth=depth"];
+        fails(isophote().current_dir(folder.path()).args(asked), 2, &["in.exr", name]);
+    }
 }
 
 /// What the library gives for a picture in linear light.

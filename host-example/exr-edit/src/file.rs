@@ -6,6 +6,7 @@
 use std::io::Write;
 use std::sync::Arc;
 
+use crate::codec;
 use crate::cursor::Cursor;
 use crate::edit::{self, Edit, PartEdit};
 use crate::error::{Error, Result};
@@ -81,6 +82,11 @@ impl File {
     /// Length of the file in bytes.
     pub fn length(&self) -> usize {
         self.bytes.len()
+    }
+
+    /// Whether [`decode`](Self::decode) reads the compression of a part.
+    pub fn can_decode(&self, part: usize) -> bool {
+        self.parts.get(part).is_some_and(|part| codec::check(part).is_ok())
     }
 
     /// Decompresses all chunks of a part, side by side on rayon's threads.

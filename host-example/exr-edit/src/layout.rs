@@ -237,8 +237,8 @@ fn lines(compression: u8) -> Result<usize> {
     match compression {
         0..=2 => Ok(1),
         3 | 5 => Ok(16),
-        4 | 6 | 7 | 8 | 10 => Ok(32),
-        9 | 11 => Ok(256),
+        4 | 6 | 7 | 8 | 11 => Ok(32),
+        9 | 10 => Ok(256),
         other => Err(Error::damaged(format!("compression {other} is unknown"))),
     }
 }

@@ -1,6 +1,8 @@
 //! What is not changed is kept: bytes of files without edits, samples of channels without new ones.
 
 mod support;
+#[path = "support/two_parts.rs"]
+mod two_parts;
 
 use isophote_exr_edit::{Channel, Edit, Error, File, Limits, PartEdit, Plane, Sample};
 use support::{assets, encodings, file};
@@ -62,6 +64,33 @@ fn other_channels_keep_their_bits() {
             let plane = again.plane(named.channel(name).unwrap()).unwrap().to_f32();
             assert!(plane.iter().all(|v| *v == value), "{encoding:?}, {name}");
         }
+    }
+}
+
+/// Compressions that are not read, with the scan lines of a chunk as OpenEXR's header `ImfCompression.h` has them.
+const NOT_READ: [(u8, usize); 4] = [(8, 32), (9, 256), (10, 256), (11, 32)];
+
+#[test]
+fn parts_that_are_not_read_pass_untouched() {
+    for (compression, lines) in NOT_READ {
+        let (bytes, chunks) = two_parts::file(compression, lines);
+        let before = parse(bytes.clone());
+        assert!(before.can_decode(0) && !before.can_decode(1), "{compression}");
+        assert!(matches!(before.decode(1), Err(Error::Unsupported { .. })), "{compression}");
+        let decoded = before.decode(0).unwrap();
+        let mut edit = Edit::of(&before.parts()[0]);
+        edit.replace("G", vec![2.0; two_parts::SIZE.0 * two_parts::SIZE.1]).unwrap();
+        let mut out = Vec::new();
+        before.write(&[PartEdit { decoded: &decoded, edit: &edit }], &mut out).unwrap();
+        // Nothing is compressed, so that every chunk lies where it lay.
+        assert_eq!(out.len(), bytes.len());
+        let tail: usize = chunks.iter().map(|chunk| 12 + chunk.len()).sum();
+        assert!(out[out.len() - tail..] == bytes[bytes.len() - tail..], "{compression}");
+        assert!(out != bytes, "{compression}");
+        assert_eq!(parse(out).parts()[1].compression, compression);
+        // As many lines a chunk as another compression has.
+        let (bytes, _) = two_parts::file(compression, if lines == 32 { 256 } else { 32 });
+        assert!(matches!(File::parse(bytes, Limits::default()), Err(Error::Damaged(_))), "{compression}");
     }
 }
 

@@ -229,8 +229,11 @@ fn sources(
             continue;
         }
         let name = choice.and_then(|c| c.layer.as_deref());
-        let mut near: Vec<&Group> =
-            groups.iter().filter(|g| g.view == picture.view || g.view.is_none()).collect();
+        // A part that is not read guides nothing, unless it is asked for, which is refused.
+        let is_near = |g: &&Group| {
+            (g.view == picture.view || g.view.is_none()) && (name.is_some() || exr.can_decode(g.part))
+        };
+        let mut near: Vec<&Group> = groups.iter().filter(is_near).collect();
         near.sort_by_key(|g| (g.part != picture.part, g.view != picture.view, g.prefix != picture.prefix));
         let found = near.iter().find_map(|group| source(exr, group, guide, name));
         let found = found.or_else(|| {
