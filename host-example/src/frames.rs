@@ -2,8 +2,9 @@
 //! frame numbers such as `1001-1100x2,1200`.
 
 use std::collections::HashSet;
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::fs;
+use std::iter::successors;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -11,6 +12,10 @@ use crate::error::{Error, Result};
 
 /// Most frames of one run.
 const MOST_FRAMES: usize = 1_000_000;
+/// Most digits of a place for the number: names of files are no longer.
+const MOST_DIGITS: usize = 255;
+/// Extensions of pictures.
+const KINDS: [&str; 8] = ["exr", "png", "jpg", "jpeg", "tif", "tiff", "webp", "hdr"];
 /// Most ranges in a message.
 const MOST_SHOWN: usize = 12;
 
@@ -18,24 +23,31 @@ const MOST_SHOWN: usize = 12;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pattern {
     path: PathBuf,
-    before: String,
+    before: OsString,
     digits: usize,
-    after: String,
+    after: OsString,
 }
 
 impl Pattern {
     /// The pattern in a path's last part; nothing when there is none.
     ///
     /// # Errors
-    /// [`Error::Input`] when there are several.
+    /// [`Error::Input`] when there are several, or it has more digits than a name can have.
     pub fn new(path: &Path) -> Result<Option<Self>> {
-        let Some(name) = path.file_name().and_then(|n| n.to_str()) else { return Ok(None) };
+        let Some(name) = path.file_name().map(OsStr::as_encoded_bytes) else { return Ok(None) };
         let Some((start, length, digits)) = place(name) else { return Ok(None) };
-        let (before, after) = (name[..start].to_owned(), name[start + length..].to_owned());
-        if place(&after).is_some() {
+        let (before, after) = (&name[..start], &name[start + length..]);
+        if place(after).is_some() {
             return Err(Error::file(path, "has several places for the frame number", "leave one"));
         }
-        Ok(Some(Self { path: path.to_owned(), before, digits, after }))
+        if digits > MOST_DIGITS {
+            return Err(Error::file(
+                path,
+                format!("has {digits} digits for the frame number"),
+                "leave a few",
+            ));
+        }
+        Ok(Some(Self { path: path.to_owned(), before: piece(before), digits, after: piece(after) }))
     }
 
     /// The pattern in a path's last part; without one, `.####` before the extension.
@@ -43,12 +55,15 @@ impl Pattern {
     /// # Errors
     /// As [`Pattern::new`].
     pub fn or_added(path: &Path) -> Result<Self> {
-        let part = |part: Option<&OsStr>| part.map(|p| p.to_string_lossy().into_owned()).unwrap_or_default();
-        let added = || Self {
-            path: path.to_owned(),
-            before: format!("{}.", part(path.file_stem())),
-            digits: 4,
-            after: path.extension().map_or_else(String::new, |e| format!(".{}", e.to_string_lossy())),
+        let added = || {
+            let mut before = path.file_stem().unwrap_or_default().to_owned();
+            before.push(".");
+            let mut after = OsString::new();
+            if let Some(extension) = path.extension() {
+                after.push(".");
+                after.push(extension);
+            }
+            Self { path: path.to_owned(), before, digits: 4, after }
         };
         Ok(Self::new(path)?.unwrap_or_else(added))
     }
@@ -57,8 +72,17 @@ impl Pattern {
     pub fn file(&self, frame: i64) -> PathBuf {
         let sign = if frame < 0 { "-" } else { "" };
         let digits = self.digits;
-        let number = format!("{sign}{:0digits$}", frame.unsigned_abs());
-        self.path.with_file_name(format!("{}{number}{}", self.before, self.after))
+        let mut name = self.before.clone();
+        name.push(format!("{sign}{:0digits$}", frame.unsigned_abs()));
+        name.push(&self.after);
+        self.path.with_file_name(name)
+    }
+
+    /// The number in the name of a file of the sequence.
+    fn number(&self, name: &OsStr) -> Option<i64> {
+        let rest = name.as_encoded_bytes().strip_prefix(self.before.as_encoded_bytes())?;
+        let number = rest.strip_suffix(self.after.as_encoded_bytes())?;
+        std::str::from_utf8(number).ok()?.parse().ok()
     }
 
     /// Frames that have a file, in order.
@@ -75,9 +99,7 @@ impl Pattern {
         let mut frames = Vec::new();
         for entry in fs::read_dir(folder).map_err(unreadable)? {
             let name = entry.map_err(unreadable)?.file_name();
-            let number = name
-                .to_str()
-                .and_then(|n| n.strip_prefix(&self.before)?.strip_suffix(&self.after)?.parse::<i64>().ok());
+            let number = self.number(&name);
             // Only the name that the frame would have: 1 is no frame of ####.
             frames.extend(number.filter(|n| self.file(*n).file_name() == Some(name.as_os_str())));
         }
@@ -90,22 +112,68 @@ impl Pattern {
 }
 
 /// Where the number goes: start, length and digits.
-fn place(name: &str) -> Option<(usize, usize, usize)> {
-    for (start, c) in name.char_indices() {
+fn place(name: &[u8]) -> Option<(usize, usize, usize)> {
+    for (start, c) in name.iter().enumerate() {
         let rest = &name[start..];
-        if c == '#' || c == '@' {
-            let length = rest.chars().take_while(|other| *other == c).count();
+        if matches!(c, b'#' | b'@') {
+            let length = rest.iter().take_while(|other| *other == c).count();
             return Some((start, length, length));
         }
-        if c == '%' {
-            let digits: String = rest[1..].chars().take_while(char::is_ascii_digit).collect();
-            if rest[1 + digits.len()..].starts_with('d') && digits.len() <= 3 {
+        if *c == b'%' {
+            let length = rest[1..].iter().take_while(|c| c.is_ascii_digit()).count();
+            if rest.get(1 + length) == Some(&b'd') && length <= 3 {
                 // %4d would pad with blanks, which no sequence means.
-                return Some((start, digits.len() + 2, digits.parse().unwrap_or(1)));
+                let digits = rest[1..=length].iter().fold(0, |sum, c| sum * 10 + usize::from(c - b'0'));
+                return Some((start, length + 2, digits.max(1)));
             }
         }
     }
     None
+}
+
+/// A part of a name that ends where ASCII begins or the other way round, whatever its letters are.
+#[cfg(unix)]
+fn piece(name: &[u8]) -> OsString {
+    <OsStr as std::os::unix::ffi::OsStrExt>::from_bytes(name).to_owned()
+}
+
+#[cfg(not(unix))]
+fn piece(name: &[u8]) -> OsString {
+    String::from_utf8_lossy(name).into_owned().into()
+}
+
+/// The pattern of a sequence that somebody may mean who names a folder, or a pattern as shells know them such as
+/// `shot.*.exr` or `shot.[0-9].exr`, and that has frames on disk.
+pub fn meant(path: &Path) -> Option<PathBuf> {
+    if path.is_dir() {
+        let mut names: Vec<OsString> = fs::read_dir(path).ok()?.flatten().map(|e| e.file_name()).collect();
+        names.sort_unstable();
+        return names.iter().find_map(|name| numbered(name)).map(|pattern| path.join(pattern));
+    }
+    let name = path.file_name()?.to_str()?;
+    let start = name.find(['*', '?', '[', '{', '$', '<'])?;
+    // What programs write with a dollar ends with the letters and digits behind it.
+    let word = name[start + 1..].chars().take_while(char::is_ascii_alphanumeric).count();
+    let word = if name[start..].starts_with('$') { word } else { 0 };
+    let end = 1 + name.rfind(['*', '?', ']', '}', '>']).unwrap_or(start).max(start + word);
+    let (before, after) = (&name[..start], &name[end..]);
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let mut names: Vec<OsString> =
+        fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?.flatten().map(|e| e.file_name()).collect();
+    names.sort_unstable();
+    let fits = |name: &&OsString| {
+        name.to_str().is_some_and(|name| name.starts_with(before) && name.ends_with(after))
+    };
+    names.iter().filter(fits).find_map(|name| numbered(name)).map(|pattern| path.with_file_name(pattern))
+}
+
+/// The name of a picture with a place instead of the last number before its extension.
+fn numbered(name: &OsStr) -> Option<String> {
+    let (stem, extension) = name.to_str()?.rsplit_once('.')?;
+    let end = stem.rfind(|c: char| c.is_ascii_digit())? + 1;
+    let digits = stem[..end].bytes().rev().take_while(u8::is_ascii_digit).count();
+    let is_picture = KINDS.iter().any(|kind| extension.eq_ignore_ascii_case(kind));
+    is_picture.then(|| format!("{}{}{}.{extension}", &stem[..end - digits], "#".repeat(digits), &stem[end..]))
 }
 
 /// Frames as they are written on the command line: numbers and ranges with steps after an x, or after a colon as
@@ -167,7 +235,7 @@ fn range(item: &str) -> Option<(i64, i64, i64)> {
         .char_indices()
         .skip(1)
         .find(|(at, c)| *c == '-' && range[..*at].trim_end().ends_with(|c: char| c.is_ascii_digit()));
-    let number = |text: &str| text.trim().parse::<i64>().ok().filter(|n| n.abs() < 1 << 40);
+    let number = |text: &str| text.trim().parse::<i64>().ok().filter(|n| n.unsigned_abs() < 1 << 40);
     let (first, last) = match split {
         Some((at, _)) => (number(&range[..at])?, number(&range[at + 1..])?),
         None => (number(range)?, number(range)?),
@@ -177,9 +245,16 @@ fn range(item: &str) -> Option<(i64, i64, i64)> {
 
 /// Frames that a sequence on disk seems to lack: holes in its smallest step.
 pub fn holes(frames: &[i64]) -> Vec<i64> {
-    let Some(step) = frames.windows(2).map(|pair| pair[1] - pair[0]).min() else { return Vec::new() };
-    let holes = frames.windows(2).flat_map(|pair| (pair[0] + step..pair[1]).step_by(step as usize));
-    holes.take(MOST_FRAMES).collect()
+    let pairs = || frames.windows(2).filter(|pair| pair[0] < pair[1]);
+    let Some(step) = pairs().map(|pair| pair[1].abs_diff(pair[0])).min() else { return Vec::new() };
+    let next = move |frame: &i64| frame.checked_add_unsigned(step);
+    let between = |pair: &[i64]| {
+        successors(next(&pair[0]), next).take_while({
+            let end = pair[1];
+            move |f| *f < end
+        })
+    };
+    pairs().flat_map(between).take(MOST_FRAMES).collect()
 }
 
 /// Frames as a range expression of Open Job Description, in ascending order: `1001-1099:2,1200`.
@@ -200,18 +275,18 @@ pub fn summary(frames: &[i64]) -> String {
 fn ranges(frames: &[i64]) -> Vec<String> {
     let mut sorted = frames.to_vec();
     sorted.sort_unstable();
-    let mut parts: Vec<(i64, i64, i64)> = Vec::new();
+    let mut parts: Vec<(i64, i64, u64)> = Vec::new();
     for frame in sorted {
         match parts.last_mut() {
             Some((first, last, step)) if *first == *last => {
-                *step = frame - *last;
+                *step = frame.abs_diff(*last);
                 *last = frame;
             }
-            Some((_, last, step)) if *last + *step == frame => *last = frame,
+            Some((_, last, step)) if last.abs_diff(frame) == *step => *last = frame,
             _ => parts.push((frame, frame, 1)),
         }
     }
-    let text = |(first, last, step): &(i64, i64, i64)| match (last - first, *step) {
+    let text = |(first, last, step): &(i64, i64, u64)| match (last.abs_diff(*first), *step) {
         (0, _) => first.to_string(),
         (_, 1) => format!("{first}-{last}"),
         (length, step) if length == step => format!("{first},{last}"),
@@ -230,11 +305,14 @@ mod tests {
         assert_eq!(frames("1001-1007x2,1200").unwrap(), [1001, 1003, 1005, 1007, 1200]);
         assert_eq!(frames("3-1, 2,-2--1").unwrap(), [3, 2, 1, -2, -1]);
         assert_eq!(frames("1-5:2").unwrap(), [1, 3, 5]);
-        for bad in ["", "a", "1-", "1-5x0", "1-5x-1", "1--", "1-99999999999", "1..5"] {
+        for bad in ["-9223372036854775808", "", "a", "1-", "1-5x0", "1-5x-1", "1--", "1-99999999999", "1..5"]
+        {
             assert!(frames(bad).is_err(), "{bad}");
         }
         assert_eq!(holes(&[1, 3, 5, 9, 11]), [7]);
         assert_eq!(holes(&[4]), [] as [i64; 0]);
+        assert_eq!(holes(&[i64::MIN, 0, i64::MAX]), [] as [i64; 0]);
+        assert_eq!(holes(&[i64::MIN, i64::MAX - 2, i64::MAX]).first(), Some(&(i64::MIN + 2)));
     }
 
     #[test]
@@ -244,6 +322,8 @@ mod tests {
         assert_eq!(range_expression(&[1, 9]), "1,9");
         assert_eq!(range_expression(&[-2, -1, 5]), "-2--1,5");
         assert_eq!(range_expression(&[4]), "4");
+        let ends = [i64::MIN, i64::MAX];
+        assert_eq!(range_expression(&ends), "-9223372036854775808,9223372036854775807");
         assert_eq!(summary(&[1, 2, 3, 7, 9, 10]), "1-3,7,9,10");
         let growing: Vec<i64> = (0..100).map(|n| n * n).collect();
         assert!(summary(&growing).ends_with(",...") && summary(&growing).len() < 100);
@@ -260,6 +340,8 @@ mod tests {
         assert_eq!(file("s%d.exr", 3).as_deref(), Some("s3.exr"));
         assert_eq!(file("plain.exr", 3), None);
         assert_eq!(file("100%.exr", 3), None);
+        assert_eq!(file("s.##.exr", i64::MIN).as_deref(), Some("s.-9223372036854775808.exr"));
+        assert!(Pattern::new(Path::new(&"#".repeat(70_000))).is_err());
         assert!(Pattern::new(Path::new("s.##.##.exr")).is_err());
         let added = |path: &str| Pattern::or_added(Path::new(path)).unwrap().file(7).display().to_string();
         assert_eq!(added("a/out.png"), "a/out.0007.png");

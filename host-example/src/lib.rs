@@ -4,6 +4,7 @@ pub mod apply;
 pub mod bench;
 pub mod cli;
 pub mod error;
+pub mod files;
 pub mod frames;
 pub mod loader;
 pub mod output;

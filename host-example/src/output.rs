@@ -1,8 +1,7 @@
-//! Pictures in main memory, and writing them as PNG or EXR. Files are written beside their final name and
-//! renamed when whole, so that nothing partial ever carries that name.
+//! Pictures in main memory, writing them as PNG or EXR, and printing.
 
-use std::fs;
-use std::io::{BufWriter, Write};
+use std::fmt::Display;
+use std::io::{ErrorKind, Write};
 use std::path::Path;
 
 use half::f16;
@@ -10,6 +9,7 @@ use isophote_exr_edit::{Plane, create};
 
 use crate::apply::space::srgb_encode;
 use crate::error::{Error, Result};
+use crate::files;
 
 /// An image of 32-bit floats, channels interleaved, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,7 +96,7 @@ fn save_png(path: &Path, picture: &Picture) -> Result<()> {
     if color == image::ExtendedColorType::Rgb8 {
         bytes = bytes.as_chunks::<4>().0.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
     }
-    write_beside(path, |file| {
+    files::write(path, |file| {
         let encoder = image::codecs::png::PngEncoder::new(file);
         image::ImageEncoder::write_image(encoder, &bytes, picture.width, picture.height, color)
             .map_err(|e| e.to_string())
@@ -136,7 +136,7 @@ pub fn save_layers(path: &Path, layers: &[Layer<'_>], world_to_camera: Option<[f
         world_to_camera,
         ..create::Picture::default()
     };
-    write_beside(path, |file| create::write(&image, file).map_err(|e| e.to_string()))
+    files::write(path, |file| create::write(&image, file).map_err(|e| e.to_string()))
 }
 
 /// The numbers of a layer as the channels of an EXR file, as many as have names.
@@ -153,112 +153,30 @@ fn planes(layer: &Layer<'_>) -> Vec<(String, Plane)> {
     layer.names.iter().take(count).enumerate().map(plane).collect()
 }
 
-/// Whether a file could be written at this place; asked before any work is done.
-///
-/// # Errors
-/// [`Error::Input`] when the folder is missing or cannot be written, or the place is a folder itself.
-pub fn check_writable(path: &Path) -> Result<()> {
-    if path.is_dir() {
-        return Err(Error::file(path, "is a folder", "name a file"));
-    }
-    beside(path).map(drop)
-}
-
-/// A temporary file in the folder of `path`, deleted unless it is renamed.
-fn beside(path: &Path) -> Result<tempfile::NamedTempFile> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    let prefix = format!("{TEMPORARY}{}-{}-", machine(), std::process::id());
-    builder.prefix(&prefix);
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // Temporary files are private by default; pictures are as public as the umask lets them be.
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder).map_err(|e| unwritable(path, e))
-}
-
-/// How the names of temporary files begin; machine and process follow, so that what a killed process left
-/// is not mistaken for what another is writing.
-const TEMPORARY: &str = ".isophote-";
-
-/// Age after which a temporary file of another machine was left behind.
-const LEFT_BEHIND: std::time::Duration = std::time::Duration::from_secs(24 * 3600);
-
-fn machine() -> String {
-    let name = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
-    let name: String = name.trim().chars().filter(char::is_ascii_alphanumeric).take(32).collect();
-    if name.is_empty() { "host".into() } else { name }
-}
-
-/// Removes temporary files from the folder of `path` that processes of this machine left when they were killed,
-/// and others after a day.
-pub fn sweep(path: &Path) {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let own = format!("{TEMPORARY}{}-", machine());
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let name = entry.file_name();
-        let Some(name) = name.to_str().filter(|n| n.starts_with(TEMPORARY)) else { continue };
-        let process = name.strip_prefix(&own).and_then(|rest| rest.split('-').next()?.parse::<u32>().ok());
-        let is_dead = Path::new("/proc/self").exists()
-            && process.is_some_and(|id| !Path::new("/proc").join(id.to_string()).exists());
-        let is_old = entry
-            .metadata()
-            .and_then(|m| m.modified())
-            .is_ok_and(|at| at.elapsed().is_ok_and(|age| age > LEFT_BEHIND));
-        if is_dead || is_old {
-            // Another process may have been faster.
-            let _ = fs::remove_file(entry.path());
-        }
-    }
-}
-
-fn unwritable(path: &Path, problem: impl std::fmt::Display) -> Error {
-    Error::file(path, format!("cannot be written: {problem}"), "name a writable folder")
-}
-
-/// Writes a file under another name in its folder and renames it when `write` has succeeded.
-///
-/// # Errors
-/// [`Error::Input`] when the folder is missing or cannot be written.
-pub fn write_beside(
-    path: &Path,
-    write: impl FnOnce(&mut BufWriter<&mut fs::File>) -> std::result::Result<(), String>,
-) -> Result<()> {
-    let fail = |problem: String| unwritable(path, problem);
-    let mut file = beside(path)?;
-    let mut writer = BufWriter::new(file.as_file_mut());
-    write(&mut writer).map_err(fail)?;
-    writer.flush().map_err(|e| fail(e.to_string()))?;
-    drop(writer);
-    // A name must not appear before what it names is on the disk.
-    file.as_file().sync_all().map_err(|e| fail(e.to_string()))?;
-    file.persist(path).map_err(|e| fail(e.error.to_string()))?;
-    Ok(())
-}
-
 /// Prints to standard output; whoever has read enough and closed it is no error.
 ///
 /// # Errors
 /// [`Error::Failure`] when it cannot be written.
 pub fn print(text: &str) -> Result<()> {
-    match std::io::stdout().write_all(text.as_bytes()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+    let mut stdout = std::io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
             Err(Error::failure(format!("cannot write to standard output: {e}"), "redirect it elsewhere"))
         }
         _ => Ok(()),
     }
 }
 
+/// Prints a warning on a line of standard error.
+pub fn warn(warning: impl Display) {
+    // Where nobody can be warned the work goes on.
+    let _ = writeln!(std::io::stderr(), "warning: {warning}");
+}
+
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     fn gradient() -> Picture {

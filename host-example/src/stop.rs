@@ -2,8 +2,19 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
 
 use signal_hook::consts::{SIGINT, SIGTERM};
+
+use crate::error::Error;
+use crate::files;
+
+/// Time between two looks at whether the process is to end.
+const TICK: Duration = Duration::from_millis(40);
+
+/// Time that what is nearly done may take then.
+const GRACE: Duration = Duration::from_millis(300);
 
 /// Whether a run is to end after what is being done now.
 #[derive(Debug, Default)]
@@ -24,5 +35,22 @@ impl Stop {
     /// Whether it was requested.
     pub fn is_requested(&self) -> bool {
         self.0.load(Ordering::Relaxed)
+    }
+
+    /// For a run that makes one thing only: when the end is requested, the process ends soon, whatever it does, and
+    /// leaves nothing that is not whole.
+    pub fn ends_the_process(&self, thing: &str) {
+        let requested = Arc::clone(&self.0);
+        let error = Error::failure(format!("stopped before {thing} was written"), "start again");
+        let watch = move || {
+            while !requested.load(Ordering::Relaxed) {
+                thread::sleep(TICK);
+            }
+            thread::sleep(GRACE);
+            eprintln!("error: {error}");
+            files::abandon(error.exit_code())
+        };
+        // Without a thread to spare the run ends after what is being done.
+        let _ = thread::Builder::new().name("end".into()).spawn(watch);
     }
 }

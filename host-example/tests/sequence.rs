@@ -124,6 +124,42 @@ fn missing_frames_are_named_before_any_work() {
 }
 
 #[test]
+fn no_frame_takes_more_memory_than_allowed() {
+    let folder = folder();
+    frames(folder.path(), 1..=1, 32);
+    frames(folder.path(), 2..=2, 1024);
+    frames(folder.path(), 3..=3, 32);
+    let run = |more: &[&str]| {
+        apply(folder.path(), &[&["gaussian", INPUT, "o.####.exr", "--memory", "20MiB"], more].concat())
+    };
+    let output = run(&["--dry-run"]).output().expect("the program can be started");
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains("2 frames to be written, 1 refused"), "{text}");
+    assert!(
+        text.contains("in.0002.exr: a frame needs about") && text.contains("20MiB may be used"),
+        "{text}"
+    );
+    assert!(support::errors(&output).contains("1 of 3 frames") && output.status.code() == Some(2));
+    fails(
+        &mut run(&[]),
+        2,
+        &["warning: in.0002.exr: a frame needs about", "20MiB may be used", "1 of 3 frames"],
+    );
+    assert_eq!(
+        listing(folder.path()),
+        ["in.0001.exr", "in.0002.exr", "in.0003.exr", "o.0001.exr", "o.0003.exr"]
+    );
+    // By itself, and with enough.
+    let one = ["gaussian", "in.0002.exr", "one.exr", "--memory"];
+    fails(
+        &mut apply(folder.path(), &[&one[..], &["20MiB"]].concat()),
+        2,
+        &["in.0002.exr", "20MiB", "--memory"],
+    );
+    succeeds(&mut apply(folder.path(), &[&one[..], &["200MiB"]].concat()));
+}
+
+#[test]
 fn damaged_frames_are_left_out_and_reported() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
@@ -222,11 +258,47 @@ fn full_disks_and_read_only_folders_are_reported() {
     command.current_dir(folder.path()).env("ISOPHOTE_LIBRARY", support::library());
     command.args(["-c", "trap '' XFSZ; ulimit -f 8; exec \"$0\" \"$@\""]).arg(env!("CARGO_BIN_EXE_isophote"));
     command.args(["apply", "gaussian", "in.####.exr", "o.####.exr", "--backend", "cpu"]);
-    fails(&mut command, 2, &["o.0001.exr", "cannot be written", "too large"]);
+    fails(&mut command, 1, &["o.0001.exr", "cannot be written", "too large"]);
     assert_eq!(listing(folder.path()), ["in.0001.exr", "in.0002.exr"]);
     // Not even the superuser writes there.
     let more = ["gaussian", "in.####.exr", "/proc/o.####.exr"];
     fails(&mut apply(folder.path(), &more), 2, &["/proc/o.0001.exr", "cannot be written"]);
+}
+
+/// Runs a command in a namespace whose folder `small` is a disk of 64 KiB; nothing where that is not allowed.
+#[cfg(target_os = "linux")]
+fn on_a_small_disk(folder: &Path, more: &[&str]) -> Option<Command> {
+    let script = "mount -t tmpfs -o size=64k none small || exit 99; exec \"$0\" \"$@\"";
+    let mut command = Command::new("unshare");
+    command.current_dir(folder).env("ISOPHOTE_LIBRARY", support::library());
+    command.args(["-rm", "sh", "-c", script]);
+    if !command.arg("true").stderr(Stdio::null()).status().is_ok_and(|status| status.success()) {
+        eprintln!("\n*** SKIPPED: no disk may be mounted here ***\n");
+        return None;
+    }
+    let mut command = Command::new("unshare");
+    command.current_dir(folder).env("ISOPHOTE_LIBRARY", support::library());
+    command.args(["-rm", "sh", "-c", script, env!("CARGO_BIN_EXE_isophote")]).args(more);
+    Some(command)
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_has_its_own_sentence() {
+    let folder = folder();
+    frames(folder.path(), 1..=2, 256);
+    fs::create_dir(folder.path().join("small")).expect("a folder");
+    let picture = image::RgbImage::from_fn(256, 256, |x, y| {
+        image::Rgb([(x * y) as u8, (x ^ y) as u8, (x * x + y) as u8])
+    });
+    picture.save(folder.path().join("in.png")).expect("the picture can be written");
+    for (input, output) in
+        [("in.####.exr", "small/o.####.exr"), ("in.png", "small/o.png"), ("in.png", "small/o.tif")]
+    {
+        let more = ["apply", "gaussian", input, output, "--set", "mix=0", "--backend", "cpu"];
+        let Some(mut command) = on_a_small_disk(folder.path(), &more) else { return };
+        fails(&mut command, 1, &["small/o.", "cannot be written: the disk is full", "make room"]);
+    }
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::backend::Backend;
 use super::convert;
 use super::exr::{Guide, Picture};
+use super::memory::Needs;
 use super::primaries::{AP1, Change, REC709, same};
 use super::read::{ImageState, Opened, Source};
 use super::space::Space;
@@ -40,13 +41,14 @@ pub struct Filtered {
     pub replaced: u64,
 }
 
-/// Memory that a run needs, in bytes.
-#[derive(Clone, Copy, Debug)]
-pub struct Needs {
-    /// Of a frame from being read to being written.
-    pub frame: u64,
-    /// Of filtering.
-    pub filter: u64,
+/// Tells what frames need before they are decoded, on another thread than the filter's.
+#[derive(Debug)]
+pub struct Planner {
+    library: Library,
+    style: Style,
+    guides: Vec<Guide>,
+    /// What filtering a picture of this size takes, as was found last.
+    last: Option<((u32, u32), u64)>,
 }
 
 impl Filter {
@@ -63,34 +65,6 @@ impl Filter {
     ) -> Result<Self> {
         let device = backend.device(&library)?;
         Ok(Self { library, style, device, space, threads })
-    }
-
-    /// Bytes that filtering a picture of this size takes, besides the picture and its result.
-    ///
-    /// # Errors
-    /// [`crate::error::Error::Input`] for sizes and graphs that the library refuses.
-    pub fn working_memory(&self, name: &str, size: (u32, u32), guides: &[Guide]) -> Result<u64> {
-        let refused = |e: crate::loader::Refusal| e.at(name, "choose another picture or style");
-        let mut request = self.library.request(size).map_err(refused)?;
-        for guide in guides {
-            request.guides |= match guide {
-                Guide::Normal => ISOPHOTE_GUIDE_NORMAL,
-                Guide::Depth => ISOPHOTE_GUIDE_DEPTH,
-                Guide::ObjectId => ISOPHOTE_GUIDE_OBJECT_ID,
-            };
-        }
-        let plan = self.style.graph.plan(&request).map_err(refused)?;
-        Ok(plan.textures().map_err(refused)?.iter().map(Texture::bytes).sum())
-    }
-
-    /// What the frame `file` needs; nothing when it will be refused, which is reported when its turn comes.
-    ///
-    /// # Errors
-    /// As [`Filter::working_memory`].
-    pub fn needs(&self, file: &Path, opened: &Opened, guides: &[Guide]) -> Result<Option<Needs>> {
-        let Some(size) = opened.size() else { return Ok(None) };
-        let filter = self.working_memory(&file.display().to_string(), size, guides)?;
-        Ok(Some(Needs { frame: opened.weight(), filter }))
     }
 
     /// Filters all pictures of `source`, or the first where `format` holds one.
@@ -175,6 +149,56 @@ impl Filter {
             },
             ..request
         })
+    }
+}
+
+impl Planner {
+    /// Of a style of its own, which is the same as the filter's.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Failure`] when the library fails.
+    pub fn new(library: Library, style: Style) -> Result<Self> {
+        let guides = usable_guides(&style)?;
+        Ok(Self { library, style, guides, last: None })
+    }
+
+    /// Guides that the style can use.
+    pub fn guides(&self) -> &[Guide] {
+        &self.guides
+    }
+
+    /// Bytes that filtering a picture of this size takes at most, besides the picture and its result.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Input`] for sizes and graphs that the library refuses.
+    pub fn filter_memory(&mut self, name: &str, frame: Option<i64>, size: (u32, u32)) -> Result<u64> {
+        let is_animated = frame.map_or(Ok(false), |frame| self.style.at_frame(frame))?;
+        if let Some((_, bytes)) = self.last.filter(|(last, _)| *last == size && !is_animated) {
+            return Ok(bytes);
+        }
+        let refused = |e: crate::loader::Refusal| e.at(name, "choose another picture or style");
+        let mut request = self.library.request(size).map_err(refused)?;
+        for guide in &self.guides {
+            request.guides |= match guide {
+                Guide::Normal => ISOPHOTE_GUIDE_NORMAL,
+                Guide::Depth => ISOPHOTE_GUIDE_DEPTH,
+                Guide::ObjectId => ISOPHOTE_GUIDE_OBJECT_ID,
+            };
+        }
+        let plan = self.style.graph.plan(&request).map_err(refused)?;
+        let bytes = plan.textures().map_err(refused)?.iter().map(Texture::bytes).sum();
+        self.last = Some((size, bytes));
+        Ok(bytes)
+    }
+
+    /// What the frame `file` needs; nothing when it will be refused, which is reported when its turn comes.
+    ///
+    /// # Errors
+    /// As [`Planner::filter_memory`].
+    pub fn needs(&mut self, file: &Path, frame: Option<i64>, opened: &Opened) -> Result<Option<Needs>> {
+        let Some(size) = opened.size() else { return Ok(None) };
+        let filter = self.filter_memory(&file.display().to_string(), frame, size)?;
+        Ok(Some(Needs { frame: opened.weight(), filter }))
     }
 }
 

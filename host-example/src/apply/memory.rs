@@ -1,7 +1,9 @@
 //! How much memory frames may take together.
 
 use std::str::FromStr;
-use std::sync::{Condvar, Mutex, PoisonError};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+
+use super::machine;
 
 /// A number of bytes as people write it: `4GiB`, `500MB`, `2G`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +34,9 @@ impl FromStr for Bytes {
 impl std::fmt::Display for Bytes {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         const MIB: u64 = 1 << 20;
-        if self.0 >= 10 << 30 {
+        if self.0 < 10 * MIB {
+            write!(f, "{}KiB", self.0.div_ceil(1 << 10))
+        } else if self.0 >= 10 << 30 {
             write!(f, "{}GiB", self.0.div_ceil(1 << 30))
         } else {
             write!(f, "{}MiB", self.0.div_ceil(MIB))
@@ -40,11 +44,20 @@ impl std::fmt::Display for Bytes {
     }
 }
 
+/// Memory that a frame needs, in bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// From being read to being written.
+    pub frame: u64,
+    /// While it is filtered, beside that.
+    pub filter: u64,
+}
+
 /// Memory that frames in flight share.
 #[derive(Debug)]
 pub struct Budget {
     most: u64,
-    used: Mutex<u64>,
+    held: Mutex<Vec<(u64, Needs)>>,
     freed: Condvar,
 }
 
@@ -52,31 +65,74 @@ pub struct Budget {
 #[derive(Debug)]
 pub struct Share<'a> {
     budget: &'a Budget,
-    bytes: u64,
+    number: u64,
+}
+
+impl Needs {
+    /// Both together.
+    pub fn total(self) -> u64 {
+        self.frame.saturating_add(self.filter)
+    }
 }
 
 impl Budget {
     /// So many bytes for all frames together.
     pub fn new(most: u64) -> Self {
-        Self { most, used: Mutex::new(0), freed: Condvar::new() }
+        Self { most, held: Mutex::new(Vec::new()), freed: Condvar::new() }
     }
 
-    /// Waits until there is room. One frame always has room.
-    pub fn share(&self, bytes: u64) -> Share<'_> {
-        let mut used = self.used.lock().unwrap_or_else(PoisonError::into_inner);
-        while *used > 0 && *used + bytes > self.most {
-            used = self.freed.wait(used).unwrap_or_else(PoisonError::into_inner);
+    /// Room for a frame of which nothing is known yet. One thread takes frames.
+    pub fn share(&self) -> Share<'_> {
+        let mut held = self.held();
+        let number = held.last().map_or(0, |(last, _)| last + 1);
+        held.push((number, Needs::default()));
+        Share { budget: self, number }
+    }
+
+    fn held(&self) -> MutexGuard<'_, Vec<(u64, Needs)>> {
+        self.held.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Share<'_> {
+    /// Waits until there is room for what the frame is now known to need.
+    ///
+    /// # Errors
+    /// The whole budget, when that is less.
+    pub fn grow(&self, needs: Needs) -> Result<(), Bytes> {
+        let most = self.budget.most;
+        if needs.total() > most {
+            return Err(Bytes(most));
         }
-        *used += bytes;
-        Share { budget: self, bytes }
+        let mut held = self.budget.held();
+        loop {
+            let others = || held.iter().filter(|(number, _)| *number != self.number).map(|(_, needs)| needs);
+            let frames = others().map(|needs| needs.frame).fold(needs.frame, u64::saturating_add);
+            // One frame is filtered at a time.
+            let filter = others().map(|needs| needs.filter).fold(needs.filter, u64::max);
+            if frames.saturating_add(filter) <= most {
+                break;
+            }
+            held = self.budget.freed.wait(held).unwrap_or_else(PoisonError::into_inner);
+        }
+        if let Some((_, own)) = held.iter_mut().find(|(number, _)| *number == self.number) {
+            *own = needs;
+        }
+        Ok(())
     }
 }
 
 impl Drop for Share<'_> {
     fn drop(&mut self) {
-        *self.budget.used.lock().unwrap_or_else(PoisonError::into_inner) -= self.bytes;
+        self.budget.held().retain(|(number, _)| *number != self.number);
         self.budget.freed.notify_all();
     }
+}
+
+/// Memory of a run that is given no bound: 4 GiB, or what the machine has.
+pub fn usual() -> Bytes {
+    const MOST: u64 = 4 << 30;
+    Bytes(machine::memory().map_or(MOST, |bytes| bytes.min(MOST)))
 }
 
 #[cfg(test)]
@@ -94,17 +150,26 @@ mod tests {
     }
 
     #[test]
-    fn one_frame_always_has_room() {
-        let budget = Budget::new(10);
-        let large = budget.share(1000);
+    fn frames_wait_for_room_and_one_is_filtered_at_a_time() {
+        let budget = Budget::new(20);
+        let needs = |frame, filter| Needs { frame, filter };
+        let large = budget.share();
+        assert_eq!(large.grow(needs(15, 6)), Err(Bytes(20)));
         drop(large);
-        let (a, b) = (budget.share(5), budget.share(5));
+        let (a, b) = (budget.share(), budget.share());
+        // What both need of the filter counts once.
+        a.grow(needs(5, 10)).unwrap();
+        b.grow(needs(5, 8)).unwrap();
         std::thread::scope(|scope| {
-            let third = scope.spawn(|| drop(budget.share(5)));
+            let third = scope.spawn(|| {
+                let share = budget.share();
+                share.grow(needs(1, 0)).unwrap();
+                share.grow(needs(5, 0)).unwrap();
+            });
             drop(a);
             third.join().unwrap();
         });
         drop(b);
-        assert_eq!(*budget.used.lock().unwrap(), 0);
+        assert!(budget.held().is_empty());
     }
 }

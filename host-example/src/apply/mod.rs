@@ -2,10 +2,13 @@
 
 pub mod backend;
 pub mod convert;
+pub mod dry_run;
 pub mod exr;
 pub mod filter;
 mod jpeg;
+mod machine;
 pub mod memory;
+mod png;
 pub mod primaries;
 pub mod read;
 pub mod report;

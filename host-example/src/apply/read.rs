@@ -4,15 +4,24 @@ use std::fs;
 use std::io::Cursor;
 use std::path::Path;
 
-use image::{DynamicImage, ImageDecoder};
+use image::codecs::hdr::HdrDecoder;
+use image::codecs::jpeg::JpegDecoder;
+use image::codecs::png::PngDecoder;
+use image::codecs::tiff::TiffDecoder;
+use image::codecs::webp::WebPDecoder;
+use image::{DynamicImage, ImageDecoder, ImageError, ImageResult, Limits};
 
 use super::exr::{self, ExrFile, Picture, Selection};
-use super::jpeg;
+use super::{jpeg, png};
 use crate::error::{Error, Result};
+use crate::frames;
 use crate::pixels::{MOST_PIXELS, Pixels, Precision, Samples};
 
 /// First bytes of an EXR file.
 const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+
+/// Bytes that a decoder may take for the smallest picture: its tables and texts.
+const LEAST: u64 = 64 << 20;
 
 /// What the numbers of a file stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,8 +70,7 @@ enum Kind {
 /// [`Error::Input`] when it is missing or cannot be read; when it is a damaged EXR file or one that lacks what
 /// `selection` chooses.
 pub fn open(path: &Path, selection: &Selection) -> Result<Opened> {
-    let bytes =
-        fs::read(path).map_err(|e| Error::file(path, format!("cannot be read: {e}"), "name a picture"))?;
+    let bytes = bytes(path)?;
     if bytes.starts_with(&EXR) {
         return exr::Opened::new(path, bytes, selection).map(Kind::Exr).map(Opened);
     }
@@ -76,9 +84,15 @@ impl Opened {
         match &self.0 {
             Kind::Exr(file) => file.weight(),
             Kind::Other(bytes, _) => {
-                // Four channels as decoded, as result, and as floats between.
-                let pixels = self.size().map_or(0, |(width, height)| u64::from(width) * u64::from(height));
-                bytes.len() as u64 + pixels * 4 * (2 + 2 + 8)
+                // As the decoder has it and as it is decoded; four channels of floats before, between and after
+                // changes of colour space.
+                let (pixels, decoded) = decoder(Path::new(""), bytes).map_or((0, 0), |(_, decoder)| {
+                    let (width, height) = decoder.dimensions();
+                    (u64::from(width) * u64::from(height), decoder.total_bytes())
+                });
+                (bytes.len() as u64)
+                    .saturating_add(decoded.saturating_mul(2))
+                    .saturating_add(pixels.saturating_mul(4 * 4 * 3))
             }
         }
     }
@@ -88,8 +102,7 @@ impl Opened {
         match &self.0 {
             Kind::Exr(file) => file.size(),
             Kind::Other(bytes, _) => {
-                let reader = image::ImageReader::new(Cursor::new(bytes));
-                reader.with_guessed_format().ok()?.into_dimensions().ok()
+                decoder(Path::new(""), bytes).ok().map(|(_, decoder)| decoder.dimensions())
             }
         }
     }
@@ -114,9 +127,36 @@ impl Opened {
     }
 }
 
+/// The bytes of a file. Pipes and devices might not end.
+fn bytes(path: &Path) -> Result<Vec<u8>> {
+    let unreadable = |e| Error::file(path, format!("cannot be read: {e}"), hint(path));
+    let found = fs::metadata(path).map_err(unreadable)?;
+    if found.is_dir() {
+        return Err(Error::file(path, "is a folder and cannot be read as a picture", hint(path)));
+    }
+    if !found.is_file() {
+        let problem = "is a pipe or a device and cannot be read as a picture";
+        return Err(Error::file(path, problem, "write the picture to a file first"));
+    }
+    fs::read(path).map_err(unreadable)
+}
+
+/// Length of a file in bytes; nothing for what cannot be read, which is refused when it is.
+pub fn length(path: &Path) -> u64 {
+    fs::metadata(path).map_or(0, |found| found.len())
+}
+
+/// How to write what somebody may have meant who named this path.
+fn hint(path: &Path) -> String {
+    match frames::meant(path) {
+        Some(pattern) => format!("write {} for a sequence, or name a picture", pattern.display()),
+        None => "name a picture".into(),
+    }
+}
+
 /// Whether a file is a whole picture, and no beginning of one.
 pub fn is_whole(path: &Path) -> bool {
-    let Ok(bytes) = fs::read(path) else { return false };
+    let Ok(bytes) = bytes(path) else { return false };
     if bytes.starts_with(&EXR) {
         return exr::is_whole(bytes);
     }
@@ -125,36 +165,63 @@ pub fn is_whole(path: &Path) -> bool {
 
 /// Makes a picture of the bytes of any file but an EXR file.
 fn decode(path: &Path, bytes: &[u8]) -> Result<Source> {
+    let is_whole = match bytes {
+        [0x89, b'P', b'N', b'G', ..] => png::is_whole(bytes),
+        [0xff, 0xd8, 0xff, ..] => jpeg::is_whole(bytes),
+        _ => true,
+    };
+    let (kind, decoder) = decoder(path, bytes)?;
+    if !is_whole {
+        return Err(Error::malformed(path, kind, "it ends before the picture does"));
+    }
+    picture(path, decoder, kind)
+}
+
+/// The kind of any file but an EXR file, and a decoder that has read what it says of itself.
+fn decoder<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'static str, Box<dyn ImageDecoder + 'a>)> {
+    fn boxed<'a, D: ImageDecoder + 'a>(
+        path: &Path,
+        kind: &'static str,
+        decoder: ImageResult<D>,
+    ) -> Result<(&'static str, Box<dyn ImageDecoder + 'a>)> {
+        match decoder {
+            Ok(decoder) => Ok((kind, Box::new(decoder))),
+            Err(problem) => Err(refused(path, kind, &problem)),
+        }
+    }
+    let start = Cursor::new(bytes);
     match bytes {
-        [0x89, b'P', b'N', b'G', ..] => {
-            let decoder = image::codecs::png::PngDecoder::new(Cursor::new(bytes));
-            picture(path, decoder.map_err(|e| Error::malformed(path, "PNG", e))?, "PNG")
-        }
-        [0xff, 0xd8, 0xff, ..] => {
-            if !jpeg::is_whole(bytes) {
-                return Err(Error::malformed(path, "JPEG", "it ends before the picture does"));
-            }
-            let decoder = image::codecs::jpeg::JpegDecoder::new(Cursor::new(bytes));
-            picture(path, decoder.map_err(|e| Error::malformed(path, "JPEG", e))?, "JPEG")
-        }
-        [b'I', b'I', 42, 0, ..] | [b'M', b'M', 0, 42, ..] => {
-            let decoder = image::codecs::tiff::TiffDecoder::new(Cursor::new(bytes));
-            picture(path, decoder.map_err(|e| Error::malformed(path, "TIFF", e))?, "TIFF")
+        [0x89, b'P', b'N', b'G', ..] => boxed(path, "PNG", PngDecoder::new(start)),
+        [0xff, 0xd8, 0xff, ..] => boxed(path, "JPEG", JpegDecoder::new(start)),
+        // The second number is that of BigTIFF, for files of more than 4 GiB.
+        [b'I', b'I', 42 | 43, 0, ..] | [b'M', b'M', 0, 42 | 43, ..] => {
+            boxed(path, "TIFF", TiffDecoder::new(start))
         }
         [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => {
-            let decoder = image::codecs::webp::WebPDecoder::new(Cursor::new(bytes));
-            picture(path, decoder.map_err(|e| Error::malformed(path, "WebP", e))?, "WebP")
+            boxed(path, "WebP", WebPDecoder::new(start))
         }
-        [b'#', b'?', ..] => {
-            let decoder = image::codecs::hdr::HdrDecoder::new(Cursor::new(bytes));
-            picture(path, decoder.map_err(|e| Error::malformed(path, "HDR", e))?, "HDR")
-        }
+        [b'#', b'?', ..] => boxed(path, "HDR", HdrDecoder::new(start)),
         [] => Err(Error::file(path, "is empty", "name a picture")),
         _ => Err(Error::file(
             path,
             "is neither PNG, JPEG nor EXR, nor TIFF, WebP or HDR",
             "convert it to one of them",
         )),
+    }
+}
+
+/// The error of a picture that its decoder refuses: files that are whole may be of a kind that is not read.
+fn refused(path: &Path, kind: &str, problem: &ImageError) -> Error {
+    match problem {
+        ImageError::Unsupported(_) => Error::file(
+            path,
+            format!("is {kind} of a kind that is not read: {problem}"),
+            "save it as usual 8 or 16 bit colour",
+        ),
+        ImageError::Limits(_) => {
+            Error::file(path, format!("takes too much memory to be read as {kind}"), "use a smaller picture")
+        }
+        _ => Error::malformed(path, kind, problem),
     }
 }
 
@@ -176,9 +243,13 @@ pub fn check_size(path: &Path, width: u64, height: u64) -> Result<()> {
 fn picture(path: &Path, mut decoder: impl ImageDecoder, kind: &str) -> Result<Source> {
     let (width, height) = decoder.dimensions();
     check_size(path, width.into(), height.into())?;
+    // The size bounds the picture; what decoders need meanwhile is bounded by several times that.
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(decoder.total_bytes().saturating_mul(4).saturating_add(LEAST));
+    decoder.set_limits(limits).map_err(|e| refused(path, kind, &e))?;
     let profile = decoder.icc_profile().unwrap_or_default();
-    let orientation = decoder.orientation().map_err(|e| Error::malformed(path, kind, e))?;
-    let mut decoded = DynamicImage::from_decoder(decoder).map_err(|e| Error::malformed(path, kind, e))?;
+    let orientation = decoder.orientation().map_err(|e| refused(path, kind, &e))?;
+    let mut decoded = DynamicImage::from_decoder(decoder).map_err(|e| refused(path, kind, &e))?;
     // Nothing but the pixels is kept, so what the camera noted of its attitude is done here.
     decoded.apply_orientation(orientation);
     let (width, height) = (decoded.width(), decoded.height());
@@ -201,4 +272,79 @@ fn picture(path: &Path, mut decoder: impl ImageDecoder, kind: &str) -> Result<So
         Precision::U8 | Precision::U16 => ImageState::DisplayReferred,
     };
     Ok(Source { pictures: vec![picture], state, profile, exr: None })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A TIFF or BigTIFF file of floats (red, green, blue, alpha), all of them 0.
+    fn tiff(is_big: bool, size: u32) -> Vec<u8> {
+        let word = if is_big { 8 } else { 4 };
+        let mut bytes = b"II".to_vec();
+        let mut put = |value: u64, length: usize| bytes.extend(&value.to_le_bytes()[..length]);
+        if is_big {
+            put(43 | 8 << 16, 6);
+        } else {
+            put(42, 2);
+        }
+        let start = 2 * u64::from(is_big) + 6 + word as u64;
+        put(start, word);
+        let (short, long) = (3, 4);
+        let entries = 11;
+        let head = start + if is_big { 8 + entries * 20 + 8 } else { 2 + entries * 12 + 4 };
+        let data = u64::from(size) * u64::from(size) * 16;
+        // Four numbers do not fit into an entry of the smaller kind.
+        let list = |number: u64, place: u64| match is_big {
+            true => (short, 4, number * 0x0001_0001_0001_0001),
+            false => (short, 4, place),
+        };
+        put(entries, if is_big { 8 } else { 2 });
+        for (tag, (kind, count, value)) in [
+            (256, (long, 1, size.into())),
+            (257, (long, 1, size.into())),
+            (258, list(32, head)),
+            (259, (short, 1, 1)),
+            (262, (short, 1, 2)),
+            (273, (long, 1, head + 16)),
+            (277, (short, 1, 4)),
+            (278, (long, 1, size.into())),
+            (279, (long, 1, data)),
+            (338, (short, 1, 1)),
+            (339, list(3, head + 8)),
+        ] {
+            put(tag, 2);
+            put(kind, 2);
+            put(count, word);
+            put(value, word);
+        }
+        put(0, word);
+        for number in [32, 3] {
+            put(number * 0x0001_0001_0001_0001, 8);
+        }
+        bytes.resize(bytes.len() + data as usize, 0);
+        bytes
+    }
+
+    #[test]
+    fn large_and_big_tiff_files_are_read() {
+        // More than 256 MiB of pixels.
+        for (is_big, size) in [(false, 3), (true, 3), (true, 4128)] {
+            let source = decode(Path::new("a.tif"), &tiff(is_big, size)).unwrap();
+            let pixels = &source.pictures[0].pixels;
+            assert_eq!((pixels.width(), pixels.channels(), pixels.precision()), (size, 4, Precision::F32));
+        }
+    }
+
+    #[test]
+    fn what_is_not_read_is_not_called_damaged() {
+        let mut bytes = tiff(false, 3);
+        // Photometric interpretation 8, which is CIE L*a*b*.
+        let lab = bytes.windows(4).position(|b| b == [6, 1, 3, 0]).unwrap();
+        bytes[lab + 8] = 8;
+        let error = decode(Path::new("a.tif"), &bytes).unwrap_err().to_string();
+        assert!(error.contains("of a kind that is not read") && !error.contains("damaged"), "{error}");
+        bytes.truncate(60);
+        assert!(decode(Path::new("a.tif"), &bytes).unwrap_err().to_string().contains("is damaged"));
+    }
 }

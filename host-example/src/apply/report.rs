@@ -1,6 +1,6 @@
 //! Progress of a run: a bar for people, lines of JSON for programs, and a summary.
 
-use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use super::tasks::Task;
 use crate::error::Error;
+use crate::output;
 
 /// What became of a frame.
 #[derive(Debug)]
@@ -38,12 +39,22 @@ pub struct Counts {
     pub replaced: u64,
 }
 
+impl Counts {
+    /// Frames that are over, of those that have a file.
+    pub fn done(&self) -> u64 {
+        self.written + self.skipped + self.failed
+    }
+}
+
 /// Prints the progress of a run and counts its frames.
 #[derive(Debug)]
 pub struct Report {
     bar: ProgressBar,
     json: bool,
     sequence: bool,
+    frames: u64,
+    /// Whether it was said that nothing can be printed.
+    unheard: AtomicBool,
     started: Instant,
     counts: Mutex<Counts>,
 }
@@ -61,8 +72,15 @@ impl Report {
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }
-        let report =
-            Self { bar, json, sequence, started: Instant::now(), counts: Mutex::new(Counts::default()) };
+        let report = Self {
+            bar,
+            json,
+            sequence,
+            frames: frames as u64,
+            unheard: AtomicBool::new(false),
+            started: Instant::now(),
+            counts: Mutex::new(Counts::default()),
+        };
         report.line(&json!({"event": "start", "frames": frames}));
         report
     }
@@ -98,12 +116,11 @@ impl Report {
         };
         if replaced > 0 {
             let name = task.input.display();
-            let warning =
-                format!("warning: {name}: {replaced} samples were NaN or infinite and were replaced");
-            self.bar.suspend(|| eprintln!("{warning}"));
+            let warning = format!("{name}: {replaced} samples were NaN or infinite and were replaced");
+            self.bar.suspend(|| output::warn(warning));
         }
         if let (Some(problem), true) = (&problem, self.sequence && !self.json) {
-            self.bar.suspend(|| eprintln!("warning: {problem}"));
+            self.bar.suspend(|| output::warn(problem));
         }
         if self.sequence {
             self.bar.inc(1);
@@ -134,7 +151,8 @@ impl Report {
             "replaced": counts.replaced,
             "seconds": seconds,
         }));
-        if self.sequence && !self.json && whole && counts.failed == 0 {
+        let is_complete = counts.failed == 0 && counts.done() + counts.missing == self.frames;
+        if self.sequence && !self.json && whole && is_complete {
             let mut text = format!("{} frames written in {seconds:.1} s", counts.written);
             for (count, what) in [
                 (counts.skipped, "there already"),
@@ -146,15 +164,23 @@ impl Report {
                     text += &format!(", {count} {what}");
                 }
             }
-            println!("{text}");
+            self.say(&format!("{text}\n"));
         }
         counts
     }
 
+    /// Prints; the frames are written, whether or not anybody is told.
+    fn say(&self, text: &str) {
+        if let Err(error) = output::print(text)
+            && !self.unheard.swap(true, Ordering::Relaxed)
+        {
+            output::warn(error);
+        }
+    }
+
     fn line(&self, value: &Value) {
         if self.json {
-            // Nobody is left to read when this fails.
-            let _ = writeln!(std::io::stdout().lock(), "{value}");
+            self.say(&format!("{value}\n"));
         }
     }
 }

@@ -4,20 +4,18 @@
 //! cores within a frame. A frame takes its share of the memory before it is decoded and gives it back when it is
 //! written.
 
+use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use super::exr::Selection;
-use super::filter::{Filter, Filtered};
-use super::memory::{Budget, Bytes, Share};
+use super::filter::{Filter, Filtered, Planner};
+use super::memory::{Budget, Bytes, Needs, Share};
 use super::read::{self, Opened, Source};
 use super::report::{Outcome, Report};
 use super::tasks::Task;
 use super::write::{self, Format};
 use crate::error::{Error, Result};
 use crate::stop::Stop;
-
-/// Memory of a run that was given no bound.
-pub const USUAL_MEMORY: Bytes = Bytes(4 << 30);
 
 /// Most frames between being read and being written: one in each hand and one waiting between them.
 pub const MOST_IN_FLIGHT: u64 = 5;
@@ -56,15 +54,15 @@ struct Done<'a> {
 
 impl Run<'_> {
     /// Does all frames. Frames that cannot be read or filtered are reported and left out; a run of one picture ends
-    /// with its error. `first` is the first frame, where it was opened before.
+    /// with its error. `planner` is of the filter's style; `first` is the first frame, where it was opened before.
     ///
     /// # Errors
     /// What kept a frame from being written, [`Error::Failure`] of the library or the device.
-    pub fn all(&self, filter: &mut Filter, first: Option<Opened>) -> Result<()> {
+    pub fn all(&self, filter: &mut Filter, mut planner: Planner, first: Option<Opened>) -> Result<()> {
         std::thread::scope(|scope| {
             let (send, decoded) = sync_channel(1);
             let (finished, receive) = sync_channel(1);
-            let reader = scope.spawn(move || self.read(first, &send));
+            let reader = scope.spawn(move || self.read(&mut planner, first, &send));
             let writer = scope.spawn(move || self.write(&receive));
             let filtered = self.filter(filter, decoded, finished);
             let read = reader.join().unwrap_or_else(|_| Err(broken("reading")));
@@ -74,7 +72,12 @@ impl Run<'_> {
         })
     }
 
-    fn read<'a>(&'a self, mut first: Option<Opened>, send: &SyncSender<Ready<'a>>) -> Result<()> {
+    fn read<'a>(
+        &'a self,
+        planner: &mut Planner,
+        mut first: Option<Opened>,
+        send: &SyncSender<Ready<'a>>,
+    ) -> Result<()> {
         for task in self.tasks {
             let early = first.take();
             if self.stop.is_requested() {
@@ -84,12 +87,7 @@ impl Run<'_> {
                 self.report.frame(task, &Outcome::Skipped);
                 continue;
             }
-            let read = || {
-                let opened = early.map_or_else(|| read::open(&task.input, self.selection), Ok)?;
-                let share = self.budget.share(opened.weight());
-                Ok(Ready { task, source: opened.decode(&task.input)?, share })
-            };
-            match read() {
+            match self.read_one(planner, task, early) {
                 Ok(ready) => {
                     // Nobody takes it when the run ends early.
                     if send.send(ready).is_err() {
@@ -100,6 +98,30 @@ impl Run<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Reads a frame when there is room for its file, and decodes it when there is room for all that it needs.
+    fn read_one<'a>(
+        &'a self,
+        planner: &mut Planner,
+        task: &'a Task,
+        early: Option<Opened>,
+    ) -> Result<Ready<'a>> {
+        let share = self.budget.share();
+        let grow = |needs: Needs| {
+            share.grow(needs).map_err(|most| too_large(&task.input, Bytes(needs.total()), most))
+        };
+        let opened = match early {
+            Some(opened) => opened,
+            None => {
+                grow(Needs { frame: read::length(&task.input), filter: 0 })?;
+                read::open(&task.input, self.selection)?
+            }
+        };
+        if let Some(needs) = planner.needs(&task.input, task.frame, &opened)? {
+            grow(needs)?;
+        }
+        Ok(Ready { task, source: opened.decode(&task.input)?, share })
     }
 
     fn filter<'a>(
@@ -146,6 +168,15 @@ impl Run<'_> {
         self.report.frame(task, &Outcome::Failed(error));
         Ok(())
     }
+}
+
+/// The error of a frame that needs more memory than all may take together.
+pub fn too_large(path: &Path, needed: Bytes, most: Bytes) -> Error {
+    Error::file(
+        path,
+        format!("a frame needs about {needed} of memory, and {most} may be used"),
+        "give more by --memory",
+    )
 }
 
 fn broken(what: &str) -> Error {

@@ -6,6 +6,7 @@ use clap::ValueEnum;
 
 use crate::error::{Error, Result};
 use crate::frames::{self, FrameList, Pattern};
+use crate::output;
 
 /// One frame, or a picture by itself.
 #[derive(Clone, Debug)]
@@ -101,6 +102,6 @@ fn check_missing(input: &Path, missing: &[i64], on_missing: OnMissing) -> Result
     if on_missing == OnMissing::Fail {
         return Err(Error::file(input, problem, "give other --frames, or --on-missing skip"));
     }
-    eprintln!("warning: {}: {problem}", input.display());
+    output::warn(format_args!("{}: {problem}", input.display()));
     Ok(())
 }

@@ -7,8 +7,8 @@ use image::{ExtendedColorType, ImageEncoder, ImageResult};
 use super::exr::{Picture, components};
 use super::read::{ImageState, Source};
 use crate::error::{Error, Result};
-use crate::output;
 use crate::pixels::{Pixels, Precision, Samples};
+use crate::{files, output};
 
 /// Quality of JPEG files, 1 to 100.
 const JPEG_QUALITY: u8 = 95;
@@ -67,7 +67,7 @@ pub fn write(path: &Path, format: Format, mut results: Vec<Pixels>, source: Sour
             exr.replace(at, &result)
                 .map_err(|problem| Error::file(path, problem, "choose another picture"))?;
         }
-        return output::write_beside(path, |file| exr.write(file));
+        return files::write(path, |file| exr.write(file));
     }
     let (Some(pixels), Some(picture)) = (results.into_iter().next(), source.pictures.first()) else {
         return Err(Error::file(path, "would be empty", "choose another picture"));
@@ -83,7 +83,7 @@ pub fn write(path: &Path, format: Format, mut results: Vec<Pixels>, source: Sour
             let pixels = pixels.converted(precision);
             let color = color_type(&pixels);
             // PNG wants the larger byte first; the encoder takes the machine's order.
-            output::write_beside(path, |file| {
+            files::write(path, |file| {
                 let mut encoder = image::codecs::png::PngEncoder::new(file);
                 keep_profile(&mut encoder, source.profile);
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
@@ -97,7 +97,7 @@ pub fn write(path: &Path, format: Format, mut results: Vec<Pixels>, source: Sour
             };
             let pixels = grey_as_rgb(pixels.converted(precision));
             let color = color_type(&pixels);
-            output::write_beside(path, |file| {
+            files::write(path, |file| {
                 let mut encoder = image::codecs::tiff::TiffEncoder::new(file);
                 keep_profile(&mut encoder, source.profile);
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
@@ -106,7 +106,7 @@ pub fn write(path: &Path, format: Format, mut results: Vec<Pixels>, source: Sour
         Format::Jpeg => {
             let pixels = opaque(path, pixels.converted(Precision::U8));
             let color = color_type(&pixels);
-            output::write_beside(path, |file| {
+            files::write(path, |file| {
                 let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(file, JPEG_QUALITY);
                 keep_profile(&mut encoder, source.profile);
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
@@ -169,7 +169,10 @@ fn color_type(pixels: &Pixels) -> ExtendedColorType {
 fn opaque(path: &Path, pixels: Pixels) -> Pixels {
     let (Samples::U8(samples), 4) = (pixels.samples(), pixels.channels()) else { return pixels };
     if samples.iter().skip(3).step_by(4).any(|a| *a < 255) {
-        eprintln!("warning: {}: JPEG keeps no transparency; the picture is put on white", path.display());
+        output::warn(format_args!(
+            "{}: JPEG keeps no transparency; the picture is put on white",
+            path.display()
+        ));
     }
     let over = |v: u8, a: u8| {
         let (v, a) = (u32::from(v), u32::from(a));

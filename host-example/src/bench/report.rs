@@ -8,6 +8,7 @@ use super::peak::Peak;
 use super::peers;
 use crate::error::{Error, Result};
 use crate::loader::Library;
+use crate::output;
 
 /// What was measured on.
 #[derive(Debug)]
@@ -68,23 +69,27 @@ impl Report {
     }
 
     /// Keeps an entry, and prints it where it is not to be JSON.
-    pub fn add(&mut self, entry: Entry) {
+    ///
+    /// # Errors
+    /// As [`output::print`].
+    pub fn add(&mut self, entry: Entry) -> Result<()> {
         let ratios = self.before.as_ref().and_then(|before| before.ratios(&entry));
         let (whole, passes) = ratios.map_or((None, Vec::new()), |(whole, passes)| (Some(whole), passes));
         self.ratios.extend(whole);
         match self.shown {
-            Shown::Table => self.print_entry(&entry, whole, &passes),
-            Shown::Markdown => print_row(&entry, whole),
+            Shown::Table => output::print(&self.paragraph(&entry, whole, &passes))?,
+            Shown::Markdown => output::print(&row(&entry, whole))?,
             Shown::Json => {}
         }
         self.entries.push(entry);
+        Ok(())
     }
 
-    fn print_entry(&self, entry: &Entry, whole: Option<f64>, passes: &[f64]) {
+    fn paragraph(&self, entry: &Entry, whole: Option<f64>, passes: &[f64]) -> String {
         let peak = self.machine.peak;
         let rate = entry.megapixels() / entry.seconds;
-        println!(
-            "\n{} ({}, {}x{}){}{}",
+        let mut text = format!(
+            "\n{} ({}, {}x{}){}{}\n",
             entry.node,
             entry.backend,
             entry.size.0,
@@ -94,61 +99,68 @@ impl Report {
         );
         for (at, pass) in entry.passes.iter().enumerate() {
             let rate = pass.pixels as f64 / 1e6 / pass.seconds;
-            println!(
-                "  {:38}{}{}",
+            text += &format!(
+                "  {:38}{}{}\n",
                 pass.kernel,
                 columns(pass.seconds, rate, shares(peak, pass.seconds, pass.work)),
                 ratio(passes.get(at).copied())
             );
         }
+        text
     }
 
     /// What comes before the table.
-    pub fn print_heading(&self) {
+    ///
+    /// # Errors
+    /// As [`output::print`].
+    pub fn print_heading(&self) -> Result<()> {
         if self.shown == Shown::Json {
-            return;
+            return Ok(());
         }
-        println!("Isophote {}, medians of {} warm runs", self.version, self.runs);
+        let mut text = format!("Isophote {}, medians of {} warm runs\n", self.version, self.runs);
         if let Some(peak) = self.machine.peak {
-            println!(
-                "CPU: {} threads, {:.1} G multiply-adds/s, {:.1} GB/s copied",
+            text += &format!(
+                "CPU: {} threads, {:.1} G multiply-adds/s, {:.1} GB/s copied\n",
                 self.machine.threads,
                 peak.multiply_adds / 1e9,
                 peak.copied / 1e9
             );
         }
         if let Some(adapter) = &self.machine.adapter {
-            println!("GPU: {adapter}");
+            text += &format!("GPU: {adapter}\n");
         }
         if let Some(before) = &self.before
             && before.threads() != self.machine.threads as u64
         {
-            eprintln!(
-                "warning: the saved run is of another machine, with {} threads instead of {}",
+            output::warn(format_args!(
+                "the saved run is of another machine, with {} threads instead of {}",
                 before.threads(),
                 self.machine.threads
-            );
+            ));
         }
         if self.shown == Shown::Markdown {
-            println!("\n| node | on | size | ms | MP/s | before | other program | its ms | ratio |");
-            println!("|---|---|---|--:|--:|--:|---|--:|--:|");
+            text += "\n| node | on | size | ms | MP/s | before | other program | its ms | ratio |\n";
+            text += "|---|---|---|--:|--:|--:|---|--:|--:|\n";
         }
+        output::print(&text)
     }
 
     /// What comes after the table: all as JSON, or what the comparison came to.
     ///
     /// # Errors
-    /// As [`Report::json`].
+    /// As [`Report::json`] and [`output::print`].
     pub fn print_end(&self) -> Result<()> {
         if self.shown == Shown::Json {
-            println!("{}", self.json()?);
-        } else if self.before.is_some() {
-            match compare::mean(&self.ratios) {
-                Some(mean) => println!("\nx{mean:.2} of before, geometric mean of {}", self.ratios.len()),
-                None => println!("\nNothing of this was measured before"),
-            }
+            return output::print(&format!("{}\n", self.json()?));
         }
-        Ok(())
+        let text = match (compare::mean(&self.ratios), &self.before) {
+            (_, None) => return Ok(()),
+            (Some(mean), _) => {
+                format!("\nx{mean:.2} of before, geometric mean of {}\n", self.ratios.len())
+            }
+            (None, _) => "\nNothing of this was measured before\n".into(),
+        };
+        output::print(&text)
     }
 
     /// Everything as JSON.
@@ -178,7 +190,7 @@ fn ratio(ratio: Option<f64>) -> String {
 }
 
 /// A row of the table in Markdown.
-fn print_row(entry: &Entry, whole: Option<f64>) {
+fn row(entry: &Entry, whole: Option<f64>) -> String {
     let before = whole.map_or_else(String::new, |r| format!("x{r:.2}"));
     let ms = entry.seconds * 1e3;
     let peer = peers::of(&entry.node, entry.size).filter(|_| entry.backend == "cpu");
@@ -186,14 +198,14 @@ fn print_row(entry: &Entry, whole: Option<f64>) {
         || " | | ".to_owned(),
         |p| format!("{} | {} | x{:.2} ", p.program, p.milliseconds, ms / p.milliseconds),
     );
-    println!(
-        "| `{}` | {} | {}x{} | {ms:.1} | {:.1} | {before} | {peer}|",
+    format!(
+        "| `{}` | {} | {}x{} | {ms:.1} | {:.1} | {before} | {peer}|\n",
         entry.node,
         entry.backend,
         entry.size.0,
         entry.size.1,
         entry.megapixels() / entry.seconds
-    );
+    )
 }
 
 fn columns(seconds: f64, rate: f64, shares: Option<[f64; 2]>) -> String {

@@ -2,8 +2,9 @@
 
 use super::Subject;
 use super::throughput::{Throughput, measure};
-use crate::apply::memory::Bytes;
-use crate::apply::sequence::USUAL_MEMORY;
+use crate::apply::backend::Backend;
+use crate::apply::filter::{Filter, Planner};
+use crate::apply::memory::{self, Bytes};
 use crate::error::{Error, Result};
 use crate::loader::Library;
 use crate::output;
@@ -18,8 +19,10 @@ pub fn run(subjects: &[Subject], picture: &Pixels, frames: u32, json: bool) -> R
     let mut results = Vec::with_capacity(subjects.len());
     for subject in subjects {
         let library = Library::open()?;
-        let style = Style::load(&library, &subject.node, &subject.settings)?;
-        let result = measure(library, style, picture, frames, USUAL_MEMORY.0)?;
+        let style = || Style::load(&library, &subject.node, &subject.settings);
+        let planner = Planner::new(library.clone(), style()?)?;
+        let filter = Filter::new(library.clone(), style()?, Backend::Cpu, None, 0)?;
+        let result = measure(filter, planner, picture, frames, memory::usual().0)?;
         if !json {
             output::print(&text(subject, picture, &result))?;
         }

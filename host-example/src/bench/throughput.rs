@@ -6,9 +6,8 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use crate::apply::backend::Backend;
 use crate::apply::exr::{Selection, components};
-use crate::apply::filter::{self, Filter};
+use crate::apply::filter::{Filter, Planner};
 use crate::apply::memory::Budget;
 use crate::apply::read;
 use crate::apply::report::Report;
@@ -16,11 +15,9 @@ use crate::apply::sequence::Run;
 use crate::apply::tasks::Task;
 use crate::apply::write::Format;
 use crate::error::{Error, Result};
-use crate::loader::Library;
 use crate::output::{self, Picture, Precision};
 use crate::pixels::Pixels;
 use crate::stop::Stop;
-use crate::stylize::style::Style;
 
 /// What was measured.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -37,14 +34,14 @@ pub struct Throughput {
     pub bound_bytes: u64,
 }
 
-/// Finishes `frames` EXR frames of half floats, scan lines and ZIP compression, all of them `picture` (RGBA), with
-/// a style on the CPU within `bound` bytes.
+/// Finishes `frames` EXR frames of half floats, scan lines and ZIP compression, all of them `picture` (RGBA),
+/// within `bound` bytes. `planner` is of the filter's style.
 ///
 /// # Errors
 /// [`Error::Input`] for styles that do not fit, [`Error::Failure`] when there is no room for the files.
 pub fn measure(
-    library: Library,
-    style: Style,
+    mut filter: Filter,
+    planner: Planner,
     picture: &Pixels,
     frames: u32,
     bound: u64,
@@ -60,8 +57,7 @@ pub fn measure(
     for task in &tasks {
         save(&task.input, picture)?;
     }
-    let selection = Selection { wanted: filter::usable_guides(&style)?, ..Selection::default() };
-    let mut filter = Filter::new(library, style, Backend::Cpu, None, 0)?;
+    let selection = Selection { wanted: planner.guides().to_vec(), ..Selection::default() };
     let mut filter_seconds = 0.0;
     // The first of these runs makes the plan and is not counted.
     for (at, task) in tasks.iter().take(1).chain(&tasks).enumerate() {
@@ -72,9 +68,7 @@ pub fn measure(
             filter_seconds += started.elapsed().as_secs_f64();
         }
     }
-    let working = filter.working_memory("a frame", (picture.width(), picture.height()), &selection.wanted)?;
-    let (budget, report) =
-        (Budget::new(bound.saturating_sub(working)), Report::new(tasks.len(), false, false));
+    let (budget, report) = (Budget::new(bound), Report::new(tasks.len(), false, false));
     let stop = Stop::default();
     let run = Run {
         tasks: &tasks,
@@ -87,7 +81,7 @@ pub fn measure(
     };
     forget_peak();
     let started = Instant::now();
-    let result = run.all(&mut filter, None);
+    let result = run.all(&mut filter, planner, None);
     let seconds = started.elapsed().as_secs_f64();
     let counts = report.end(false);
     result?;

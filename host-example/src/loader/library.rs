@@ -7,6 +7,10 @@ use super::refusal::{Answer, check};
 use super::{open, text};
 use crate::error::Result;
 
+// SAFETY: the table and its texts are constant for as long as the library is open, which is never closed; its
+// functions may be called on any thread, with a handle on one at a time, which the types that own handles see to.
+unsafe impl Sync for IsophoteApi {}
+
 /// The library, open until the process ends.
 #[derive(Clone, Debug)]
 pub struct Library {

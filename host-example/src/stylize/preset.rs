@@ -17,6 +17,7 @@
 //! hold, between two of them numbers and colours change evenly (`linear`) or not at all (`step`), the rest
 //! never does. Whole numbers are rounded.
 
+use std::ffi::OsString;
 use std::path::Path;
 
 use serde_json::{Map, Value};
@@ -111,11 +112,11 @@ impl Preset {
 
     /// The style as it is to be opened by a program whose folder is another than that of the preset at `path`:
     /// graph files lie beside the preset.
-    pub fn style_beside(&self, path: &Path) -> String {
+    pub fn style_beside(&self, path: &Path) -> OsString {
         let is_file = self.style.to_ascii_lowercase().ends_with(".json");
         match path.parent() {
-            Some(folder) if is_file => folder.join(&self.style).display().to_string(),
-            _ => self.style.clone(),
+            Some(folder) if is_file => folder.join(&self.style).into(),
+            _ => self.style.clone().into(),
         }
     }
 

@@ -1,5 +1,6 @@
 //! What `--style` and `--set` say, as a graph of the library.
 
+use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
 use std::str::FromStr;
@@ -71,11 +72,11 @@ impl Style {
     /// # Errors
     /// [`Error::Input`] for names that are neither, files that cannot be read, graphs that yield something
     /// that is no picture, and parameters that do not exist or cannot have their value.
-    pub fn load(library: &Library, name: &str, settings: &[Setting]) -> Result<Self> {
+    pub fn load(library: &Library, name: impl AsRef<OsStr>, settings: &[Setting]) -> Result<Self> {
         let style = Self::any(library, name, settings)?;
         if !style.kind.is_picture() {
             return Err(Error::input(
-                name,
+                &style.name,
                 format!("yields a {}, which is no picture", style.kind.name()),
                 "choose a node that yields a colour or a scalar; `isophote nodes` lists them",
             ));
@@ -87,11 +88,12 @@ impl Style {
     ///
     /// # Errors
     /// As [`Style::load`].
-    pub fn any(library: &Library, name: &str, settings: &[Setting]) -> Result<Self> {
-        let Opened { graph, single, preset } = open(library, name)?;
+    pub fn any(library: &Library, name: impl AsRef<OsStr>, settings: &[Setting]) -> Result<Self> {
+        let Opened { graph, single, preset } = open(library, name.as_ref())?;
+        let name = name.as_ref().to_string_lossy().into_owned();
         let kind =
-            graph.output_kind().map_err(|e| e.at(name, "name the node whose output is the graph's"))?;
-        let mut style = Self { name: name.to_owned(), graph, kind, single, animated: Vec::new() };
+            graph.output_kind().map_err(|e| e.at(&name, "name the node whose output is the graph's"))?;
+        let mut style = Self { name, graph, kind, single, animated: Vec::new() };
         for (param, track) in preset.iter().flat_map(|p| &p.params) {
             style.follow(param, track)?;
         }
@@ -220,11 +222,12 @@ struct Opened {
     preset: Option<Preset>,
 }
 
-fn open(library: &Library, style: &str) -> Result<Opened> {
+fn open(library: &Library, style: &OsStr) -> Result<Opened> {
     let path = Path::new(style);
-    let refused = match library.single(style) {
+    // No node has a name that is no text.
+    let refused = match library.single(&style.to_string_lossy()) {
         Ok(graph) => {
-            let graph = fed(library, graph).map_err(|e| e.at(style, "use a graph file"))?;
+            let graph = fed(library, graph).map_err(|e| e.at(path.display(), "use a graph file"))?;
             return Ok(Opened { graph, single: true, preset: None });
         }
         Err(refused) => refused,
@@ -233,9 +236,10 @@ fn open(library: &Library, style: &str) -> Result<Opened> {
         || path.components().count() > 1
         || path.exists();
     if !looks_like_file {
-        return Err(
-            refused.at(style, "name a node that `isophote nodes` lists, or a graph file or preset (.json)")
-        );
+        return Err(refused.at(
+            path.display(),
+            "name a node that `isophote nodes` lists, or a graph file or preset (.json)",
+        ));
     }
     let json = read(path)?;
     if preset::is_graph(&json) {
@@ -248,7 +252,7 @@ fn open(library: &Library, style: &str) -> Result<Opened> {
     if Path::new(&inner).is_file() && !preset::is_graph(&read(Path::new(&inner))?) {
         return Err(Error::file(
             path,
-            format!("its style '{inner}' is no graph"),
+            format!("its style '{}' is no graph", Path::new(&inner).display()),
             "name a node or a graph file",
         ));
     }

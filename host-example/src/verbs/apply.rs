@@ -1,24 +1,24 @@
 //! `isophote apply`: a node, graph or preset on a picture or a sequence of frames, without any scene.
 
-use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use crate::apply::backend::Backend;
+use crate::apply::dry_run::DryRun;
 use crate::apply::exr::{GuideChoice, Selection};
-use crate::apply::filter::{self, Filter};
-use crate::apply::memory::{Budget, Bytes};
+use crate::apply::filter::{self, Filter, Planner};
+use crate::apply::memory::{self, Budget, Bytes};
 use crate::apply::read::{self, Opened};
 use crate::apply::report::{Counts, Outcome, Report};
 use crate::apply::sequence::{self, Run};
 use crate::apply::space::Space;
-use crate::apply::tasks::{OnMissing, Task, Tasks};
+use crate::apply::tasks::{OnMissing, Tasks};
 use crate::apply::write::Format;
 use crate::error::{Error, Result};
+use crate::files;
 use crate::frames::FrameList;
 use crate::loader::Library;
-use crate::output;
 use crate::stop::Stop;
 use crate::stylize::style::{Setting, Style};
 
@@ -41,7 +41,8 @@ pub struct ApplyArgs {
     /// What to do when frames of the sequence have no file.
     #[arg(long, value_enum, default_value_t = OnMissing::Fail)]
     pub on_missing: OnMissing,
-    /// Limit of memory, such as 8GiB, which decides how many frames are worked on at once [default: 4GiB].
+    /// Limit of memory, such as 8GiB, which decides how many frames are worked on at once; frames that need more are
+    /// refused [default: 4GiB, or what the machine or the container has].
     #[arg(long, value_name = "SIZE")]
     pub memory: Option<Bytes>,
     /// Skips frames whose result is there already and complete.
@@ -95,7 +96,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let format = Format::of(files.output)?;
     let tasks = args.tasks()?;
     let library = Library::open()?;
-    let style = Style::load(&library, &files.style, &args.set)?;
+    let style = Style::load(&library, files.style, &args.set)?;
     let selection = args.selection(&style, format)?;
     let opened = args.open_first(&tasks, &selection)?;
     if args.threads > 0 {
@@ -103,23 +104,27 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         let _ = rayon::ThreadPoolBuilder::new().num_threads(args.threads as usize).build_global();
     }
     let backend = if args.dry_run { Backend::Cpu } else { args.backend };
+    let mut planner = Planner::new(library.clone(), Style::load(&library, files.style, &args.set)?)?;
     let mut filter = Filter::new(library, style, backend, args.space, args.threads)?;
+    let most = args.memory.unwrap_or_else(memory::usual);
+    let first = &tasks.ready[0];
     let needs = match &opened {
-        Some(opened) => filter.needs(&tasks.ready[0].input, opened, &selection.wanted)?,
+        Some(opened) => planner.needs(&first.input, first.frame, opened)?,
         None => None,
     };
-    if let (Some(memory), Some(needs)) = (args.memory, needs)
-        && needs.frame + needs.filter > memory.0
-    {
-        let least = Bytes(needs.frame + needs.filter);
-        return Err(Error::input("--memory", format!("a frame needs about {least}"), "give more"));
+    if let Some(needs) = needs.filter(|needs| needs.total() > most.0) {
+        return Err(sequence::too_large(&first.input, Bytes(needs.total()), most));
     }
-    let most = args.memory.unwrap_or(sequence::USUAL_MEMORY).0;
     if args.dry_run {
-        args.print_plan(&tasks, needs, most);
-        return Ok(());
+        let (skip_existing, json) = (args.skip_existing, args.json);
+        let run = DryRun { tasks: &tasks, selection: &selection, most, skip_existing, json };
+        let refused = run.print(&mut planner, needs)?;
+        return check_failed(files.input, refused, tasks.ready.len());
     }
     let stop = Stop::on_signals();
+    if !tasks.is_sequence {
+        stop.ends_the_process("the picture");
+    }
     let report = Report::new(tasks.count(), tasks.is_sequence, args.json);
     for task in &tasks.missing {
         report.frame(task, &Outcome::Missing);
@@ -129,37 +134,42 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         selection: &selection,
         format,
         skip_existing: args.skip_existing,
-        budget: &Budget::new(most.saturating_sub(needs.map_or(0, |n| n.filter))),
+        budget: &Budget::new(most.0),
         report: &report,
         stop: &stop,
     };
-    let result = run.all(&mut filter, opened);
-    let counts = report.end(result.is_ok() && !stop.is_requested());
+    let result = run.all(&mut filter, planner, opened);
+    let counts = report.end(result.is_ok());
     result?;
-    check_complete(files.input, &counts, tasks.ready.len(), &stop)
+    check_complete(files.input, &counts, tasks.ready.len())
 }
 
-/// An error when the run was stopped, or frames failed.
-fn check_complete(input: &Path, counts: &Counts, frames: usize, stop: &Stop) -> Result<()> {
-    if stop.is_requested() {
+/// An error when the run was stopped before all frames were done, or frames failed.
+fn check_complete(input: &Path, counts: &Counts, frames: usize) -> Result<()> {
+    if counts.done() < frames as u64 {
         return Err(Error::failure(
             format!("stopped after {} frames were written", counts.written),
             "start again with --skip-existing to resume",
         ));
     }
-    if counts.failed > 0 {
-        return Err(Error::file(
+    check_failed(input, counts.failed, frames)
+}
+
+/// An error when frames failed.
+fn check_failed(input: &Path, failed: u64, frames: usize) -> Result<()> {
+    match failed {
+        0 => Ok(()),
+        _ => Err(Error::file(
             input,
-            format!("{} of {frames} frames could not be done", counts.failed),
+            format!("{failed} of {frames} frames could not be done"),
             "fix these files and start again with --skip-existing",
-        ));
+        )),
     }
-    Ok(())
 }
 
 /// The files that the command line names.
 struct Files<'a> {
-    style: Cow<'a, str>,
+    style: &'a Path,
     input: &'a Path,
     output: &'a Path,
 }
@@ -168,12 +178,8 @@ impl ApplyArgs {
     /// With a preset the style is left out, and the other two move up.
     fn files(&self) -> Result<Files<'_>> {
         match (&self.output, &self.preset) {
-            (Some(output), None) => {
-                Ok(Files { style: self.style.to_string_lossy(), input: &self.input, output })
-            }
-            (None, Some(preset)) => {
-                Ok(Files { style: preset.to_string_lossy(), input: &self.style, output: &self.input })
-            }
+            (Some(output), None) => Ok(Files { style: &self.style, input: &self.input, output }),
+            (None, Some(preset)) => Ok(Files { style: preset, input: &self.style, output: &self.input }),
             _ => Err(Error::input(
                 "--preset",
                 "the preset names the style",
@@ -215,48 +221,13 @@ impl ApplyArgs {
             Err(error) if !tasks.is_sequence && !self.skip_existing => return Err(error),
             opened => opened.ok(),
         };
-        output::check_writable(&first.output)?;
-        output::sweep(&first.output);
+        if self.dry_run {
+            files::check(&first.output)?;
+        } else {
+            files::check_writable(&first.output)?;
+            files::sweep(&first.output);
+        }
         Ok(opened)
-    }
-
-    /// What `--dry-run` prints.
-    fn print_plan(&self, tasks: &Tasks, needs: Option<filter::Needs>, most: u64) {
-        let is_done = |task: &&Task| self.skip_existing && read::is_whole(&task.output);
-        if self.json {
-            for task in &tasks.ready {
-                let status = if is_done(&task) { "skipped" } else { "planned" };
-                println!(
-                    "{}",
-                    serde_json::json!({
-                        "event": "frame", "frame": task.frame, "status": status,
-                        "input": task.input.to_string_lossy(), "output": task.output.to_string_lossy(),
-                    })
-                );
-            }
-            return;
-        }
-        let done = tasks.ready.iter().filter(is_done).count();
-        for task in &tasks.ready {
-            let note = if is_done(&task) { " (there already)" } else { "" };
-            println!("{} -> {}{note}", task.input.display(), task.output.display());
-        }
-        let mut text = format!("{} frames to be written", tasks.ready.len() - done);
-        for (count, what) in [(done, "there already"), (tasks.missing.len(), "missing")] {
-            if count > 0 {
-                text += &format!(", {count} {what}");
-            }
-        }
-        if let Some(needs) = needs {
-            let at_once = most.saturating_sub(needs.filter).checked_div(needs.frame).unwrap_or(1);
-            text += &format!(
-                "; filtering takes about {}, a frame {}, {} at a time",
-                Bytes(needs.filter),
-                Bytes(needs.frame),
-                at_once.clamp(1, sequence::MOST_IN_FLIGHT)
-            );
-        }
-        println!("{text}");
     }
 
     /// What is read of EXR files.

@@ -15,6 +15,7 @@ use crate::bench::report::{Machine, Report, Shown};
 use crate::bench::{Subject, cpu, gpu, peak, picture, sequence};
 use crate::error::{Error, Result};
 use crate::loader::Library;
+use crate::output;
 use crate::render::gpu::Gpu;
 
 /// Sizes that are measured when none is given.
@@ -83,7 +84,7 @@ pub fn run(args: &BenchArgs) -> Result<()> {
     let gpu = match args.backend {
         Some(BenchBackend::Cpu) => None,
         Some(BenchBackend::Gpu) => Some(Gpu::open()?),
-        None => Gpu::open().map_err(|e| eprintln!("warning: the GPU is left out: {e}")).ok(),
+        None => Gpu::open().map_err(|e| output::warn(format_args!("the GPU is left out: {e}"))).ok(),
     };
     let mut gpu = gpu.map(gpu::Bench::new);
     let on_cpu = args.backend != Some(BenchBackend::Gpu);
@@ -101,16 +102,16 @@ pub fn run(args: &BenchArgs) -> Result<()> {
         _ => Shown::Table,
     };
     let mut report = Report::new(&library, machine, args.runs, shown, before);
-    report.print_heading();
+    report.print_heading()?;
     let sizes = args.size.map_or(SIZES.to_vec(), |size| vec![size]);
     for size in sizes {
         let picture = picture(size);
         for subject in &subjects {
             if on_cpu {
-                report.add(cpu::run(&library, subject, &picture, args.runs)?);
+                report.add(cpu::run(&library, subject, &picture, args.runs)?)?;
             }
             if let Some(gpu) = &mut gpu {
-                report.add(gpu.run(&library, subject, &picture, args.runs)?);
+                report.add(gpu.run(&library, subject, &picture, args.runs)?)?;
             }
         }
     }

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use super::apply::ApplyArgs;
 use crate::error::{Error, Result};
 use crate::frames::range_expression;
-use crate::output;
+use crate::{files, output};
 
 /// Longest name of a job.
 const LONGEST_NAME: usize = 128;
@@ -60,11 +60,8 @@ pub fn run(args: &FarmArgs) -> Result<()> {
     let text = serde_json::to_string_pretty(&template)
         .map_err(|e| Error::failure(e, "this is a mistake in the program; please report it"))?;
     match &args.output {
-        Some(path) => output::write_beside(path, |file| writeln!(file, "{text}").map_err(|e| e.to_string())),
-        None => {
-            println!("{text}");
-            Ok(())
-        }
+        Some(path) => files::write(path, |file| writeln!(file, "{text}").map_err(|e| e.to_string())),
+        None => output::print(&format!("{text}\n")),
     }
 }
 

@@ -8,9 +8,9 @@ use clap::{Args, Subcommand};
 use crate::error::{Error, Result};
 use crate::loader::Library;
 use crate::loader::catalogue::ParamKind;
-use crate::output;
 use crate::stylize::preset::{self, Preset, Track};
 use crate::stylize::style::{Setting, Style};
+use crate::{files, output};
 
 const AFTER_HELP: &str = "A parameter in the file may have keyframes instead of a value, such as \
     \"sigma_d\": {\"1001\": 2, \"1050\": 6}; with \"between\": \"step\" among them each value holds until the \
@@ -31,7 +31,7 @@ enum PresetCommand {
     /// Writes a style with its parameters to a file.
     Save {
         /// The id of a node, a graph file or another preset.
-        style: String,
+        style: PathBuf,
         /// The file: .json.
         file: PathBuf,
         /// Sets a parameter; node.id=value for one node of a graph. May be repeated.
@@ -79,19 +79,19 @@ pub fn run(args: &PresetArgs) -> Result<()> {
     }
 }
 
-fn save(library: &Library, name: &str, file: &Path, settings: &[Setting], all: bool) -> Result<()> {
-    let style = Style::any(library, name, settings)?;
-    let base = Path::new(name);
-    let mut preset = if library.find_node(name).is_ok() {
-        Preset { style: name.to_owned(), params: Vec::new() }
+fn save(library: &Library, base: &Path, file: &Path, settings: &[Setting], all: bool) -> Result<()> {
+    let style = Style::any(library, base, settings)?;
+    let mut preset = if library.find_node(&style.name).is_ok() {
+        Preset { style: style.name.clone(), params: Vec::new() }
     } else {
         let text = fs::read_to_string(base).map_err(|e| Error::file(base, e, "name a readable file"))?;
         if preset::is_graph(&text) {
-            Preset { style: from(file, base), params: Vec::new() }
+            Preset { style: from(file, base)?, params: Vec::new() }
         } else {
             let preset = Preset::parse(base, &text)?;
             let inner = preset.style_beside(base);
-            let style = if inner == preset.style { inner } else { from(file, Path::new(&inner)) };
+            let is_same = inner == *preset.style;
+            let style = if is_same { preset.style } else { from(file, Path::new(&inner))? };
             Preset { style, ..preset }
         }
     };
@@ -108,7 +108,7 @@ fn save(library: &Library, name: &str, file: &Path, settings: &[Setting], all: b
             let problem = "is for nodes; a graph file holds the values of its own parameters";
             return Err(Error::input("--all", problem, "leave --all out"));
         }
-        let spec = style.graph.spec(0).map_err(|e| e.at(name, "choose another style"))?;
+        let spec = style.graph.spec(0).map_err(|e| e.at(&style.name, "choose another style"))?;
         for param in &spec.params {
             if !preset.params.iter().any(|(name, _)| name == param.id) {
                 preset.params.push((param.id.to_owned(), Track::Still(default(&param.kind))));
@@ -116,22 +116,25 @@ fn save(library: &Library, name: &str, file: &Path, settings: &[Setting], all: b
         }
     }
     let text = preset.to_json();
-    output::write_beside(file, |out| {
-        std::io::Write::write_all(out, text.as_bytes()).map_err(|e| e.to_string())
-    })
+    files::write(file, |out| std::io::Write::write_all(out, text.as_bytes()).map_err(|e| e.to_string()))
 }
 
 /// The path of a graph file as a preset names it: relative where both lie in one folder, whole otherwise.
-fn from(preset: &Path, graph: &Path) -> String {
+///
+/// # Errors
+/// [`Error::Input`] for paths that are no text, which JSON cannot hold.
+fn from(preset: &Path, graph: &Path) -> Result<String> {
     let folder = |path: &Path| {
         let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         fs::canonicalize(folder).ok()
     };
-    match (folder(preset), folder(graph), graph.file_name()) {
-        (Some(a), Some(b), Some(name)) if a == b => name.to_string_lossy().into_owned(),
-        (_, Some(folder), Some(name)) => folder.join(name).display().to_string(),
-        _ => graph.display().to_string(),
-    }
+    let path = match (folder(preset), folder(graph), graph.file_name()) {
+        (Some(a), Some(b), Some(name)) if a == b => PathBuf::from(name),
+        (_, Some(folder), Some(name)) => folder.join(name),
+        _ => graph.to_owned(),
+    };
+    let text = path.into_os_string().into_string();
+    text.map_err(|_| Error::file(graph, "has a name that is no UTF-8, which no preset can hold", "rename it"))
 }
 
 fn show(library: &Library, file: &Path, frame: Option<i64>) -> Result<()> {
@@ -198,7 +201,7 @@ fn open(library: &Library, file: &Path) -> Result<(Style, Preset)> {
         return Err(Error::file(file, "is a graph and no preset", "name a preset"));
     }
     let preset = Preset::parse(file, &text)?;
-    let style = Style::any(library, &file.display().to_string(), &[])?;
+    let style = Style::any(library, file, &[])?;
     Ok((style, preset))
 }
 

@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::shared::{SceneArgs, parse_size};
 use crate::apply::read;
 use crate::error::{Error, Result};
+use crate::files;
 use crate::frames::{FrameList, Pattern};
 use crate::loader::Library;
 use crate::output::{self, Layer, Picture, Precision};
@@ -61,7 +62,7 @@ pub struct RenderArgs {
     tone_mapped: bool,
     /// How frames are stylized: none, the id of a node, or a graph file or preset (.json).
     #[arg(long, default_value = "none")]
-    style: String,
+    style: PathBuf,
     /// Sets a parameter of the style; node.id=value for one node of a graph. May be repeated.
     #[arg(long, value_name = "ID=VALUE")]
     set: Vec<Setting>,
@@ -73,7 +74,7 @@ pub struct RenderArgs {
 /// [`Error::Input`] for bad input before anything is rendered, [`Error::Failure`] when the device fails.
 pub fn run(args: &RenderArgs) -> Result<()> {
     args.check()?;
-    let library = (args.style != "none").then(Library::open).transpose()?;
+    let library = args.is_stylized().then(Library::open).transpose()?;
     let style = match &library {
         Some(library) => Some((library, Style::load(library, &args.style, &args.set)?)),
         None => None,
@@ -86,7 +87,11 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         None if frames.len() == 1 => None,
         _ => Some(Pattern::or_added(&args.out)?),
     };
+    files::sweep(&args.out);
     let stop = Stop::on_signals();
+    if frames.len() == 1 {
+        stop.ends_the_process("the picture");
+    }
     let bar = progress_bar(frames.len());
     for (done, &number) in frames.iter().enumerate() {
         if stop.is_requested() {
@@ -111,11 +116,15 @@ pub fn run(args: &RenderArgs) -> Result<()> {
 }
 
 impl RenderArgs {
+    fn is_stylized(&self) -> bool {
+        self.style != Path::new("none")
+    }
+
     /// Refuses what can be refused without a library, a scene or a device.
     fn check(&self) -> Result<()> {
         output::check_extension(&self.out)?;
-        output::check_writable(&self.out)?;
-        if let (true, Some(setting)) = (self.style == "none", self.set.first()) {
+        files::check_writable(&self.out)?;
+        if let (true, Some(setting)) = (!self.is_stylized(), self.set.first()) {
             return Err(Error::input(
                 format!("--set {setting}"),
                 "the style none has no parameters",

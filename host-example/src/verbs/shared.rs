@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::error::Result;
+use crate::output;
 use crate::pixels::MOST_PIXELS;
 use crate::scene::Scene;
 
@@ -26,7 +27,7 @@ impl SceneArgs {
     pub fn load(&self) -> Result<Scene> {
         let scene = Scene::load(&self.scene, self.texture.as_deref())?;
         for warning in &scene.warnings {
-            eprintln!("warning: {}: {warning}", self.scene.display());
+            output::warn(format_args!("{}: {warning}", self.scene.display()));
         }
         Ok(scene)
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::error::{Error, Result};
-use crate::output;
+use crate::files;
 use crate::sheet::{arranged, cells};
 
 /// Options of `sheet`.
@@ -40,7 +40,7 @@ pub fn run(args: &SheetArgs) -> Result<()> {
         let problem = format!("{} labels for {} pictures", args.label.len(), args.pictures.len());
         return Err(Error::input("--label", problem, "give one for each picture, in their order"));
     }
-    output::check_writable(&args.sheet)?;
+    files::check_writable(&args.sheet)?;
     let mut all = Vec::new();
     for (index, path) in args.pictures.iter().enumerate() {
         let label = args.label.get(index).cloned().unwrap_or_else(|| name(&args.pictures, path));
@@ -51,7 +51,7 @@ pub fn run(args: &SheetArgs) -> Result<()> {
     let sheet = arranged(&all, columns, args.width).ok_or_else(|| {
         Error::input("the sheet", "would be too large", "choose a smaller --width or fewer pictures")
     })?;
-    output::write_beside(&args.sheet, |file| {
+    files::write(&args.sheet, |file| {
         let encoder = image::codecs::png::PngEncoder::new(file);
         sheet.write_with_encoder(encoder).map_err(|e| e.to_string())
     })

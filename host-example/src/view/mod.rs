@@ -8,6 +8,7 @@ pub mod viewer;
 use winit::event_loop::EventLoop;
 
 use crate::error::{Error, Result};
+use crate::output;
 use app::App;
 use viewer::Viewer;
 
@@ -34,18 +35,20 @@ pub fn show(viewer: Viewer, with_report: bool) -> Result<()> {
     let mut app = App::new(viewer);
     event_loop.run_app(&mut app).map_err(|e| failed(e.to_string()))?;
     if with_report {
-        report(app.viewer());
+        report(app.viewer())?;
     }
     app.failure.map_or(Ok(()), Err)
 }
 
-fn report(viewer: &Viewer) {
-    println!("{}", viewer.adapter);
+fn report(viewer: &Viewer) -> Result<()> {
+    let mut text = format!("{}\n", viewer.adapter);
     for stretch in viewer.stretches() {
         let mut times = stretch.times.clone();
         times.sort_unstable();
         let median = times.get(times.len() / 2).map_or(0.0, |t| t.as_secs_f64() * 1e3);
         let (width, height) = stretch.size;
-        println!("{} {width}x{height}: {} frames, {median:.1} ms each", stretch.style, times.len());
+        let style = &stretch.style;
+        text += &format!("{style} {width}x{height}: {} frames, {median:.1} ms each\n", times.len());
     }
+    output::print(&text)
 }

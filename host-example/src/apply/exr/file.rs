@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use isophote_exr_edit::{Decoded, Edit, File, Limits, PartEdit};
+use isophote_exr_edit::{Decoded, Edit, File, Limits, PartEdit, Sample};
 
 use super::choose::{self, Chosen, Selection};
 use super::fault::Fault;
@@ -55,8 +55,10 @@ impl Opened {
         for picture in &self.chosen {
             let part = &self.exr.parts()[picture.group.part];
             let pixels = (part.window.width * part.window.height) as u64;
-            // As read, as result and as planes of floats; guides are floats.
-            total += pixels * 4 * (2 + 2 + 4 + 4) + pixels * 12 * picture.guides.len() as u64;
+            let is_half = picture.colors.iter().all(|c| part.channels[*c].sample == Sample::Half);
+            let bytes = if is_half { 2 } else { 4 };
+            // As read, as result and twice as floats; guides are floats.
+            total += pixels * 4 * (2 * bytes + 4 + 4) + pixels * 12 * picture.guides.len() as u64;
             parts.extend(picture.guides.iter().map(|g| g.part).chain([picture.group.part]));
         }
         parts.sort_unstable();
