@@ -274,8 +274,11 @@ fn the_result_is_the_librarys() {
     let size = (SIZE.0 as u32, SIZE.1 as u32);
     let color =
         Pixels::new(size.0, size.1, 4, Samples::F16(interleaved(&["R", "G", "B", "A"]))).expect("a picture");
-    let normals = interleaved(&["N.X", "N.Y", "N.Z"]).into_iter().map(f16::to_f32).collect();
-    let normal = Pixels::new(size.0, size.1, 3, Samples::F32(normals)).expect("normals");
+    // What has no length is no surface.
+    let normals = interleaved(&["N.X", "N.Y", "N.Z"]).into_iter().map(f16::to_f32).collect::<Vec<_>>();
+    let valid = |n: &[f32; 3]| [n[0], n[1], n[2], f32::from(*n != [0.0; 3])];
+    let normals = normals.as_chunks::<3>().0.iter().flat_map(valid).collect();
+    let normal = Pixels::new(size.0, size.1, 4, Samples::F32(normals)).expect("normals");
     for (more, guides) in [
         (vec!["--guide", "normal=none"], vec![]),
         (vec![], vec![("normal", &normal)]),

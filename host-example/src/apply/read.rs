@@ -288,7 +288,7 @@ mod tests {
         } else {
             put(42, 2);
         }
-        let start = 2 * u64::from(is_big) + 6 + word as u64;
+        let start = if is_big { 16 } else { 8 };
         put(start, word);
         let (short, long) = (3, 4);
         let entries = 11;

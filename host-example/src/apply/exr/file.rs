@@ -58,7 +58,7 @@ impl Opened {
             let is_half = picture.colors.iter().all(|c| part.channels[*c].sample == Sample::Half);
             let bytes = if is_half { 2 } else { 4 };
             // As read, as result and twice as floats; guides are floats.
-            total += pixels * 4 * (2 * bytes + 4 + 4) + pixels * 12 * picture.guides.len() as u64;
+            total += pixels * 4 * (2 * bytes + 4 + 4) + pixels * 16 * picture.guides.len() as u64;
             parts.extend(picture.guides.iter().map(|g| g.part).chain([picture.group.part]));
         }
         parts.sort_unstable();
