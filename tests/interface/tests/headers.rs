@@ -70,7 +70,10 @@ compare! {
     kOfxParamPropGroupOpen kOfxParamPropPageChild kOfxImageEffectPropColourManagementStyle
     kOfxImageEffectColourManagementNone kOfxImageEffectColourManagementBasic
     kOfxImageEffectPropColourManagementAvailableConfigs kOfxImageClipPropColourspace
-    kOfxImageEffectActionGetOutputColourspace kOfxImageEffectPropClipPreferencesSlaveParam kOfxStatOK kOfxStatFailed kOfxStatErrUnknown
+    kOfxImageEffectActionGetOutputColourspace kOfxImageEffectPropClipPreferencesSlaveParam
+    kOfxChangePluginEdited kOfxChangeTime kOfxChangeUserEdited kOfxImageEffectHostPropIsBackground
+    kOfxImageEffectPropProjectExtent kOfxParamPropEnabled kOfxPropChangeReason kOfxPropType kOfxTypeClip
+    kOfxTypeParameter kOfxStatOK kOfxStatFailed kOfxStatErrUnknown
     kOfxStatErrMissingHostFeature kOfxStatErrExists kOfxStatErrMemory kOfxStatErrBadHandle
     kOfxStatErrBadIndex kOfxStatErrValue kOfxStatReplyDefault kOfxStatErrImageFormat
 }

@@ -161,6 +161,9 @@ pub fn bounded(region: &OfxRectD, within: &OfxRectD) -> OfxRectD {
 /// The pixels that a region touches; `None` when it is empty. Sides without a bound are put where no tile
 /// moves them, so that tiles are parts of one picture.
 fn to_pixels(region: &OfxRectD, ratio: [f64; 2]) -> Option<Bounds> {
+    if region.x1 >= region.x2 || region.y1 >= region.y2 {
+        return None;
+    }
     // Halved until the picture is one that the engine can have.
     let most = f64::from(MAX_SIDE / 2) / ratio[0].max(ratio[1]);
     let reach = REACH * (most / REACH).log2().floor().min(0.0).exp2();
