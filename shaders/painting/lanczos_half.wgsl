@@ -1,6 +1,6 @@
 // One level of a colour pyramid up, by Lanczos resampling of three lobes (thesis § 5.5.1).
 //
-// Values stay within those under the main lobe: the side lobes would draw dark rings around highlights.
+// Where asked for, values stay within those under the main lobe: the side lobes draw dark rings around highlights.
 // Where coverage is partial their negative weights could outweigh the rest, and the mean of the four
 // pixels below takes over.
 //
@@ -12,6 +12,8 @@ struct Params {
     near: vec4f,
     /// Weights at distances 9/2, 11/2 pixels.
     far: vec4f,
+    /// 1: values stay within those under the main lobe.
+    limited: u32,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;
@@ -69,7 +71,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         sharp += lobe(j) * row;
     }
     let below = mean.rgb / max(mean.a, 1e-6);
-    let resampled = min(max(sharp.rgb / max(sharp.a, 0.25), least), most);
+    var resampled = sharp.rgb / max(sharp.a, 0.25);
+    if params.limited != 0u {
+        resampled = min(max(resampled, least), most);
+    }
     let share = clamp(4.0 * min(sharp.a, mean.a) - 3.0, 0.0, 1.0);
     if !outside(id) {
         textureStore(target_image, vec2i(id.xy), vec4f(mix(below, resampled, share), mean.a));

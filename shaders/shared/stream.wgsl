@@ -27,6 +27,8 @@ struct Stream {
     ahead: vec2f,
     // True until the first step, whose tangent is already known.
     begins: bool,
+    // True where tensors of the nearest pixels are taken, not interpolated ones.
+    nearest: bool,
 }
 
 // Unit minor eigenvector at p, of either sign.
@@ -36,12 +38,12 @@ fn stream_tangent(field: texture_2d<f32>, slot: u32, p: vec2f) -> vec2f {
 
 // A line that starts at p towards the unit vector `direction`, which is the tangent at p or its opposite.
 fn stream_begin(p: vec2f, direction: vec2f) -> Stream {
-    return Stream(p, direction, 1.0, direction, true);
+    return Stream(p, direction, 1.0, direction, true, false);
 }
 
-// The same on the side of the unit vector `direction`.
-fn stream_tangent_along(field: texture_2d<f32>, slot: u32, p: vec2f, direction: vec2f) -> Along {
-    let tensor = sample_linear(field, slot, p);
+// The same on the side of the unit vector `direction`; at the `nearest` pixel's centre nothing is interpolated.
+fn stream_tangent_along(field: texture_2d<f32>, slot: u32, p: vec2f, direction: vec2f, nearest: bool) -> Along {
+    let tensor = sample_linear(field, slot, select(p, floor(p) + 0.5, nearest));
     return tensor_tangent_along(tensor.x - tensor.z, tensor.y, direction);
 }
 
@@ -60,13 +62,13 @@ fn stream_step(line: ptr<function, Stream>, field: texture_2d<f32>, slot: u32, h
     let begins = (*line).begins;
     var next = Along(select(last, (*line).ahead, integrator == STREAM_TWO_STEP), 1.0);
     if !begins && integrator != STREAM_TWO_STEP {
-        next = stream_tangent_along(field, slot, from_here, last);
+        next = stream_tangent_along(field, slot, from_here, last, (*line).nearest);
     }
     if integrator != STREAM_EULER {
-        next = stream_tangent_along(field, slot, from_here + (0.5 * h) * next.tangent, last);
+        next = stream_tangent_along(field, slot, from_here + (0.5 * h) * next.tangent, last, (*line).nearest);
     }
     let ahead = next.tangent + select(0.5, 1.0, begins) * (next.tangent - last);
-    *line = Stream(from_here + h * next.tangent, next.tangent, next.cosine, ahead, false);
+    *line = Stream(from_here + h * next.tangent, next.tangent, next.cosine, ahead, false, (*line).nearest);
 }
 
 // Lines of no more steps to a side keep theirs.

@@ -14,7 +14,7 @@ struct Params {
     radius: f32,
     /// How lines are stepped, a number of shared/stream.
     integrator: u32,
-    /// Range weights, 0: after the interpolation; 1: before it (3.9).
+    /// Range weights, 0: after the interpolation; 1: before it (3.9); 2: of the nearest pixel.
     sampling: u32,
     /// Samples, 0: at equal distances; 1: where lines cross the centres of rows or columns.
     placement: u32,
@@ -27,6 +27,7 @@ struct Params {
 
 const INPUT_TENSORS = 1u;
 const SAMPLING_LINEAR = 0u;
+const SAMPLING_NEAREST = 2u;
 const PLACEMENT_CENTRES = 1u;
 
 // A pixel times its range weight, its coverage and its share.
@@ -42,6 +43,9 @@ fn weighted(p: vec2f, origin: vec3f, domain: f32, range: f32) -> vec4f {
         let tap = sample_covered(source, 0u, p);
         let d = tap.rgb / max(tap.a, LEAST_COVERAGE) - origin;
         return exp2(range * dot(d, d) + domain) * tap;
+    }
+    if params.sampling == SAMPLING_NEAREST {
+        return pixel_weighted(vec2i(floor(p)), origin, domain, range, 1.0);
     }
     let q = p - 0.5;
     let corner = floor(q);

@@ -1,12 +1,13 @@
-// The colour at the place of the greatest noise along the stream line of a tensor field (§ 5.1): glass
-// patterns of a picture.
+// The colour of the pixel at the place of the greatest noise along the stream line of a tensor field (§ 5.1):
+// glass patterns of a picture.
 // Cost: per step one bilinear sample of the noise and two tensor samples with their tangents.
-#import shared/coverage
 #import shared/stream
 
 struct Params {
-    /// Arc length of each side of the line where the orientation is certain, pixels.
+    /// Arc length of each side of the line, pixels.
     length: f32,
+    /// 1: shorter where the orientation is uncertain (6.3.1); 0: the same everywhere.
+    adapt: u32,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;
@@ -25,9 +26,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let origin = centre(id);
     let tensor = fetch(tensors, INPUT_TENSORS, pixel(id));
-    // Shorter where the orientation is uncertain (6.3.1): there lines would cross edges.
-    let certain = 1.0 + tensor_anisotropy(tensor);
-    let limit = 0.25 * params.length * certain * certain + 1e-3;
+    var limit = params.length;
+    if params.adapt != 0u {
+        let certain = 1.0 + tensor_anisotropy(tensor);
+        limit *= 0.25 * certain * certain;
+    }
+    limit += 1e-3;
     let tangent = tensor_tangent(tensor);
     var place = origin;
     var most = fetch(noise, INPUT_NOISE, pixel(id)).x;
@@ -46,7 +50,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
     }
     let own = fetch(source, 0u, pixel(id));
-    let found = sample_covered(source, 0u, place);
-    let color = select(own.rgb, found.rgb / found.a, found.a >= 0.5);
+    let found = fetch(source, 0u, vec2i(floor(place)));
+    let color = select(own.rgb, found.rgb, found.a >= 0.5);
     textureStore(target_image, vec2i(id.xy), vec4f(color, own.a));
 }

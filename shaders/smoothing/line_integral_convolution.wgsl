@@ -18,6 +18,8 @@ struct Params {
     integrator: u32,
     /// 0: none; 1: anisotropy; 2: angle.
     adapt: u32,
+    /// 1: tensors of the nearest pixels; 0: interpolated.
+    nearest: u32,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;
@@ -61,6 +63,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var norm = 1.0;
     for (var side = -1.0; side <= 1.0; side += 2.0) {
         var line = stream_begin(origin, side * tangent);
+        line.nearest = params.nearest != 0u;
         var u = 0.0;
         while u + step <= limit {
             stream_step(&line, field, INPUT_FIELD, step, params.integrator);

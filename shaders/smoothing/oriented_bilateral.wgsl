@@ -15,7 +15,7 @@ struct Params {
     elongation: f32,
     /// 1: along the tangent; 0: along the gradient.
     tangential: u32,
-    /// Range weights, 0: after the interpolation; 1: before it (3.9).
+    /// Range weights, 0: after the interpolation; 1: before it (3.9); 2: of the nearest pixel.
     sampling: u32,
 }
 
@@ -24,7 +24,8 @@ struct Params {
 @group(0) @binding(3) var tensors: texture_2d<f32>;
 @group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
 
-const SAMPLING_MANUAL = 1u;
+const SAMPLING_LINEAR = 0u;
+const SAMPLING_NEAREST = 2u;
 
 fn weight(color: vec3f, origin: vec3f, domain: f32, range: f32) -> f32 {
     let d = color - origin;
@@ -64,11 +65,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             let i = floor(o);
             let f = o - i;
             let q = p + select(vec2i(i32(i), side * k), vec2i(side * k, i32(i)), along_x);
-            if params.sampling == SAMPLING_MANUAL {
+            if params.sampling != SAMPLING_LINEAR {
                 let a = fetch(source, 0u, q);
                 let b = fetch(source, 0u, q + next);
-                let wa = (1.0 - f) * a.a * weight(a.rgb, origin.rgb, domain * distance * distance, range);
-                let wb = f * b.a * weight(b.rgb, origin.rgb, domain * distance * distance, range);
+                let near = params.sampling == SAMPLING_NEAREST;
+                let share = select(vec2f(1.0 - f, f), vec2f(vec2(1.0 - f, f) >= vec2f(0.5)), near);
+                let wa = share.x * a.a * weight(a.rgb, origin.rgb, domain * distance * distance, range);
+                let wb = share.y * b.a * weight(b.rgb, origin.rgb, domain * distance * distance, range);
                 sum += wa * vec4f(a.rgb, 1.0) + wb * vec4f(b.rgb, 1.0);
             } else {
                 let a = fetch_covered(source, 0u, q);

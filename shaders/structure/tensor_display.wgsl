@@ -5,7 +5,7 @@
 
 struct Params {
     /// 0 orientation; 1, 2, 3 anisotropy, of roots, squared; 4 magnitude; 5 Harris, 6 Foerstner,
-    /// 7 Tomasi and Kanade, 8 Rohr; 9 significance.
+    /// 7 Tomasi and Kanade, 8 Rohr; 9 significance; 10 condition number.
     show: u32,
     /// k of the Harris measure.
     k: f32,
@@ -32,6 +32,10 @@ fn anisotropy(t: vec4f) -> f32 {
         }
         case 9u: {
             return select(0.0, a, a > params.threshold);
+        }
+        case 10u: {
+            // cond / (1 + cond) by (2.142), which does not overflow.
+            return 0.5 + 0.5 * a;
         }
         default: {
             return a;
@@ -87,7 +91,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             0.5 - 0.25 * axis.x + 0.4330127 * axis.y,
             0.5 - 0.25 * axis.x - 0.4330127 * axis.y,
         );
-    } else if params.show < 4u || params.show == 9u {
+    } else if params.show < 4u || params.show >= 9u {
         color = vec3f(anisotropy(t));
     } else {
         color = vec3f(strength(t));

@@ -13,8 +13,9 @@ crate::kernel!(luma_gradient {
     tolerance: Tolerance {
         absolute: 1e-5,
         relative: 4e-6,
-        outliers: 0.0,
-        reason: "differences magnify the last bits of colours that are larger than the result",
+        outliers: 0.002,
+        reason: "differences magnify the last bits of colours that are larger than the result, and those of \
+                 broken pictures are a thousand times as large",
     },
 });
 

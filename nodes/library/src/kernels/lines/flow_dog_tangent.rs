@@ -68,6 +68,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         source: pass.inputs[0],
         field: pass.inputs[1],
         integrator: Integrator::of(params.integrator),
+        nearest: false,
         reach: reach(&params),
     };
     let falloff = -0.721_347_52 / (params.sigma * params.sigma).max(1e-6);

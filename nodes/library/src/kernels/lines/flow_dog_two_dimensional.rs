@@ -96,7 +96,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let filter = Filter {
         lightness: &pass.inputs[0],
-        field: FieldView { tensors: pass.inputs[1] },
+        field: FieldView::new(pass.inputs[1]),
         marked: &pass.inputs[2],
         params: &params,
     };

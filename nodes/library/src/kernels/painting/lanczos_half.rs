@@ -1,7 +1,7 @@
 //! One level of a colour pyramid up, ceil(n / 2) pixels on a side, by Lanczos resampling of three lobes
 //! (§ 5.5.1).
 //!
-//! Values stay within those under the main lobe: the side lobes would draw dark rings around highlights.
+//! Where asked for, values stay within those under the main lobe: the side lobes draw dark rings around highlights.
 //! Where coverage is partial their negative weights could outweigh the rest, and the mean of the four
 //! pixels below takes over. Rows are resampled first, each once.
 //!
@@ -24,14 +24,15 @@ crate::kernel!(lanczos_half {
     },
 });
 
-/// Adds the pass: from the image's level to the next coarser one.
-pub fn pass(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
+/// Adds the pass: from the image's level to the next coarser one; `limited` to the range of the pixels under the
+/// main lobe.
+pub fn pass(plan: &mut PlanBuilder, color: ImageId, limited: bool) -> ImageId {
     let lanczos = |d: f64| (PI * d).sin() * (PI * d / 3.0).sin() * 3.0 / (PI * PI * d * d);
     // Two pixels of this level are one of the next.
     let weights: [f64; 6] = std::array::from_fn(|i| lanczos((i as f64 + 0.5) / 2.0));
     let sum = 2.0 * weights.iter().sum::<f64>();
     let [a, b, c, d, e, f] = weights.map(|w| (w / sum) as f32);
-    let params = Params { near: [a, b, c, d], far: [e, f, 0.0, 0.0] };
+    let params = Params { near: [a, b, c, d], far: [e, f, 0.0, 0.0], limited: limited.into(), padding: Default::default() };
     let level = plan.desc(color).level + 1;
     plan.pass_at(&KERNEL, &[color], &params, &[Class::Colour], Support::Pixels(5), level)
 }
@@ -79,7 +80,10 @@ fn resample<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ba
             let (sharp_alpha, alpha) = (sharp.to_array()[3], mean.to_array()[3]);
             let below = mean / alpha.max(1e-6);
             // Not `clamp`: without any coverage the bounds are exchanged.
-            let resampled = (sharp / sharp_alpha.max(0.25)).max(least).min(most);
+            let mut resampled = sharp / sharp_alpha.max(0.25);
+            if params.limited != 0 {
+                resampled = resampled.max(least).min(most);
+            }
             let share = (4.0 * sharp_alpha.min(alpha) - 3.0).clamp(0.0, 1.0);
             let value = (resampled - below).mul_add(f32x4::splat(simd, share), below);
             value.store_slice(target);

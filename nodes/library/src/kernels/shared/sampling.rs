@@ -45,6 +45,22 @@ pub fn sample_linear4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S
     transposed(pixels)
 }
 
+/// The pixels of a four-channel image at eight places, clamped to the picture, one vector per channel.
+#[inline(always)]
+pub fn fetch4<S: Simd>(simd: S, view: &View<'_>, x: i32x8<S>, y: i32x8<S>) -> [f32x8<S>; 4] {
+    let ([w, h], held) = (view.full(), view.window());
+    let zero = i32x8::splat(simd, 0);
+    let x = x.max(zero).min(i32x8::splat(simd, w - 1)) - held.x0;
+    let y = y.max(zero).min(i32x8::splat(simd, h - 1)) - held.y0;
+    let at = (y * view.stride() as i32 + x * 4).to_array();
+    let data = view.data();
+    let mut pixels = [f32x8::splat(simd, 0.0); 4];
+    for (i, pixel) in pixels.iter_mut().enumerate() {
+        *pixel = load_pixel(simd, data, at[i]).combine(load_pixel(simd, data, at[i + 4]));
+    }
+    transposed(pixels)
+}
+
 #[inline(always)]
 fn bilinear<S: Simd>([a, b, c, d]: [f32x8<S>; 4], fx: f32x8<S>, fy: f32x8<S>) -> f32x8<S> {
     let top = (b - a).mul_add(fx, a);

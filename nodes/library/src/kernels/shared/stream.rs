@@ -97,9 +97,16 @@ pub trait Field<S: Simd> {
 pub struct FieldView<'a> {
     /// Tensors (E, F, G, w), or as much of them as orientation needs, (E - G, F).
     pub tensors: View<'a>,
+    /// Takes the tensor of the nearest pixel instead of interpolating between four.
+    pub nearest: bool,
 }
 
-impl FieldView<'_> {
+impl<'a> FieldView<'a> {
+    /// A field that is interpolated.
+    pub fn new(tensors: View<'a>) -> Self {
+        Self { tensors, nearest: false }
+    }
+
     /// Unit minor eigenvectors at (x, y), of either sign.
     #[inline(always)]
     pub fn tangent<S: Simd>(&self, simd: S, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
@@ -121,11 +128,13 @@ impl<S: Simd> Field<S> for FieldView<'_> {
     }
 
     #[inline(always)]
-    fn at(&self, simd: S, [x, y]: &[f32x8<S>; 2]) -> [f32x8<S>; 2] {
+    fn at(&self, simd: S, place: &[f32x8<S>; 2]) -> [f32x8<S>; 2] {
+        // At the centre of a pixel nothing is interpolated.
+        let [x, y] = if self.nearest { place.map(|v| v.floor() + 0.5) } else { *place };
         if self.tensors.channels() == 2 {
-            return sample_linear2(simd, &self.tensors, *x, *y);
+            return sample_linear2(simd, &self.tensors, x, y);
         }
-        let [e, f, g, _] = sample_linear4(simd, &self.tensors, *x, *y);
+        let [e, f, g, _] = sample_linear4(simd, &self.tensors, x, y);
         [e - g, f]
     }
 
@@ -296,7 +305,7 @@ mod tests {
     /// By how much lines of `steps` steps leave their circles, summed over eight radii.
     fn drift(integrator: Integrator, steps: usize) -> f32 {
         let image = circles();
-        let field = FieldView { tensors: View::new(&image, [SIDE as i32; 2]) };
+        let field = FieldView::new(View::new(&image, [SIDE as i32; 2]));
         let middle = SIDE as f32 / 2.0;
         dispatch!(Level::new(), simd => {
             let start = f32x8::from_fn(simd, |lane| 10.0 + 3.0 * lane as f32);

@@ -166,6 +166,8 @@ pub struct Inputs<'a> {
     pub field: View<'a>,
     /// How lines are stepped.
     pub integrator: Integrator,
+    /// Takes the tensors of the nearest pixels instead of interpolating.
+    pub nearest: bool,
     /// The most pixels that are read to any side.
     pub reach: i32,
 }
@@ -202,7 +204,7 @@ pub fn along_lines<const VALUES: usize, const OUT: usize>(
     band: &mut Band<'_>,
 ) {
     // Which of two ways is taken depends on the parameters alone, not on where a pixel's tile lies.
-    if !Frame::suits(inputs.reach) {
+    if inputs.nearest || !Frame::suits(inputs.reach) {
         return far(level, inputs, kernel, band);
     }
     let (mut source, mut tensors) = (TileCopy::default(), TileCopy::default());
@@ -268,7 +270,7 @@ fn near<S: Simd, const VALUES: usize, const OUT: usize>(
     }
 }
 
-/// A band whose lines reach too far for copies of what is around tiles.
+/// A band whose lines reach too far for copies of what is around tiles, or read the field as copies do not.
 fn far<const VALUES: usize, const OUT: usize>(
     level: Level,
     inputs: &Inputs<'_>,
@@ -277,7 +279,7 @@ fn far<const VALUES: usize, const OUT: usize>(
 ) {
     let covered = (VALUES == FOUR).then(|| Covered::new(&inputs.source, band, inputs.reach));
     let source = covered.as_ref().map_or(inputs.source, |c| c.view(&inputs.source));
-    let field = FieldView { tensors: inputs.field };
+    let field = FieldView { tensors: inputs.field, nearest: inputs.nearest };
     dispatch!(level, simd => for_blocks_in_tiles::<OUT>(band, #[inline(always)] |block, target| {
         write(kernel.far(simd, &field, inputs.integrator, &source, &block), target);
     }));
@@ -292,7 +294,7 @@ mod tests {
     fn ended_lanes_stay_where_they_are() {
         // Tangents run along the rows.
         let image = Image::from_vec(96, 20, 2, [-1.0, 0.0].repeat(96 * 20)).unwrap();
-        let field = FieldView { tensors: View::new(&image, [96, 20]) };
+        let field = FieldView::new(View::new(&image, [96, 20]));
         dispatch!(Level::new(), simd => {
             let [x, y] = Block { x: 40, y: 9, len: 8 }.centres(simd);
             let begin = [Stream::begin(x, y, field.tangent(simd, x, y))];
@@ -308,7 +310,7 @@ mod tests {
     #[test]
     fn lines_end_where_they_leave_the_picture() {
         let image = Image::from_vec(16, 8, 2, [-1.0, 0.0].repeat(16 * 8)).unwrap();
-        let field = FieldView { tensors: View::new(&image, [16, 8]) };
+        let field = FieldView::new(View::new(&image, [16, 8]));
         dispatch!(Level::new(), simd => {
             let block = Block { x: 8, y: 4, len: 8 };
             let [x, y] = block.centres(simd);

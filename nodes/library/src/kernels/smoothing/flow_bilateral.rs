@@ -13,14 +13,14 @@ use crate::choice::Numbered;
 use crate::kernels::lines::orientation_field;
 pub use crate::kernels::shaders::flow_bilateral::Params;
 use crate::kernels::shared::coverage::Covered;
-use crate::kernels::shared::sampling::sample_linear4;
+use crate::kernels::shared::sampling::{fetch4, sample_linear4};
 use crate::kernels::shared::stream::{FieldView, Integrator, Stream, half_length, in_bounds};
 use crate::kernels::shared::tensor::tangent;
-use crate::kernels::simd::pixels::{Block, for_blocks_in_tiles, load_pixel, premultiply, write};
+use crate::kernels::simd::pixels::{Block, for_blocks_in_tiles, premultiply, write};
 use crate::kernels::simd::trace::{Lines, Point, both_sides};
 use crate::kernels::smoothing::oriented_bilateral::Sampling;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
-use isophote_engine::math::{Elementary, channels};
+use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::kernel!(flow_bilateral {
@@ -93,7 +93,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         params,
         origins: pass.inputs[0],
         source: covered.as_ref().map_or(pass.inputs[0], |c| c.view(&pass.inputs[0])),
-        field: FieldView { tensors: pass.inputs[1] },
+        field: FieldView::new(pass.inputs[1]),
         opaque: covered.as_ref().is_some_and(Covered::is_opaque),
     };
     dispatch!(pass.level, simd => for_blocks_in_tiles::<4>(band, #[inline(always)] |block, target| {
@@ -219,6 +219,11 @@ impl Filter<'_> {
             let weight = weight(colour, origin, domain);
             return [r * weight, g * weight, b * weight, a * weight];
         }
+        if self.params.sampling == Sampling::Nearest as u32 {
+            let [r, g, b, a] = fetch4(simd, &self.source, x.floor().to_int(), y.floor().to_int());
+            let weight = weight([r, g, b], origin, domain) * a;
+            return [r * weight, g * weight, b * weight, weight];
+        }
         let (x, y) = (x - 0.5, y - 0.5);
         let (left, top) = (x.floor(), y.floor());
         let (fx, fy) = (x - left, y - top);
@@ -227,7 +232,7 @@ impl Filter<'_> {
         for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
             let share = if dx == 0 { f32x8::splat(simd, 1.0) - fx } else { fx };
             let share = share * if dy == 0 { f32x8::splat(simd, 1.0) - fy } else { fy };
-            let [r, g, b, a] = self.pixels(simd, left + dx, top + dy);
+            let [r, g, b, a] = fetch4(simd, &self.source, left + dx, top + dy);
             let weight = weight([r, g, b], origin, domain) * share * a;
             sum[0] = weight.mul_add(r, sum[0]);
             sum[1] = weight.mul_add(g, sum[1]);
@@ -235,27 +240,6 @@ impl Filter<'_> {
             sum[3] += weight;
         }
         sum
-    }
-
-    /// The pixels at eight positions, clamped to the picture.
-    #[inline(always)]
-    fn pixels<S: Simd>(&self, simd: S, x: i32x8<S>, y: i32x8<S>) -> [f32x8<S>; 4] {
-        let ([w, h], held) = (self.source.full(), self.source.window());
-        let zero = i32x8::splat(simd, 0);
-        let x = x.max(zero).min(i32x8::splat(simd, w - 1)) - held.x0;
-        let y = y.max(zero).min(i32x8::splat(simd, h - 1)) - held.y0;
-        let at = (y * self.source.stride() as i32 + x * 4).to_array();
-        let data = self.source.data();
-        channels([
-            load_pixel(simd, data, at[0]),
-            load_pixel(simd, data, at[1]),
-            load_pixel(simd, data, at[2]),
-            load_pixel(simd, data, at[3]),
-            load_pixel(simd, data, at[4]),
-            load_pixel(simd, data, at[5]),
-            load_pixel(simd, data, at[6]),
-            load_pixel(simd, data, at[7]),
-        ])
     }
 }
 

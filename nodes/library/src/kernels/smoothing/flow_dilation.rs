@@ -1,4 +1,4 @@
-//! The colour at the place of the greatest noise along the stream line of a tensor field (§ 5.1): a
+//! The colour of the pixel at the place of the greatest noise along the stream line of a tensor field (§ 5.1): a
 //! one-dimensional dilation of noise, made visible by the picture (Papari and Petkov 2009, continuous
 //! glass patterns). Lines that share their greatest noise share its colour, which makes coherent
 //! strokes with sharp borders. Places less than half covered lend no colour, and coverage passes.
@@ -7,8 +7,7 @@
 //! about 130 operations.
 
 pub use crate::kernels::shaders::flow_dilation::Params;
-use crate::kernels::shared::coverage::Covered;
-use crate::kernels::shared::sampling::sample_linear4;
+use crate::kernels::shared::sampling::{fetch4, sample_linear4};
 use crate::kernels::shared::stream::{FieldView, Integrator};
 use crate::kernels::shared::tensor::{anisotropy, tangent};
 use crate::kernels::simd::pixels::{Block, for_blocks, write};
@@ -28,16 +27,17 @@ crate::kernel!(flow_dilation {
     },
 });
 
-/// Looks `length` (1 + A)^2 / 4 pixels to both sides, A the anisotropy at the centre as in § 6.3.1, for the
-/// maximum of the first channel of `noise`.
+/// Looks `length` pixels to both sides for the maximum of the first channel of `noise`; where `adapted`, (1 + A)^2 / 4
+/// times as far, A the anisotropy at the centre as in § 6.3.1.
 pub fn pass(
     plan: &mut PlanBuilder,
     color: ImageId,
     tensors: ImageId,
     noise: ImageId,
     length: f32,
+    adapted: bool,
 ) -> ImageId {
-    let params = Params { length };
+    let params = Params { length, adapt: adapted.into() };
     plan.pass(
         &KERNEL,
         &[color, tensors, noise],
@@ -54,23 +54,17 @@ fn reach(params: &Params) -> i32 {
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    let covered = Covered::new(&pass.inputs[0], band, reach(&params));
-    let source = covered.view(&pass.inputs[0]);
-    let field = FieldView { tensors: pass.inputs[1] };
+    let field = FieldView::new(pass.inputs[1]);
     dispatch!(pass.level, simd => for_blocks::<4>(
         band,
         #[inline(always)]
         |block, target| {
             let own: [_; 4] = block.read(simd, &pass.inputs[0]);
             let at = brightest(simd, &params, &field, &pass.inputs[2], &block);
-            let [r, g, b, alpha] = sample_linear4(simd, &source, at[0], at[1]);
+            let [x, y] = at.map(|v| v.floor().to_int());
+            let [r, g, b, alpha] = fetch4(simd, &pass.inputs[0], x, y);
             let seen = alpha.simd_ge(f32x8::splat(simd, 0.5));
-            let values = [
-                seen.select(r / alpha, own[0]),
-                seen.select(g / alpha, own[1]),
-                seen.select(b / alpha, own[2]),
-                own[3],
-            ];
+            let values = [seen.select(r, own[0]), seen.select(g, own[1]), seen.select(b, own[2]), own[3]];
             write(values, target);
         },
     ));
@@ -88,8 +82,12 @@ fn brightest<S: Simd>(
 ) -> [f32x8<S>; 2] {
     let [x, y] = block.centres(simd);
     let [e, f, g, _] = sample_linear4(simd, &field.tensors, x, y);
-    let certain = anisotropy(e, f, g) + 1.0;
-    let limit = certain * certain * (0.25 * params.length) + 1e-3;
+    let mut limit = f32x8::splat(simd, params.length);
+    if params.adapt != 0 {
+        let certain = anisotropy(e, f, g) + 1.0;
+        limit *= certain * certain * 0.25;
+    }
+    limit += 1e-3;
     let own = sample_linear4(simd, noise, x, y)[0];
     let mut most = [own; 2];
     let mut place = [[x, y]; 2];

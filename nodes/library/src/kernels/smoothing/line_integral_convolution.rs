@@ -63,6 +63,8 @@ pub struct Options {
     pub stretch: f32,
     /// How the lines are stepped.
     pub integrator: Integrator,
+    /// Takes the tensors of the nearest pixels instead of interpolating (§ 2.9.2).
+    pub nearest: bool,
     /// How the length is adapted.
     pub adapt: Adapt,
     /// A side ends at a step that turns by more, degrees; 0 for never.
@@ -79,6 +81,7 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: &
         least_turn: least_turn(options.max_angle),
         integrator: options.integrator as u32,
         adapt: options.adapt as u32,
+        nearest: options.nearest.into(),
     };
     let field = orientation_field::pass(plan, tensors);
     plan.pass(
@@ -111,6 +114,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         source: pass.inputs[0],
         field: pass.inputs[2],
         integrator: Integrator::of(params.integrator),
+        nearest: params.nearest != 0,
         reach: reach(&params),
     };
     let mut convolve =

@@ -5,6 +5,8 @@
 //! pixels (3.6, 3.7). The range is measured as Euclidean distance of the three colour channels, taps
 //! count by their coverage, and coverage itself passes: the edge of a cut-out is an edge to preserve.
 //!
+//! Nearest sampling takes the nearer of the two, and both where they are equally near.
+//!
 //! Cost: about 1.8 cutoff taps of one interpolation and one exponential (manual: two or more).
 
 pub use crate::kernels::shaders::oriented_bilateral::Params;
@@ -17,7 +19,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support,
 
 crate::kernel!(oriented_bilateral {
     cpu: run,
-    cost: |p| 1.8 * f64::from(p.cutoff) * if p.sampling == Sampling::Manual as u32 { 50.0 } else { 35.0 },
+    cost: |p| 1.8 * f64::from(p.cutoff) * if p.sampling == Sampling::Linear as u32 { 35.0 } else { 50.0 },
     tolerance: Tolerance {
         absolute: 2e-3,
         relative: 2e-4,
@@ -43,6 +45,8 @@ crate::choice::choice! {
         Linear = 0 ("linear", "Linear"),
         /// To both pixels, before the interpolation (3.9).
         Manual = 1 ("manual", "Manual"),
+        /// To the nearest pixel, without interpolation.
+        Nearest = 2 ("nearest", "Nearest"),
     }
 }
 
@@ -103,7 +107,7 @@ fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
     let mut block = Block { taps: [[[zero; 4]; 2]; STEPS], coverage: [[zero; 2]; STEPS] };
     for strip in strips(band, radius) {
         colours.load(simd, &pass.inputs[0], strip, radius, params.sampling == Sampling::Linear as u32);
-        let mode = match (params.sampling == Sampling::Manual as u32, colours.is_opaque()) {
+        let mode = match (params.sampling != Sampling::Linear as u32, colours.is_opaque()) {
             (true, _) => MANUAL,
             (false, true) => OPAQUE,
             (false, false) => COVERED,
@@ -134,7 +138,7 @@ fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
     }
 }
 
-/// Linear sampling where all coverage is 1, and where it is not; manual sampling.
+/// Linear sampling where all coverage is 1, and where it is not; sampling of both pixels.
 const OPAQUE: u32 = 0;
 const COVERED: u32 = 1;
 const MANUAL: u32 = 2;
@@ -228,6 +232,7 @@ impl Row<'_> {
     ) {
         let simd = weights.domain.simd;
         let (one, none) = (f32x8::splat(simd, 1.0), f32x8::splat(simd, -1e3));
+        let nearest = self.params.sampling == Sampling::Nearest as u32;
         // Taps and exponents of some steps first, then their exponential functions: one after the other
         // these would be one long chain, and what each needs would not fit the registers.
         lines.for_blocks(
@@ -243,6 +248,7 @@ impl Row<'_> {
                         |share, [[r0, g0, b0, a0], [r1, g1, b1, a1]]| {
                             let [e0, e1] = weights.exponents([[r0, g0, b0], [r1, g1, b1]], domain);
                             let [w0, w1] = exponential(e0, e1);
+                            let share = if nearest { round_half(share) } else { share };
                             let (w0, w1) = (w0 * share * a0, w1 * share * a1);
                             add(sum, w0, [r0, g0, b0], w0);
                             add(sum, w1, [r1, g1, b1], w1);
@@ -293,6 +299,13 @@ impl<S: Simd> Weights<S> {
         }
         exponents
     }
+}
+
+/// 1 from a half on, else 0.
+#[inline(always)]
+fn round_half<S: Simd>(share: f32x8<S>) -> f32x8<S> {
+    let simd = share.simd;
+    share.simd_ge(0.5).select(f32x8::splat(simd, 1.0), f32x8::splat(simd, 0.0))
 }
 
 /// 2^x of two vectors.

@@ -55,6 +55,8 @@ crate::choice::numbered! {
         Rohr = 8,
         /// Anisotropy where it is above what noise gives (2.154); 0 elsewhere.
         Significance = 9,
+        /// The condition number (2.140) over itself plus 1, by its relation to the anisotropy (2.142).
+        Condition = 10,
     }
 }
 
@@ -127,6 +129,7 @@ fn measure<S: Simd>(simd: S, show: Show, params: &Params, t: [f32x8<S>; 3]) -> f
         Show::Orientation | Show::Anisotropy => a,
         Show::AnisotropySqrt => a / (c(1.0) + (c(1.0) - a * a).max(c(0.0)).sqrt()),
         Show::AnisotropySquared => a * a,
+        Show::Condition => a * 0.5 + 0.5,
         Show::Significance => a.simd_gt(c(params.threshold)).select(a, c(0.0)),
         Show::Magnitude => {
             let gradient = lambda1.max(c(0.0)).sqrt();

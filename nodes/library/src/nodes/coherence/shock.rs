@@ -4,9 +4,10 @@ use crate::choice::choice;
 use crate::kernels::coherence::directed_shock::{self, Options};
 use crate::kernels::coherence::{laplacian, second_derivative, shock_step};
 use crate::kernels::smoothing::gaussian_blur;
-use crate::nodes::structure::structure_tensor::{self, TensorOptions};
+use crate::nodes::structure::structure_tensor;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
+use crate::tensor_options;
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -32,6 +33,10 @@ pub static NODE: NodeSpec = NodeSpec {
         THRESHOLD,
         ITERATIONS,
         TIME_STEP,
+        tensor_options::RHO.doc(
+            "Standard deviation of the Gaussian that smooths the tensor, where none is connected; Weickert's \
+             filter finds it anew at each step.",
+        ),
     ],
     build,
 };
@@ -153,19 +158,15 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
             color
         }
         Variant::CoherenceEnhancing => {
-            let options = TensorOptions::at_scale(scope.scale());
             for _ in 0..iterations {
                 // The orientation evolves with the picture, unless one is given.
-                let tensor = match scope.input("tensor") {
-                    Some(tensor) => tensor,
-                    None => structure_tensor::of_color(scope.plan, color, &options),
-                };
+                let tensor = structure_tensor::connected_or_smoothed(scope, color);
                 color = coherence_enhancing_step(scope.plan, color, tensor, sigma_i, time_step);
             }
             color
         }
         Variant::GradientDirected => {
-            let tensor = structure_tensor::connected(scope, color);
+            let tensor = structure_tensor::connected_or_smoothed(scope, color);
             Directed::of(scope).apply(scope.plan, color, tensor)
         }
     }

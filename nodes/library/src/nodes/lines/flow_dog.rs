@@ -5,7 +5,7 @@ use crate::choice::choice;
 use crate::kernels::colour::lightness;
 use crate::kernels::lines::flow_dog_two_dimensional::{self, Stepping};
 use crate::kernels::lines::{
-    darken_by_lines, flow_dog_cabral_leedom, flow_dog_gradient, flow_dog_tangent, guide_lines,
+    darken_by_lines, dog_columns, flow_dog_cabral_leedom, flow_dog_gradient, flow_dog_tangent, guide_lines,
     orientation_field,
 };
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
@@ -131,8 +131,43 @@ impl FlowDog {
         guides: &Guides,
     ) -> ImageId {
         let field = orientation_field::pass(plan, tensor);
-        let (mut source, mut edges) = (lightness, lightness);
         let guides = [guides.normal, guides.depth, guides.object_id];
+        self.iterate(plan, lightness, |plan, source, xdog| match self.kernel {
+            Kernel::Separable => {
+                let options = flow_dog_gradient::Options { sigma: self.sigma_e, k: self.k, xdog };
+                let response = flow_dog_gradient::pass(plan, source, field, &options);
+                let response = self.with_guides(plan, response, field, guides);
+                self.along(plan, response, field, &xdog)
+            }
+            Kernel::TwoDimensional => {
+                let marked = self.with_guides(plan, source, field, guides);
+                let options = flow_dog_two_dimensional::Options {
+                    sigma_e: self.sigma_e,
+                    k: self.k,
+                    sigma_m: self.sigma_m,
+                    stepping: self.stepping,
+                    xdog,
+                };
+                flow_dog_two_dimensional::pass(plan, [source, field, marked], &options)
+            }
+        })
+    }
+
+    /// The edge image of (L alpha, alpha) by the difference of Gaussians in all directions alike (§ 4.2).
+    pub(crate) fn isotropic(&self, plan: &mut PlanBuilder, lightness: ImageId) -> ImageId {
+        self.iterate(plan, lightness, |plan, source, xdog| {
+            dog_columns::pass(plan, source, &dog_columns::Options { sigma: self.sigma_e, k: self.k, xdog })
+        })
+    }
+
+    /// Filters as often as asked for, each time the lightness times the lines found so far.
+    fn iterate(
+        &self,
+        plan: &mut PlanBuilder,
+        lightness: ImageId,
+        filter: impl Fn(&mut PlanBuilder, ImageId, Xdog) -> ImageId,
+    ) -> ImageId {
+        let (mut source, mut edges) = (lightness, lightness);
         for iteration in 1..=self.iterations {
             let last = iteration == self.iterations;
             let mut xdog = self.xdog;
@@ -140,25 +175,7 @@ impl FlowDog {
                 // Only an edge image can darken the input of the next iteration.
                 xdog.threshold = Threshold::Tanh;
             }
-            edges = match self.kernel {
-                Kernel::Separable => {
-                    let options = flow_dog_gradient::Options { sigma: self.sigma_e, k: self.k, xdog };
-                    let response = flow_dog_gradient::pass(plan, source, field, &options);
-                    let response = self.with_guides(plan, response, field, guides);
-                    self.along(plan, response, field, &xdog)
-                }
-                Kernel::TwoDimensional => {
-                    let marked = self.with_guides(plan, source, field, guides);
-                    let options = flow_dog_two_dimensional::Options {
-                        sigma_e: self.sigma_e,
-                        k: self.k,
-                        sigma_m: self.sigma_m,
-                        stepping: self.stepping,
-                        xdog,
-                    };
-                    flow_dog_two_dimensional::pass(plan, [source, field, marked], &options)
-                }
-            };
+            edges = filter(plan, source, xdog);
             if !last {
                 source = darken_by_lines::pass(plan, lightness, edges);
             }

@@ -41,6 +41,7 @@ pub static NODE: NodeSpec = NodeSpec {
         P_D,
         TAU_V,
         TAU_W,
+        LIMIT_RANGE,
     ],
     build,
 };
@@ -75,6 +76,11 @@ pub(crate) const TAU_W: Param = Param::float("tau_w", "Least deviation", 0.02, [
     .slider(0.001, 0.1)
     .doc("With several levels: least standard deviation of a sector in the measure of variation (tau_w of 5.5.2).");
 
+pub(crate) const LIMIT_RANGE: Param = Param::bool("limit_range", "Limit range", false).doc(
+    "With several levels: keeps each coarser scale within the range of the pixels below it, where Lanczos resampling \
+     as published (5.5.1) draws dark rings around highlights.",
+);
+
 choice! {
     /// The weighting functions of the sectors.
     pub(crate) enum Weights {
@@ -100,6 +106,8 @@ pub(crate) struct Painting {
     pub p_d: f32,
     /// What counts as no variation.
     pub tau_v: f32,
+    /// Whether coarser scales stay in the range of finer ones.
+    pub limited: bool,
 }
 
 impl Painting {
@@ -119,6 +127,7 @@ impl Painting {
             p_s: scope.float("p_s"),
             p_d: scope.float("p_d"),
             tau_v: scope.float("tau_v"),
+            limited: scope.bool("limit_range"),
         }
     }
 
@@ -141,7 +150,7 @@ impl Painting {
             if plan.level_size(level).iter().all(|n| *n <= SMALLEST) {
                 break;
             }
-            levels[count] = lanczos_half::pass(plan, finer);
+            levels[count] = lanczos_half::pass(plan, finer, self.limited);
             count += 1;
         }
         let mut below: Option<[ImageId; 3]> = None;

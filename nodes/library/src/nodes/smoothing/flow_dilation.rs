@@ -20,8 +20,11 @@ pub static NODE: NodeSpec = NodeSpec {
     output: ports::color_output("The picture in strokes."),
     own_params: &[
         Param::float("length", "Length", 12.0, [0.0, 60.0]).neutral_at_zero().slider(0.0, 30.0).pixels().doc(
-            "Arc length that is searched on each side; strokes are up to twice as long. Shorter where \
-                 the orientation is uncertain: times (1 + A)^2 / 4 (6.3.1).",
+            "Arc length that is searched on each side; strokes are up to twice as long.",
+        ),
+        Param::bool("adapt", "Adapt length", false).doc(
+            "Searches less far where the orientation is uncertain, (1 + A)^2 / 4 times the length (6.3.1), which keeps \
+             strokes from crossing corners.",
         ),
         Param::float("width", "Width", 1.2, [0.0, 10.0])
             .slider(0.0, 4.0)
@@ -39,5 +42,5 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let scale = scope.scale();
     let white = noise::pass(scope.plan, scale, seed as u32);
     let grains = gaussian_blur::pass(scope.plan, white, width, Class::Colour);
-    flow_dilation::pass(scope.plan, color, tensors, grains, length)
+    flow_dilation::pass(scope.plan, color, tensors, grains, length, scope.bool("adapt"))
 }

@@ -3,9 +3,10 @@
 
 use crate::kernels::smoothing::mean_curvature_flow;
 use crate::nodes::coherence::shock;
-use crate::nodes::structure::structure_tensor::{self, TensorOptions};
+use crate::nodes::structure::structure_tensor;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
+use crate::tensor_options;
 use isophote_engine::ImageId;
 
 /// The node.
@@ -18,7 +19,7 @@ pub static NODE: NodeSpec = NodeSpec {
           shock filtering in between keeps edges sharp. Transparent pixels lend no colour, and coverage \
           stays as it is.",
     section: "6.1",
-    inputs: &[ports::COLOR],
+    inputs: &[ports::COLOR, ports::TENSOR],
     output: ports::color_output("The simplified picture."),
     own_params: &[
         Param::int("iterations", "Iterations", 15, [0, 60]).neutral_at_zero()
@@ -27,7 +28,8 @@ pub static NODE: NodeSpec = NodeSpec {
             .doc("Steps of the flow."),
         Param::float("constraint", "Constraint", 0.0, [0.0, 1.0]).structural().doc(
             "How much the flow is slowed down where isophotes do not follow the smoothed structure tensor \
-             of the input, r of 6.2: 0 for the free flow, 1 for none across the orientation.",
+             of the input, or one that is connected, r of 6.2: 0 for the free flow, 1 for none across the \
+             orientation.",
         ),
         Param::float("time_step", "Time step", 0.25, [0.01, 0.25]).doc(
             "Length of a step. Where one of this length would overshoot, pixels go to the mean of their \
@@ -37,6 +39,7 @@ pub static NODE: NodeSpec = NodeSpec {
             .slider(0.0, 15.0)
             .structural()
             .doc("Sharpens edges by a step of the classical shock filter (6.3) after every so many steps; 0 for never."),
+        tensor_options::RHO.doc("Standard deviation of the Gaussian that smooths the tensor of the constraint, where none is connected."),
     ],
     build,
 };
@@ -49,10 +52,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let mut color = scope.required("color");
     let (time_step, constraint) = (scope.float("time_step"), scope.float("constraint"));
     let (iterations, shock_every) = (scope.int("iterations"), scope.int("shock_every"));
-    let tensors = (constraint > 0.0).then(|| {
-        let options = TensorOptions::at_scale(scope.scale());
-        structure_tensor::of_color(scope.plan, color, &options)
-    });
+    let tensors = (constraint > 0.0).then(|| structure_tensor::connected_or_smoothed(scope, color));
     let sigma_i = SHOCK_SIGMA * scope.scale();
     for i in 1..=iterations {
         color = mean_curvature_flow::pass(scope.plan, color, tensors, time_step, constraint);

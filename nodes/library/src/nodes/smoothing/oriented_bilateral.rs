@@ -61,7 +61,7 @@ const ANISOTROPY: Param = Param::float("anisotropy", "Elongation", 0.0, [0.0, 4.
 pub(crate) const SAMPLING: Param =
     Param::choice("sampling", "Sampling", Sampling::Linear.selected()).uniform().doc(
         "Linear compares interpolated colours and gives smooth borders; manual compares both pixels before \
-         it interpolates (3.9) and gives sharp ones.",
+         it interpolates (3.9) and gives sharp ones; nearest takes the nearer pixel and gives jagged ones.",
     );
 
 /// The two passes of an iteration.

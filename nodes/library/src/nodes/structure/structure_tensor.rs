@@ -82,6 +82,17 @@ pub fn connected(scope: &mut Scope<'_>, color: ImageId) -> ImageId {
     }
 }
 
+/// [`connected`] for nodes that say by `rho` how their own tensor is smoothed.
+pub fn connected_or_smoothed(scope: &mut Scope<'_>, color: ImageId) -> ImageId {
+    match scope.input("tensor") {
+        Some(tensor) => tensor,
+        None => {
+            let options = TensorOptions { rho: scope.float("rho"), ..TensorOptions::at_scale(scope.scale()) };
+            of_color(scope.plan, color, &options)
+        }
+    }
+}
+
 /// The smoothed tensor of a colour.
 pub fn of_color(plan: &mut PlanBuilder, color: ImageId, options: &TensorOptions) -> ImageId {
     of_color_and_guides(plan, color, &Guides::default(), options)

@@ -35,7 +35,7 @@ pub static NODE: NodeSpec = NodeSpec {
     own_params: &[
         Param::choice("show", "Show", View::StreamLines.selected()).doc(
             "What to show: stream lines (2.186), the angle of the tangent, the anisotropy (2.137), (2.138) or \
-             (2.139), sqrt(lambda1), the corner measure (2.159), (2.160), (2.161) or det, or the anisotropy \
+             (2.139), sqrt(lambda1), the condition number c (2.140) as c / (1 + c), the corner measure (2.159), (2.160), (2.161) or det, or the anisotropy \
              where it is significant (2.154) and else black.",
         ),
         Param::float("sigma", "Sigma", 6.0, [0.5, 40.0])
@@ -74,6 +74,8 @@ choice! {
         AnisotropySquared ("anisotropy_squared", "Squared anisotropy"),
         /// The magnitude of the gradient, sqrt(lambda1).
         Magnitude ("magnitude", "Gradient magnitude"),
+        /// The condition number c (2.140) as c / (1 + c): 1/2 where no orientation is, 1 on edges.
+        Condition ("condition", "Condition number"),
         /// The corner measure det - k tr^2 (2.159).
         Harris ("harris", "Harris corners"),
         /// The corner measure det / tr (2.160).
@@ -104,6 +106,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         View::TomasiKanade => Show::TomasiKanade,
         View::Rohr => Show::Rohr,
         View::Significance => Show::Significance,
+        View::Condition => Show::Condition,
     };
     let rho = scope.float("rho");
     let samples = 4.0 * std::f32::consts::PI * rho * rho;
@@ -136,7 +139,6 @@ fn stream_lines(plan: &mut PlanBuilder, mut tensor: ImageId, sigma: f32, scale: 
     // Who looks at a field looks at the lines themselves.
     let options = Options {
         sigma: sigma * f32::from(1_u8 << finer),
-        stretch: 1.0,
         integrator: Integrator::Midpoint,
         adapt: Adapt::None,
         ..lic::options()

@@ -1,9 +1,11 @@
 //! The enhanced cartoon filter (§ 4.6, Fig. 4.7).
 
+use crate::choice::choice;
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::{lab_to_rgb, lightness, quantize_luminance, rgb_to_lab};
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::nodes::colour::quantize_luminance as quantization;
+use crate::nodes::colour::warp_sharpen;
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::lines::flow_dog;
 use crate::nodes::smoothing::line_integral_convolution as lic;
@@ -37,6 +39,7 @@ pub static NODE: NodeSpec = NodeSpec {
         tone::LIGHTS,
         tone::DARKS,
         abstraction::ABSTRACTION,
+        LINE_FILTER,
         lines::N_E,
         Param::int("n_a", "Iterations for colour", 4, [0, 16])
             .slider(0.0, 8.0)
@@ -61,6 +64,7 @@ pub static NODE: NodeSpec = NodeSpec {
         quantization::OMEGA_DELTA.group(ADVANCED),
         quantization::LAMBDA_PHI.group(ADVANCED),
         quantization::OMEGA_PHI.group(ADVANCED),
+        WARP,
         SIGMA_A,
     ],
     build,
@@ -76,6 +80,29 @@ const SIGMA_A: Param = Param::float("sigma_a", "Edge smoothing", 1.5, [0.0, 20.0
     .group(ADVANCED)
     .doc("Standard deviation of the final smoothing along the edges, against jagged steps and lines; 0 for none.");
 
+const LINE_FILTER: Param = Param::choice("line_filter", "Line filter", LineFilter::Flow.selected())
+    .group(ADVANCED)
+    .doc(
+        "How lines are found: across and along the local orientation (4.5), or in all directions alike (4.2), where \
+         `sigma_m` has no part and guides draw no lines.",
+    );
+const WARP: Param = Param::float("warp", "Warp", 0.0, [0.0, 20.0])
+    .slider(0.0, 6.0)
+    .pixels()
+    .structural()
+    .group(ADVANCED)
+    .doc("How far the colours beside sharp edges are pulled towards them before lines are drawn, which narrows blurred edges (phi_w of `warp_sharpen`); 0 for not at all.");
+
+choice! {
+    /// How lines are found.
+    enum LineFilter {
+        /// Across and along the local orientation (4.5).
+        Flow ("flow", "Flow-based"),
+        /// In all directions alike (4.2).
+        Isotropic ("isotropic", "Isotropic"),
+    }
+}
+
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = scope.required("color");
     let guide_weight = scope.float("guide_weight");
@@ -88,7 +115,10 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let for_lines = abstraction.apply(scope.plan, lab, tensor, n_e);
     let flow = lines::flow_dog(scope, guide_weight);
     let lightness = lightness::pass_lab(scope.plan, for_lines);
-    let edges = flow.edges(scope.plan, lightness, tensor, &guides);
+    let edges = match scope.option("line_filter") {
+        LineFilter::Flow => flow.edges(scope.plan, lightness, tensor, &guides),
+        LineFilter::Isotropic => flow.isotropic(scope.plan, lightness),
+    };
 
     // The first iterations are those behind the lines: the plan records them once.
     let mut flat = abstraction.apply(scope.plan, lab, tensor, n_a);
@@ -99,11 +129,16 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         flat = quantize_luminance::pass(scope.plan, flat, bins, steepness);
     }
     let (saturation, line) = (scope.float("saturation"), scope.color("line_color"));
-    let rgb = lab_to_rgb::pass(scope.plan, flat, saturation);
+    let mut rgb = lab_to_rgb::pass(scope.plan, flat, saturation);
+    let warp = scope.float("warp");
+    if warp > 0.0 {
+        let sigma = warp_sharpen::SIGMA_W.default_float() * scope.scale();
+        rgb = warp_sharpen::warped(scope.plan, rgb, sigma, warp);
+    }
     let drawn = composite_lines::pass(scope.plan, rgb, edges, &Composite { line, paper: [0.0; 4] });
     let sigma_a = scope.float("sigma_a");
     if sigma_a > 0.0 {
-        let smooth = Lic { sigma: sigma_a, ..lic::options() };
+        let smooth = Lic { sigma: sigma_a, ..lic::unadapted() };
         return line_integral_convolution::pass(scope.plan, drawn, tensor, &smooth);
     }
     drawn

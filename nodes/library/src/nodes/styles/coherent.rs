@@ -20,7 +20,7 @@ pub static NODE: NodeSpec = NodeSpec {
           become clear, and small round features keep their shape. Smoothing along the local structure and \
           sharpening across it, in turn; defaults are the thesis'.",
     section: "6",
-    inputs: &[ports::COLOR],
+    inputs: &[ports::COLOR, ports::TENSOR],
     output: ports::color_output("The stylized picture."),
     own_params: &[
         filter::ITERATIONS.group(LOOK),
@@ -32,6 +32,7 @@ pub static NODE: NodeSpec = NodeSpec {
         tone::SATURATION.structural(),
         tone::LIGHTS,
         tone::DARKS,
+        filter::STEPPING.group(ADVANCED),
         filter::RHO.group(ADVANCED),
         filter::RELAX_THRESHOLD.group(ADVANCED),
         filter::SIGMA_T.group(ADVANCED),

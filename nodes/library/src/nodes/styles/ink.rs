@@ -308,7 +308,7 @@ fn strokes(plan: &mut PlanBuilder, tensor: ImageId, [width, length]: [f32; 2], s
     let white = noise::pass(plan, scale, 19);
     let soft = gaussian_blur::pass(plan, white, width * scale, Class::Colour);
     // Noise is about as fine as pixels: none may be left out.
-    let options = Lic { sigma: length * scale, adapt: Adapt::None, stretch: 1.0, ..lic::options() };
+    let options = Lic { sigma: length * scale, adapt: Adapt::None, ..lic::options() };
     let long = line_integral_convolution::pass(plan, soft, tensor, &options);
     // Averages of noise are faint: a Gaussian of this width leaves 1 / (2 sqrt(pi) width) of its deviation.
     contrast::pass(plan, long, 7.0 * width)

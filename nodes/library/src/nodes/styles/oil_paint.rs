@@ -123,9 +123,9 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
     let flat = abstraction.apply(scope.plan, lab, tensors, n_a);
     let dilation_length = scope.float("dilation_length") * length;
-    let strokes = flow_dilation::pass(scope.plan, flat, tensors, grains, dilation_length);
+    let strokes = flow_dilation::pass(scope.plan, flat, tensors, grains, dilation_length, true);
     // Grains are about as fine as pixels: none may be left out.
-    let along = |sigma: f32, adapt: Adapt| Lic { sigma, adapt, stretch: 1.0, ..lic::options() };
+    let along = |sigma: f32, adapt: Adapt| Lic { sigma, adapt, ..lic::options() };
     let sigma_t = scope.float("sigma_t") * length;
     let mut painted =
         line_integral_convolution::pass(scope.plan, strokes, tensors, &along(sigma_t, Adapt::Anisotropy));

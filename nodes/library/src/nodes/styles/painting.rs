@@ -3,7 +3,7 @@
 
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::nodes::painting::anisotropic_kuwahara::{
-    ALPHA, LEVELS, P_D, P_S, Painting, RADIUS, TAU_V, TAU_W, Weights,
+    ALPHA, LEVELS, LIMIT_RANGE, P_D, P_S, Painting, RADIUS, TAU_V, TAU_W, Weights,
 };
 use crate::nodes::painting::generalized_kuwahara::{Q, SECTORS, THRESHOLD};
 use crate::ports;
@@ -41,6 +41,7 @@ pub static NODE: NodeSpec = NodeSpec {
         P_D.group(ADVANCED),
         TAU_V.group(ADVANCED),
         TAU_W.group(ADVANCED),
+        LIMIT_RANGE.with_default(Value::Bool(true)).group(ADVANCED),
     ],
     build,
 };
