@@ -141,6 +141,10 @@
 // It is not.
 #define ISOPHOTE_ALPHA_STRAIGHT 1
 
+// Colour is multiplied by alpha, and may have light where alpha is 0 or little: fire, glows, additive renders. It is
+// filtered apart and added to the result, which costs as much again. `process` finds out by itself.
+#define ISOPHOTE_ALPHA_EMISSIVE 2
+
 // Bit of `IsophoteRequest::guides`: the host has view-space normals.
 #define ISOPHOTE_GUIDE_NORMAL 1
 
@@ -149,6 +153,12 @@
 
 // Bit of `IsophoteRequest::guides`: the host has object numbers.
 #define ISOPHOTE_GUIDE_OBJECT_ID 4
+
+// Bit of `IsophoteRequest::guides`: the host has a mask, which says how much of the result is used.
+#define ISOPHOTE_GUIDE_MASK 8
+
+// Bit of `IsophoteRequest::guides`: the host has a flow map, an orientation that an artist painted.
+#define ISOPHOTE_GUIDE_FLOW 16
 
 // The host binds its own texture, which shows the window of the picture that the plan names.
 #define ISOPHOTE_ROLE_INPUT 0

@@ -109,6 +109,9 @@ pub type IsophoteAlpha = u32;
 pub const ISOPHOTE_ALPHA_PREMULTIPLIED: u32 = 0;
 /// It is not.
 pub const ISOPHOTE_ALPHA_STRAIGHT: u32 = 1;
+/// Colour is multiplied by alpha, and may have light where alpha is 0 or little: fire, glows, additive renders. It is
+/// filtered apart and added to the result, which costs as much again. `process` finds out by itself.
+pub const ISOPHOTE_ALPHA_EMISSIVE: u32 = 2;
 
 /// Bit of `IsophoteRequest::guides`: the host has view-space normals.
 pub const ISOPHOTE_GUIDE_NORMAL: u32 = 1;
@@ -116,6 +119,10 @@ pub const ISOPHOTE_GUIDE_NORMAL: u32 = 1;
 pub const ISOPHOTE_GUIDE_DEPTH: u32 = 2;
 /// Bit of `IsophoteRequest::guides`: the host has object numbers.
 pub const ISOPHOTE_GUIDE_OBJECT_ID: u32 = 4;
+/// Bit of `IsophoteRequest::guides`: the host has a mask, which says how much of the result is used.
+pub const ISOPHOTE_GUIDE_MASK: u32 = 8;
+/// Bit of `IsophoteRequest::guides`: the host has a flow map, an orientation that an artist painted.
+pub const ISOPHOTE_GUIDE_FLOW: u32 = 16;
 
 /// What a texture of a plan is for. One of `ISOPHOTE_ROLE_...`.
 pub type IsophoteRole = u32;

@@ -7,7 +7,7 @@
 struct Params {
     /// 0 sRGB, 1 linear Rec. 709, 2 ACEScg.
     space: u32,
-    /// Nonzero when colour comes multiplied by alpha.
+    /// 1 when colour comes multiplied by alpha; 2 when light beyond coverage is left out as well.
     premultiplied: u32,
 }
 
@@ -20,7 +20,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
     }
-    var v = plain(fetch(source, 0u, pixel(id)), params.premultiplied != 0u);
+    var v = plain(fetch(source, 0u, pixel(id)), params.premultiplied);
     if params.space == 2u {
         v = vec4f(acescg_to_linear(v.rgb), v.a);
     }

@@ -27,7 +27,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if params.source_space != 1u {
         let host = params.source_space == 2u;
         if host {
-            v = plain(v, params.premultiplied != 0u);
+            v = plain(v, params.premultiplied);
         }
         var linear = v.rgb;
         if !host || params.space == 0u {

@@ -4,7 +4,7 @@ use crate::pictures::Kind;
 use crate::random::Random;
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
-use isophote::spec::{ImageKind, NodeSpec, Param, Unit};
+use isophote::spec::{ImageKind, NodeSpec, Param, Port, Unit};
 use isophote::{ColourSpace, Graph, NodeId, Request, Value};
 
 /// A node in a graph that can be planned, with the nodes that stand before it.
@@ -27,8 +27,8 @@ pub fn setup(spec: &'static NodeSpec, wired: bool) -> Setup {
     let build = || -> isophote::Result<Setup> {
         let mut graph = Graph::new();
         let mut feeds = Vec::new();
-        for port in spec.inputs {
-            if GraphInput::from_id(port.kind.id()).is_some() || (port.optional && !wired) {
+        for port in spec.ports() {
+            if graph_input(port).is_some() || (port.optional && !wired) {
                 continue;
             }
             let name = format!("before-{}", port.id);
@@ -37,8 +37,8 @@ pub fn setup(spec: &'static NodeSpec, wired: bool) -> Setup {
             feeds.push((producer, port.id));
         }
         let node = graph.add("node", spec.id)?;
-        for port in spec.inputs {
-            if let Some(input) = GraphInput::from_id(port.kind.id()) {
+        for port in spec.ports() {
+            if let Some(input) = graph_input(port) {
                 graph.connect_input(input, node, port.id)?;
             }
         }
@@ -52,6 +52,11 @@ pub fn setup(spec: &'static NodeSpec, wired: bool) -> Setup {
         Ok(setup) => setup,
         Err(e) => panic!("{} cannot stand in a graph: {e}", spec.id),
     }
+}
+
+/// What a graph has for a port: the input of its name, or of its kind.
+fn graph_input(port: &Port) -> Option<GraphInput> {
+    GraphInput::from_id(port.id).or_else(|| GraphInput::from_id(port.kind.id()))
 }
 
 /// The first node that makes `kind` from colour alone.
@@ -190,7 +195,7 @@ fn name_of(param: &Param, value: Value) -> String {
     }
 }
 
-/// The request that suits a kind of picture, with all guides or none.
+/// The request that suits a kind of picture, with all guides and its light apart, or with neither.
 pub fn request(kind: Kind, width: u32, height: u32, guides: bool) -> Request {
     let space = match kind {
         Kind::Hdr if width < 10 => ColourSpace::AcesCg,
@@ -200,7 +205,8 @@ pub fn request(kind: Kind, width: u32, height: u32, guides: bool) -> Request {
     Request {
         space,
         premultiplied: kind != Kind::Noise,
-        guides: Guides { normal: guides, depth: guides, object_id: guides },
+        emission: guides,
+        guides: Guides { normal: guides, depth: guides, object_id: guides, mask: guides, flow: guides },
         ..Request::new(width, height)
     }
 }

@@ -52,6 +52,26 @@ fn every_format_goes_in_and_out() {
 }
 
 #[test]
+fn light_beyond_coverage_is_found_and_kept() {
+    let library = Loaded::new();
+    let mut run = Run::new(&library, "gaussian");
+    let glow: Vec<f32> = (0..WIDTH * HEIGHT)
+        .flat_map(|i| {
+            let (x, y) = ((i % WIDTH).abs_diff(WIDTH / 2), (i / WIDTH).abs_diff(HEIGHT / 2));
+            if x < 5 && y < 5 { [0.9, 0.2, 0.0, 0.0] } else { [0.0; 4] }
+        })
+        .collect();
+    let red = |pixels: &[f32]| pixels.iter().step_by(4).sum::<f32>();
+    let found = run.result(&color(floats(&glow)));
+    assert!((red(&found) / red(&glow) - 1.0).abs() < 1e-3, "{} of {}", red(&found), red(&glow));
+    run.request.alpha = ISOPHOTE_ALPHA_EMISSIVE;
+    assert!(run.result(&color(floats(&glow))) == found, "said by the host");
+    // Straight colours without coverage mean nothing.
+    run.request.alpha = ISOPHOTE_ALPHA_STRAIGHT;
+    assert_eq!(red(&run.result(&color(floats(&glow)))), 0.0);
+}
+
+#[test]
 fn rows_may_run_upwards_and_buffers_overlap() {
     let library = Loaded::new();
     let run = Run::new(&library, "gaussian");

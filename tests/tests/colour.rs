@@ -157,8 +157,10 @@ fn every_space_is_left_as_it_was_entered() {
 fn converted(image: &Image, from: ColourSpace, to: ColourSpace) -> Image {
     let mut plan = PlanBuilder::new(image.width(), image.height()).unwrap();
     let input = plan.input("color", 4, Class::Colour);
-    let working = colour_import::pass(&mut plan, input, Encoding { space: from, premultiplied: true });
-    let out = colour_export::pass(&mut plan, working, Encoding { space: to, premultiplied: true });
+    let working =
+        colour_import::pass(&mut plan, input, Encoding { space: from, premultiplied: true, emission: false });
+    let out =
+        colour_export::pass(&mut plan, working, Encoding { space: to, premultiplied: true, emission: false });
     plan.output("output", out);
     run::whole(&plan.finish().unwrap(), &[("color", image.clone())])
 }
@@ -238,7 +240,8 @@ fn lightness_comes_straight_from_the_hosts_colour() {
         for (space, premultiplied) in ColourSpace::ALL.into_iter().flat_map(|s| [(s, false), (s, true)]) {
             let mut plan = PlanBuilder::new(48, 32).unwrap();
             let host = plan.input("color", 4, Class::Colour);
-            let working = colour_import::pass(&mut plan, host, Encoding { space, premultiplied });
+            let working =
+                colour_import::pass(&mut plan, host, Encoding { space, premultiplied, emission: false });
             let direct = lightness::pass(&mut plan, working);
             plan.output("output", direct);
             let plan = plan.finish().unwrap();
@@ -247,7 +250,8 @@ fn lightness_comes_straight_from_the_hosts_colour() {
 
             let mut plan = PlanBuilder::new(48, 32).unwrap();
             let host = plan.input("color", 4, Class::Colour);
-            let working = colour_import::pass(&mut plan, host, Encoding { space, premultiplied });
+            let working =
+                colour_import::pass(&mut plan, host, Encoding { space, premultiplied, emission: false });
             plan.output("output", working);
             let working = run::whole(&plan.finish().unwrap(), &[("color", picture.clone())]);
             let mut plan = PlanBuilder::new(48, 32).unwrap();

@@ -31,7 +31,7 @@ fn is_sentence(text: &str) -> bool {
     text.len() > 3 && text.trim() == text && text.ends_with('.')
 }
 
-fn faults_of(spec: &NodeSpec) -> Vec<String> {
+fn faults_of(spec: &'static NodeSpec) -> Vec<String> {
     let mut faults = Vec::new();
     let mut check = |good: bool, what: String| {
         if !good {
@@ -41,7 +41,7 @@ fn faults_of(spec: &NodeSpec) -> Vec<String> {
     check(is_identifier(spec.id), "its id is not in lower case with underscores".into());
     check(!spec.label.is_empty() && is_sentence(spec.doc), "label or document are missing".into());
     check(!spec.section.is_empty(), "no section of the thesis".into());
-    for port in spec.inputs.iter().chain([&spec.output]) {
+    for port in spec.ports().chain([&spec.output]) {
         check(is_identifier(port.id) && is_sentence(port.doc), format!("port {} lacks a document", port.id));
     }
     let mut ids = BTreeSet::new();

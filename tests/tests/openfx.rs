@@ -80,6 +80,7 @@ const OF_EVERY_EFFECT: &[OfAnEffect] = named! {
     render::every_effect_equals_the_c_table_in_every_context_depth_and_component,
     render::spaces_and_relations_to_alpha_equal_the_c_table,
     render::the_alpha_of_the_source_stays_unless_it_is_processed,
+    render::light_beyond_coverage_survives,
     render::lines_are_shown_alone_or_over_the_source,
     render::guides_enter_in_the_general_context,
     render::a_mask_decides_where_the_effect_shows,

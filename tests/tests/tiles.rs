@@ -2,6 +2,7 @@
 //! the threads; other instruction sets differ by rounding only; a proxy looks like the full frame.
 
 use isophote::Request;
+use isophote::graph::GraphInput;
 use isophote::request::Planned;
 use isophote::spec::{ImageKind, NodeSpec};
 use isophote_engine::cpu::{CallingThread, CpuExecutor, Pool, Threads};
@@ -72,7 +73,7 @@ fn runs(spec: &'static NodeSpec, size: [u32; 2]) -> Vec<Run> {
     for (index, setting) in cases::settings(spec, 3).into_iter().enumerate() {
         let kind = Kind::ALL[(index + 2) % Kind::ALL.len()];
         let wired = cases::has_optional_field(spec) && index % 2 == 1;
-        let run = one(spec, &setting, kind, wired, cases::has_guides(spec) && index % 3 == 1, size);
+        let run = one(spec, &setting, kind, wired, takes_more(spec) && index % 3 == 1, size);
         if cost(run.planned.plan()) < COST_LIMIT {
             all.push(run);
         }
@@ -91,9 +92,14 @@ fn one(
     let mut setup = cases::setup(spec, wired);
     setting.apply(&mut setup.graph, setup.node);
     let planned = run::planned(&setup.graph, cases::request(kind, size[0], size[1], guides));
-    let names = ["color", "normal", "depth", "object_id"];
+    let names = GraphInput::ALL.map(GraphInput::id);
     let inputs = names.into_iter().map(|n| (n, sweep::input(n, kind, size))).collect();
     Run { label: format!("{} ({}) {kind:?} guides={guides}", spec.id, setting.label), planned, inputs }
+}
+
+/// True for nodes that read more than their picture where there is more.
+fn takes_more(spec: &NodeSpec) -> bool {
+    cases::has_guides(spec) || spec.has_mix()
 }
 
 fn cost(plan: &Plan) -> f64 {
@@ -153,7 +159,7 @@ fn the_number_of_threads_changes_nothing(spec: &'static NodeSpec) -> Vec<String>
 fn instruction_sets_differ_by_rounding_only(spec: &'static NodeSpec) -> Vec<String> {
     let mut wrong = Vec::new();
     let default = &cases::settings(spec, 0)[0];
-    let run = one(spec, default, Kind::Steps, false, cases::has_guides(spec), SIZE);
+    let run = one(spec, default, Kind::Steps, false, takes_more(spec), SIZE);
     let all = Rect::of_size(SIZE[0], SIZE[1]);
     let by = |level| {
         let mut executor = CpuExecutor::with_level(level);

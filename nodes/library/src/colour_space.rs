@@ -20,6 +20,16 @@ pub struct Encoding {
     pub space: ColourSpace,
     /// True when it is multiplied by alpha.
     pub premultiplied: bool,
+    /// True when its light beyond coverage is taken apart.
+    pub emission: bool,
+}
+
+impl Encoding {
+    /// How shaders are told of alpha: 0 straight, 1 premultiplied, 2 premultiplied with the light beyond coverage
+    /// taken out.
+    pub const fn alpha(self) -> u32 {
+        if self.premultiplied { 1 + self.emission as u32 } else { 0 }
+    }
 }
 
 impl ColourSpace {

@@ -16,15 +16,24 @@ pub enum GraphInput {
     Depth,
     /// Object numbers.
     ObjectId,
+    /// How much of a result is used.
+    Mask,
+    /// A painted flow map.
+    Flow,
 }
 
 impl GraphInput {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Color, Self::Normal, Self::Depth, Self::ObjectId];
+    pub const ALL: [Self; 6] =
+        [Self::Color, Self::Normal, Self::Depth, Self::ObjectId, Self::Mask, Self::Flow];
 
     /// Stable name, which is also the name of the plan's input.
     pub const fn id(self) -> &'static str {
-        self.kind().id()
+        match self {
+            Self::Color | Self::Normal | Self::Depth | Self::ObjectId => self.kind().id(),
+            Self::Mask => "mask",
+            Self::Flow => "flow",
+        }
     }
 
     /// What it holds.
@@ -34,6 +43,9 @@ impl GraphInput {
             Self::Normal => ImageKind::Normal,
             Self::Depth => ImageKind::Depth,
             Self::ObjectId => ImageKind::ObjectId,
+            Self::Mask => ImageKind::Scalar,
+            // Its values are data, which no colour space changes.
+            Self::Flow => ImageKind::Color,
         }
     }
 
@@ -94,7 +106,7 @@ impl Graph {
     pub fn single(node: &str) -> Result<Self> {
         let mut graph = Self::new();
         let id = graph.add(node, node)?;
-        for (i, port) in graph.nodes[0].spec.inputs.iter().enumerate() {
+        for (i, port) in graph.nodes[0].spec.ports().enumerate() {
             graph.nodes[0].inputs[i] = GraphInput::from_id(port.id).map(Source::Input);
         }
         graph.set_output(id)?;
@@ -117,7 +129,7 @@ impl Graph {
             name: name.to_owned(),
             spec,
             values: spec.params().map(|p| p.default).collect(),
-            inputs: vec![None; spec.inputs.len()],
+            inputs: vec![None; spec.ports().count()],
         });
         self.order.push(self.nodes.len() - 1);
         Ok(NodeId(self.nodes.len() - 1))
@@ -228,7 +240,7 @@ impl Graph {
     /// # Errors
     /// [`Error::Unknown`] for a port the node lacks.
     pub fn disconnect(&mut self, to: NodeId, port: &str) -> Result<()> {
-        let index = find_input(self.get(to)?.spec, port)?;
+        let (index, _) = find_input(self.get(to)?.spec, port)?;
         self.nodes[to.0].inputs[index] = None;
         self.sort()
     }
@@ -270,8 +282,7 @@ impl Graph {
 
     fn attach(&mut self, source: Source, kind: ImageKind, to: NodeId, port: &str) -> Result<()> {
         let node = self.get(to)?;
-        let index = find_input(node.spec, port)?;
-        let wanted = node.spec.inputs[index].kind;
+        let (index, wanted) = find_input(node.spec, port)?;
         if wanted != kind {
             return Err(Error::Connection(format!(
                 "input '{port}' of node '{}' ({}) takes {}, not {}",
@@ -325,12 +336,12 @@ fn find_param(spec: &'static NodeSpec, id: &str) -> Result<(usize, &'static Para
     })
 }
 
-fn find_input(spec: &'static NodeSpec, id: &str) -> Result<usize> {
-    spec.input(id).map(|(index, _)| index).ok_or_else(|| {
+fn find_input(spec: &'static NodeSpec, id: &str) -> Result<(usize, ImageKind)> {
+    spec.input(id).map(|(index, port)| (index, port.kind)).ok_or_else(|| {
         Error::Unknown(format!(
             "node '{}' has no input '{id}'{}",
             spec.id,
-            nearest(id, spec.inputs.iter().map(|p| p.id))
+            nearest(id, spec.ports().map(|p| p.id))
         ))
     })
 }

@@ -126,8 +126,7 @@ impl Graph {
             .collect();
         let inputs = node
             .spec
-            .inputs
-            .iter()
+            .ports()
             .zip(&node.inputs)
             .filter_map(|(port, source)| {
                 let name = match source.as_ref()? {

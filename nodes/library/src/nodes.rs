@@ -27,6 +27,7 @@ nodes! {
     structure {
         structure_tensor,
         edge_tangent_flow,
+        flow_map,
         tensor_view,
     }
     painting {

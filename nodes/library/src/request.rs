@@ -3,10 +3,11 @@
 pub use crate::colour_space::ColourSpace;
 use crate::colour_space::Encoding;
 use crate::error::{Error, Result};
+use crate::graph::Node;
 use crate::graph::{Graph, GraphInput, Source};
-use crate::kernels::colour::{colour_export, colour_import, mix};
+use crate::kernels::colour::{add_light, colour_export, colour_import, emission, mix, mix_by_mask};
 use crate::spec::{ImageKind, Scope};
-use crate::value::Value;
+use crate::spec::{MASK, MIX};
 use isophote_engine::{ImageId, Plan, PlanBuilder};
 
 /// What a host wants of a graph.
@@ -22,6 +23,10 @@ pub struct Request {
     pub space: ColourSpace,
     /// True when colour enters, and is to leave, multiplied by alpha.
     pub premultiplied: bool,
+    /// True when premultiplied colour may have light where coverage is 0 or little: fire, glows, additive renders. It
+    /// is then filtered apart and added to the result, which costs as much again; without, it is lost where coverage
+    /// is 0.
+    pub emission: bool,
     /// Which guides the host has; connections to others count as open.
     pub guides: Guides,
 }
@@ -35,6 +40,10 @@ pub struct Guides {
     pub depth: bool,
     /// Object numbers.
     pub object_id: bool,
+    /// How much of the result is used.
+    pub mask: bool,
+    /// A painted flow map.
+    pub flow: bool,
 }
 
 impl Guides {
@@ -44,6 +53,8 @@ impl Guides {
             GraphInput::Normal => self.normal,
             GraphInput::Depth => self.depth,
             GraphInput::ObjectId => self.object_id,
+            GraphInput::Mask => self.mask,
+            GraphInput::Flow => self.flow,
         }
     }
 }
@@ -57,14 +68,15 @@ impl Request {
             scale: 1.0,
             space: ColourSpace::Srgb,
             premultiplied: true,
-            guides: Guides { normal: false, depth: false, object_id: false },
+            emission: false,
+            guides: Guides { normal: false, depth: false, object_id: false, mask: false, flow: false },
         }
     }
 }
 
 impl Request {
     fn encoding(&self) -> Encoding {
-        Encoding { space: self.space, premultiplied: self.premultiplied }
+        Encoding { space: self.space, premultiplied: self.premultiplied, emission: self.emission }
     }
 }
 
@@ -89,6 +101,8 @@ pub struct Planned {
 #[derive(Debug, Default)]
 struct Scratch {
     results: Vec<Option<ImageId>>,
+    /// The light beyond coverage of each result, where it is taken apart.
+    lights: Vec<Option<ImageId>>,
     inputs: Vec<Option<ImageId>>,
 }
 
@@ -144,7 +158,7 @@ fn check(graph: &Graph, request: &Request) -> Result<()> {
         )));
     }
     for node in graph.nodes() {
-        for (port, source) in node.spec.inputs.iter().zip(&node.inputs) {
+        for (port, source) in node.spec.ports().zip(&node.inputs) {
             let connected = match source {
                 None => false,
                 Some(Source::Node(_)) => true,
@@ -174,52 +188,83 @@ fn describe(
     builder: &mut PlanBuilder,
     scratch: &mut Scratch,
 ) -> Result<()> {
-    scratch.results.clear();
-    scratch.results.resize(graph.len(), None);
+    let Scratch { results, lights, inputs } = scratch;
+    results.clear();
+    results.resize(graph.len(), None);
+    lights.clear();
+    lights.resize(graph.len(), None);
     for index in graph.order() {
         let node = graph.node_at(*index);
-        scratch.inputs.clear();
+        inputs.clear();
         for source in &node.inputs {
             let image = match source {
-                Some(Source::Node(n)) => scratch.results[*n],
+                Some(Source::Node(n)) => results[*n],
                 Some(Source::Input(input)) if request.guides.has(*input) => {
                     Some(graph_input(builder, *input, request))
                 }
                 _ => None,
             };
-            scratch.inputs.push(image);
+            inputs.push(image);
         }
-        let mut scope = Scope {
-            plan: builder,
-            spec: node.spec,
-            values: &node.values,
-            inputs: &scratch.inputs,
-            scale: request.scale,
-        };
-        let mut result = (node.spec.build)(&mut scope);
-        if node.spec.has_mix()
-            && let (Some((at, _)), Some((color, _))) = (
-                node.spec.param("mix"),
-                node.spec.inputs.iter().enumerate().find(|(_, p)| p.kind == ImageKind::Color),
-            )
-            && let Value::Float(amount) = node.values[at]
-            && amount < 1.0
-            && let Some(original) = scratch.inputs[color]
+        results[*index] = Some(result(builder, node, inputs, request));
+        if let Some(color) = picture(node)
+            && let Some(light) = light_of(builder, node.inputs[color], lights, request)
         {
-            result = mix::pass(builder, original, result, amount);
+            inputs[color] = Some(light);
+            let filters = node.spec.filters_light();
+            lights[*index] = Some(if filters { result(builder, node, inputs, request) } else { light });
         }
-        scratch.results[*index] = Some(result);
     }
     if let Some((index, kind)) = graph.output_node()
-        && let Some(result) = scratch.results[index]
+        && let Some(result) = results[index]
     {
-        let image = match kind {
-            ImageKind::Color => colour_export::pass(builder, result, request.encoding()),
-            _ => result,
-        };
+        let mut image = result;
+        if kind == ImageKind::Color {
+            image = colour_export::pass(builder, image, request.encoding());
+            if let Some(light) = lights[index] {
+                image = add_light::pass(builder, image, light);
+            }
+        }
         builder.output("output", image);
     }
     Ok(())
+}
+
+/// The passes of one node, its mix and mask included.
+fn result(builder: &mut PlanBuilder, node: &Node, inputs: &[Option<ImageId>], request: &Request) -> ImageId {
+    let mut scope =
+        Scope { plan: builder, spec: node.spec, values: &node.values, inputs, scale: request.scale };
+    let result = (node.spec.build)(&mut scope);
+    let Some(original) = picture(node).and_then(|color| inputs[color]) else { return result };
+    let (amount, mask) = (scope.float(MIX.id), scope.input(MASK.id));
+    match mask {
+        Some(mask) => mix_by_mask::pass(builder, [original, result], mask, amount),
+        None if amount < 1.0 => mix::pass(builder, original, result, amount),
+        None => result,
+    }
+}
+
+/// The port of the picture that a node from colour to colour filters.
+fn picture(node: &Node) -> Option<usize> {
+    node.spec.has_mix().then(|| node.spec.inputs.iter().position(|p| p.kind == ImageKind::Color))?
+}
+
+/// The light beyond coverage of what a port is connected to.
+fn light_of(
+    builder: &mut PlanBuilder,
+    source: Option<Source>,
+    lights: &[Option<ImageId>],
+    request: &Request,
+) -> Option<ImageId> {
+    match source? {
+        Source::Node(node) => lights[node],
+        Source::Input(GraphInput::Color) if request.emission && request.premultiplied => {
+            let kind = GraphInput::Color.kind();
+            let image = builder.input(GraphInput::Color.id(), kind.channels(), kind.class());
+            Some(emission::pass(builder, image))
+        }
+        Source::Input(_) => None,
+    }
 }
 
 fn graph_input(builder: &mut PlanBuilder, input: GraphInput, request: &Request) -> ImageId {

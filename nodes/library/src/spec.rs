@@ -76,7 +76,7 @@ pub struct NodeSpec {
     pub doc: &'static str,
     /// Sections of the thesis, such as "3.4".
     pub section: &'static str,
-    /// What it reads.
+    /// What it reads; see [`NodeSpec::ports`].
     pub inputs: &'static [Port],
     /// What it gives.
     pub output: Port,
@@ -93,12 +93,41 @@ pub const MIX: Param = Param::float("mix", "Mix", 1.0, [0.0, 1.0])
     .structural()
     .neutral_at_zero();
 
+/// How much of a node's result is used; every node from colour to colour has it.
+pub const MASK: Port = Port {
+    id: "mask",
+    kind: ImageKind::Scalar,
+    optional: true,
+    doc: "How much of the result is used, 0..=1, times `mix`; all of it when open.",
+};
+
+/// What an artist painted for a node to follow; every node from colour to colour has it.
+pub const FLOW: Port = Port {
+    id: "flow",
+    kind: ImageKind::Color,
+    optional: true,
+    doc: "A flow map (see `flow_map`) that bends the orientation which the node follows, if it follows any.",
+};
+
 impl NodeSpec {
     /// All parameters in the order of panels: the node's own, then `mix` where it applies.
     pub fn params(&self) -> impl Iterator<Item = &'static Param> + use<> {
         static COMMON: [Param; 1] = [MIX];
         let common: &'static [Param] = if self.has_mix() { &COMMON } else { &[] };
         self.own_params.iter().chain(common)
+    }
+
+    /// All inputs: the node's own, then `mask` and `flow` where they apply.
+    pub fn ports(&self) -> impl Iterator<Item = &'static Port> + use<> {
+        static COMMON: [Port; 2] = [MASK, FLOW];
+        let common: &'static [Port] = if self.has_mix() { &COMMON } else { &[] };
+        self.inputs.iter().chain(common)
+    }
+
+    /// True for filters, which smooth the light of a picture beyond its coverage as a picture of its own. What other
+    /// nodes draw is no light, and they let it pass.
+    pub fn filters_light(&self) -> bool {
+        self.has_mix() && matches!(self.group, "smoothing" | "painting" | "coherence")
     }
 
     /// True for nodes that read a colour and need nothing else: those that are effects by themselves.
@@ -119,7 +148,7 @@ impl NodeSpec {
 
     /// Position and declaration of an input.
     pub fn input(&self, id: &str) -> Option<(usize, &'static Port)> {
-        self.inputs.iter().enumerate().find(|(_, p)| p.id == id)
+        self.ports().enumerate().find(|(_, p)| p.id == id)
     }
 }
 

@@ -137,8 +137,9 @@ fn an_open_tensor_port_is_a_structure_tensor_with_its_defaults() {
             }
         }
     }
-    // Scales and rounds that take the tensors of their own pictures, and a filter that needs none by default.
-    let others = ["painting", "coherent", "coherence_enhancing", "mean_curvature_flow"];
+    // Scales and rounds that take the tensors of their own pictures, a filter that needs none by default, and one
+    // whose picture is a map.
+    let others = ["painting", "coherent", "coherence_enhancing", "mean_curvature_flow", "flow_map"];
     unlike.retain(|(id, _)| !others.contains(id));
     assert_eq!(unlike, []);
     assert!(tried > 5, "{tried} nodes have the port");

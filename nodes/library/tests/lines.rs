@@ -43,7 +43,12 @@ fn planned(node: &str, settings: &[(&str, &str)], inputs: Inputs<'_>, scale: f32
     }
     let mut request = Request::new(inputs[0].1.width(), inputs[0].1.height());
     let has = |name: &str| inputs.iter().any(|(n, _)| *n == name);
-    request.guides = Guides { normal: has("normal"), depth: has("depth"), object_id: has("object_id") };
+    request.guides = Guides {
+        normal: has("normal"),
+        depth: has("depth"),
+        object_id: has("object_id"),
+        ..Guides::default()
+    };
     request.scale = scale;
     Planned::new(&graph, request).unwrap()
 }

@@ -31,7 +31,7 @@ pub fn an_8k_frame_fits_into_4_gib(binary: &Binary, effect: Expected) {
         let request = Request {
             space: ColourSpace::Linear,
             premultiplied: true,
-            guides: Guides { normal: true, depth: true, object_id: false },
+            guides: Guides { normal: true, depth: true, ..Guides::default() },
             ..Request::new(SIZE[0], SIZE[1])
         };
         let planned = Planned::new(&effect.graph(over), request).unwrap();

@@ -124,6 +124,35 @@ pub fn the_alpha_of_the_source_stays_unless_it_is_processed(binary: &Binary, eff
     host.no_faults();
 }
 
+/// Of a glow without coverage around a little square with some, whether alpha is filtered or stays.
+pub fn light_beyond_coverage_survives(binary: &Binary, effect: Expected) {
+    if effect.is_lines() {
+        return;
+    }
+    let host = Host::new(Behaviour::default());
+    let layout = Layout::default();
+    let [width, height] = SIZE;
+    let pixels = (0..width * height).flat_map(|i| {
+        let (x, y) = ((i % width - width / 2).abs(), (i / width - height / 2).abs());
+        match x.max(y) {
+            0..2 => [0.2_f32, 0.2, 0.2, 0.5],
+            2..9 => [0.8, 0.1, 0.0, 0.0],
+            _ => [0.0; 4],
+        }
+    });
+    let source =
+        Picture::packed_in(layout, width, height, &pixels.flat_map(f32::to_ne_bytes).collect::<Vec<u8>>());
+    let red = |picture: &Picture| values(&picture.packed(), &layout).iter().step_by(4).sum::<f32>();
+    let instance = Described::new(&host, effect.plugin(binary)).instance(kOfxImageEffectContextFilter);
+    instance.connect("Source", source.clone());
+    for process_alpha in [0, 1] {
+        instance.set("process_alpha", process_alpha);
+        let kept = red(&instance.render(layout, SIZE)) / red(&source);
+        assert!(kept > 0.7, "{}: {kept} of the light is left", effect.plugin(binary).identifier());
+    }
+    host.no_faults();
+}
+
 fn source_of_opaque(source: &Picture, layout: Layout) -> Picture {
     Picture::packed_in(layout, WIDTH, HEIGHT, &source.packed())
 }

@@ -42,7 +42,8 @@ pub fn style_of(node: &Value, nodes: &[Value], out: &Path) -> Result<String> {
         return Ok(id.to_owned());
     }
     let mut inputs = json!({});
-    for port in list(node, "inputs").iter().filter(|p| text(p, "kind") == "color") {
+    let pictures = |p: &&Value| text(p, "kind") == "color" && p["optional"] == json!(false);
+    for port in list(node, "inputs").iter().filter(pictures) {
         inputs[text(port, "id")] = json!("@color");
     }
     let mut graph_nodes = Vec::new();

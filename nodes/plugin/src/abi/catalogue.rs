@@ -89,7 +89,7 @@ pub(super) unsafe extern "C" fn find_node(
 }
 
 fn node(spec: &NodeSpec) -> IsophoteNode {
-    let inputs: Vec<IsophotePort> = spec.inputs.iter().map(port).collect();
+    let inputs: Vec<IsophotePort> = spec.ports().map(port).collect();
     let params: Vec<IsophoteParam> = spec.params().map(param).collect();
     IsophoteNode {
         id: lasting(spec.id),

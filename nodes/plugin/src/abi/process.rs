@@ -11,9 +11,11 @@ use super::objects::{DeviceObject, GraphObject};
 use super::request::{region, request};
 use super::threads::{CallThreads, User};
 use super::warm::Warm;
+use isophote::Request;
 use isophote::engine::cpu::{Control, PassTime};
 use isophote::engine::{Image, ImageId, Plan, Rect, Support, gpu};
 use isophote::graph::GraphInput;
+use isophote::kernels::shared::host_colour::has_light;
 use isophote::request::Guides;
 use std::ffi::{CString, c_char, c_void};
 use std::ptr::null_mut;
@@ -78,6 +80,8 @@ pub(super) unsafe extern "C" fn process(
             normal: given(GraphInput::Normal),
             depth: given(GraphInput::Depth),
             object_id: given(GraphInput::ObjectId),
+            mask: given(GraphInput::Mask),
+            flow: given(GraphInput::Flow),
         };
         // SAFETY: the host promised a rectangle behind the pointer, or null.
         let region = unsafe { region(host_region, &request)? };
@@ -88,7 +92,7 @@ pub(super) unsafe extern "C" fn process(
         };
         let threads = CallThreads::new(&control)?;
         let mut warm = object.warm(&request)?;
-        let job = Job { region, inputs: &inputs, threads: &threads, control: &control };
+        let job = Job { object, request, region, inputs: &inputs, threads: &threads, control: &control };
         // SAFETY: the host promised that the images' memory may be read.
         let computed = unsafe { job.run(&mut warm, device.as_deref()) };
         let computed = computed.map(|(result, replaced)| {
@@ -140,6 +144,8 @@ unsafe fn sources(inputs: *const IsophoteInput, count: u32) -> Outcome<Vec<(Grap
 
 /// One computation.
 struct Job<'a> {
+    object: &'a GraphObject,
+    request: Request,
     region: Rect,
     inputs: &'a [(GraphInput, Checked)],
     threads: &'a CallThreads,
@@ -178,6 +184,12 @@ impl Job<'_> {
             replaced += bad;
             images.push((input.id(), image));
         }
+        if self.has_light(&images) {
+            let request = Request { emission: true, ..self.request };
+            warm.plan_for(&self.object.snapshot(), &request)?;
+            let plan = warm.plan()?;
+            must_fit(plan, &plan.windows(self.region), device.is_some())?;
+        }
         let images: Vec<(&str, &Image)> = images.iter().map(|(name, image)| (*name, image)).collect();
         let result = self.execute(warm, device, &images)?;
         if result.window() != self.region {
@@ -187,6 +199,13 @@ impl Job<'_> {
             ));
         }
         Ok((result, replaced))
+    }
+
+    /// Whether colour has light where coverage is 0 or little, which the plan does not know of.
+    fn has_light(&self, images: &[(&str, Image)]) -> bool {
+        self.request.premultiplied
+            && !self.request.emission
+            && images.iter().any(|(name, image)| *name == GraphInput::Color.id() && has_light(image.data()))
     }
 
     fn execute(

@@ -19,9 +19,10 @@ pub fn request(host: &IsophoteRequest) -> Outcome<Request> {
         ISOPHOTE_SPACE_ACESCG => ColourSpace::AcesCg,
         other => return Err(Failure::argument(format!("{other} is no colour space"))),
     };
-    let premultiplied = match host.alpha {
-        ISOPHOTE_ALPHA_PREMULTIPLIED => true,
-        ISOPHOTE_ALPHA_STRAIGHT => false,
+    let (premultiplied, emission) = match host.alpha {
+        ISOPHOTE_ALPHA_PREMULTIPLIED => (true, false),
+        ISOPHOTE_ALPHA_EMISSIVE => (true, true),
+        ISOPHOTE_ALPHA_STRAIGHT => (false, false),
         other => return Err(Failure::argument(format!("{other} is no relation of colour to alpha"))),
     };
     let bit = |bit: u32| host.guides & bit != 0;
@@ -29,11 +30,25 @@ pub fn request(host: &IsophoteRequest) -> Outcome<Request> {
         normal: bit(ISOPHOTE_GUIDE_NORMAL),
         depth: bit(ISOPHOTE_GUIDE_DEPTH),
         object_id: bit(ISOPHOTE_GUIDE_OBJECT_ID),
+        mask: bit(ISOPHOTE_GUIDE_MASK),
+        flow: bit(ISOPHOTE_GUIDE_FLOW),
     };
-    if host.guides & !(ISOPHOTE_GUIDE_NORMAL | ISOPHOTE_GUIDE_DEPTH | ISOPHOTE_GUIDE_OBJECT_ID) != 0 {
+    const KNOWN: u32 = ISOPHOTE_GUIDE_NORMAL
+        | ISOPHOTE_GUIDE_DEPTH
+        | ISOPHOTE_GUIDE_OBJECT_ID
+        | ISOPHOTE_GUIDE_MASK
+        | ISOPHOTE_GUIDE_FLOW;
+    if host.guides & !KNOWN != 0 {
         return Err(Failure::argument(format!("{:#x} are no guides", host.guides)));
     }
-    Ok(Request { width: host.width, height: host.height, scale: host.scale, space, premultiplied, guides })
+    Ok(Request {
+        space,
+        premultiplied,
+        emission,
+        guides,
+        scale: host.scale,
+        ..Request::new(host.width, host.height)
+    })
 }
 
 /// The host's region, or the whole picture.

@@ -80,6 +80,14 @@ impl Prepared {
         Ok(Self { planned, square: Some(square) })
     }
 
+    /// The same for pictures with light beyond their coverage. It reads no more of them.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`].
+    pub fn emissive(&self, settings: &Settings) -> isophote::Result<Planned> {
+        Planned::new(&settings.graph, Request { emission: true, ..*self.planned.request() })
+    }
+
     /// The part of the plan's result that `region` of the frame is made from.
     pub fn plan_window(&self, region: Rect) -> Rect {
         self.square.map_or(region, |square| square.square_window(region))
@@ -222,7 +230,7 @@ pub fn is_connected(host: &Host, instance: Handle, name: &CStr) -> bool {
 pub fn connected_guides(effect: &Effect, host: &Host, instance: Handle) -> Guides {
     let connected = |guide| guide_clip(guide).is_some_and(|name| is_connected(host, instance, name));
     let has = |guide| effect.guides.contains(&guide) && connected(guide);
-    Guides { normal: has(GraphInput::Normal), depth: has(GraphInput::Depth), object_id: false }
+    Guides { normal: has(GraphInput::Normal), depth: has(GraphInput::Depth), ..Guides::default() }
 }
 
 /// The regions of interest that a host has been given.
@@ -319,7 +327,7 @@ mod tests {
 
     #[test]
     fn an_8k_frame_of_any_pixels_fits_into_4_gib() {
-        let guides = Guides { normal: true, depth: true, object_id: false };
+        let guides = Guides { normal: true, depth: true, ..Guides::default() };
         for par in [0.5, 1.0667, 2.0, 20.0] {
             let picture = [0, 0, 7680, 4320];
             let frame = Frame { picture, ratio: [1.0 / par, 1.0], scale: 1.0 / par.min(1.0) as f32 };

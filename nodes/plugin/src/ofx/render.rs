@@ -14,6 +14,8 @@ use super::threads::FrameThreads;
 use isophote::engine::cpu::{Control, CpuExecutor, Threads};
 use isophote::engine::{Error as EngineError, Image, Rect};
 use isophote::graph::GraphInput;
+use isophote::kernels::shared::host_colour::has_light;
+use isophote::kernels::shared::host_colour::scalar::beyond_coverage;
 use isophote::request::Guides;
 use isophote::{ColourSpace, Error};
 use std::ffi::CStr;
@@ -165,6 +167,18 @@ fn intersection(a: Bounds, b: Bounds) -> Bounds {
     [a[0].max(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].min(b[3])]
 }
 
+/// Gives a premultiplied pixel the coverage of another, of which it takes the colour where it has none of its own. Its
+/// light beyond coverage stays.
+fn recover(pixel: &mut [f32], source: &[f32]) {
+    let ([r, g, b, now], kept) = ([pixel[0], pixel[1], pixel[2], pixel[3]], source[3]);
+    let light = beyond_coverage([r, g, b, now]);
+    let under = beyond_coverage([source[0], source[1], source[2], kept]);
+    for c in 0..3 {
+        let covered = if now > 0.0 { (pixel[c] - light[c]) * (kept / now) } else { source[c] - under[c] };
+        pixel[c] = covered + light[c];
+    }
+}
+
 /// Writes transparent black.
 fn clear(host: &Host, output: &Fetched<'_>, window: Bounds) -> Outcome<()> {
     let frame = Frame::new(host, None, [1.0; 2], 1.0, Some(output.bounds)).ok_or(kOfxStatErrImageFormat)?;
@@ -192,20 +206,28 @@ impl Job<'_> {
         }
         let has = |guide| self.guides.iter().any(|(g, _)| *g == guide);
         let guides =
-            Guides { normal: has(GraphInput::Normal), depth: has(GraphInput::Depth), object_id: false };
+            Guides { normal: has(GraphInput::Normal), depth: has(GraphInput::Depth), ..Guides::default() };
         let prepared = Prepared::new(&self.settings, &self.frame, !self.is_straight(), guides)?;
         let threads = FrameThreads::of(self.host);
         // Hosts need not expect the question from two threads at once.
         let instance = Mutex::new(Instance(self.instance));
         let aborted = || instance.lock().is_ok_and(|instance| self.host.aborted(instance.0));
         let control = Control { cancelled: Some(&aborted), progress: None };
+        // The plan for light beyond coverage, where a band has any.
+        let mut emissive = None;
         let mut executor = CpuExecutor::new();
         for band in bands(inside, prepared.band_rows(inside)) {
             let images = self.inputs(&prepared, band, threads.threads())?;
             let named: Vec<(&str, &Image)> = images.iter().map(|(i, image)| (i.id(), image)).collect();
             let region = prepared.plan_window(band);
+            let light = prepared.planned.request().premultiplied
+                && images.iter().any(|(i, image)| *i == GraphInput::Color && has_light(image.data()));
+            if light && emissive.is_none() {
+                emissive = Some(prepared.emissive(&self.settings)?);
+            }
+            let planned = emissive.as_ref().filter(|_| light).unwrap_or(&prepared.planned);
             let results = executor
-                .run(prepared.planned.plan(), &named, region, threads.threads(), control)
+                .run(planned.plan(), &named, region, threads.threads(), control)
                 .map_err(Error::from)?;
             drop(images);
             if band.y1 == inside.y1 {
@@ -313,15 +335,10 @@ impl Job<'_> {
         let premultiplied = self.source.alpha == Alpha::Premultiplied;
         if keep_alpha {
             for (pixel, source) in image.data_mut().chunks_exact_mut(4).zip(source.data().chunks_exact(4)) {
-                let (now, kept) = (pixel[3], source[3]);
-                if premultiplied && now != kept {
-                    if now > 0.0 {
-                        pixel[..3].iter_mut().for_each(|v| *v *= kept / now);
-                    } else {
-                        pixel[..3].copy_from_slice(&source[..3]);
-                    }
+                if premultiplied && pixel[3] != source[3] {
+                    recover(pixel, source);
                 }
-                pixel[3] = kept;
+                pixel[3] = source[3];
             }
         }
         if let Some(mask) = &self.mask {

@@ -22,7 +22,7 @@ crate::kernel!(colour_export {
 
 /// Adds the pass.
 pub fn pass(plan: &mut PlanBuilder, image: ImageId, host: Encoding) -> ImageId {
-    let params = Params { space: host.space as u32, premultiplied: host.premultiplied.into() };
+    let params = Params { space: host.space as u32, premultiplied: host.alpha() };
     plan.pass(&KERNEL, &[image], &params, Class::Colour, Support::Pixels(0))
 }
 

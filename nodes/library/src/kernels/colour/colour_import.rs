@@ -25,7 +25,7 @@ crate::kernel!(colour_import {
 
 /// Adds the pass.
 pub fn pass(plan: &mut PlanBuilder, image: ImageId, host: Encoding) -> ImageId {
-    let params = Params { space: host.space as u32, premultiplied: host.premultiplied.into() };
+    let params = Params { space: host.space as u32, premultiplied: host.alpha() };
     plan.pass(&KERNEL, &[image], &params, Class::Colour, Support::Pixels(0))
 }
 
@@ -40,7 +40,7 @@ pub fn imported(plan: &PlanBuilder, color: ImageId) -> Option<(ImageId, Params)>
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |pixels| {
-        let [r, g, b, a] = plain(pixels, params.premultiplied != 0);
+        let [r, g, b, a] = plain(pixels, params.premultiplied);
         let mut rgb = [r, g, b];
         if params.space == ColourSpace::AcesCg as u32 {
             rgb = transform(&ACESCG_TO_LINEAR, rgb);

@@ -64,7 +64,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 fn luminance<S: Simd>(params: &Params, mut pixels: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
     let host = params.source_space == HOST;
     if host {
-        pixels = plain(pixels, params.premultiplied != 0);
+        pixels = plain(pixels, params.premultiplied);
     }
     let [mut r, mut g, mut b, a] = pixels;
     if !host || params.space == ColourSpace::Srgb as u32 {

@@ -9,6 +9,7 @@ use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options 
 use crate::nodes::coherence::shock::{self, Directed};
 use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
+use crate::nodes::structure::flow_map::Flow;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
@@ -135,12 +136,15 @@ pub(crate) struct Filter {
     pub sigma_a: f32,
     /// The orientation in all rounds, instead of that of each round's picture.
     pub given: Option<ImageId>,
+    /// What bends the orientation.
+    pub flow: Option<Flow>,
 }
 
 impl Filter {
     /// The values of the parameters of a node.
-    pub(crate) fn of(scope: &Scope<'_>) -> Self {
+    pub(crate) fn of(scope: &mut Scope<'_>) -> Self {
         Self {
+            flow: Flow::of(scope),
             iterations: scope.int("iterations"),
             rho: scope.float("rho"),
             relax_threshold: scope.float("relax_threshold"),
@@ -167,9 +171,11 @@ impl Filter {
     /// The tensor of `color`; where its gradient is too weak, the field is relaxed at first and taken from
     /// `earlier` later (§ 6.2). One that is given holds throughout.
     fn tensor(&self, plan: &mut PlanBuilder, color: ImageId, earlier: Option<ImageId>) -> ImageId {
-        if let Some(given) = self.given {
-            return given;
-        }
+        let own = self.given.unwrap_or_else(|| self.own_tensor(plan, color, earlier));
+        self.flow.map_or(own, |flow| flow.bend(plan, own))
+    }
+
+    fn own_tensor(&self, plan: &mut PlanBuilder, color: ImageId, earlier: Option<ImageId>) -> ImageId {
         match earlier {
             Some(earlier) if self.relax_threshold > 0.0 => {
                 carried_tensor::pass(plan, color, earlier, self.rho, self.relax_threshold)

@@ -6,6 +6,7 @@ use crate::kernels::painting::propagate_colour::{self, Params as Propagation};
 use crate::kernels::painting::{anisotropic_kuwahara_texture as texture, lanczos_half, propagate_tensor};
 use crate::nodes::painting::generalized_kuwahara::{Q, SECTORS, THRESHOLD, sectors};
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
+use crate::nodes::structure::flow_map::Flow;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Port, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
@@ -92,7 +93,7 @@ choice! {
 }
 
 /// The filter at several scales.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Painting {
     /// At each scale.
     pub options: Options,
@@ -106,14 +107,17 @@ pub(crate) struct Painting {
     pub p_d: f32,
     /// What counts as no variation.
     pub tau_v: f32,
+    /// What bends the orientation at the finest level.
+    pub flow: Option<Flow>,
     /// Whether coarser scales stay in the range of finer ones.
     pub limited: bool,
 }
 
 impl Painting {
     /// The values of the parameters of these names, which nodes that paint share.
-    pub(crate) fn of(scope: &Scope<'_>, weights: Weights) -> Self {
+    pub(crate) fn of(scope: &mut Scope<'_>, weights: Weights) -> Self {
         Self {
+            flow: Flow::of(scope),
             options: Options {
                 radius: scope.float("radius"),
                 sectors: sectors(scope),
@@ -161,13 +165,16 @@ impl Painting {
                 let params = Propagation { gain, threshold: self.tau_v };
                 merged = propagate_colour::pass(plan, *image, colour, deviations, &params);
             }
-            let orientation = match (tensor, below) {
+            let mut orientation = match (tensor, below) {
                 (Some(tensor), _) if k == 0 => tensor,
                 (_, below) => {
                     let own = structure_tensor::of_color(plan, merged, &options);
                     below.map_or(own, |[.., coarse]| propagate_tensor::pass(plan, own, coarse))
                 }
             };
+            if let (0, Some(flow)) = (k, self.flow) {
+                orientation = flow.bend(plan, orientation);
+            }
             let filter = match self.weights {
                 Weights::Texture => texture::pass,
                 Weights::Polynomial => polynomial::pass,
@@ -188,7 +195,8 @@ const SMALLEST: i32 = 8;
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = scope.required("color");
     let tensor = scope.input("tensor");
-    let painting = Painting::of(scope, scope.option("weights"));
+    let weights = scope.option("weights");
+    let painting = Painting::of(scope, weights);
     let (iterations, scale) = (scope.int("iterations"), scope.scale());
     (0..iterations).fold(color, |color, _| painting.apply(scope.plan, color, tensor, scale))
 }

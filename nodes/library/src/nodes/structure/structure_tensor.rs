@@ -10,6 +10,7 @@ use crate::kernels::structure::gradient_tensor::{self, Measure};
 use crate::kernels::structure::{
     colour_restrict, guide_tensor, jacobi_step, oversampled_tensor, tensor_combine, tensor_restrict,
 };
+use crate::nodes::structure::flow_map;
 use crate::ports;
 use crate::spec::{ImageKind, NodeSpec, Port, Scope};
 use crate::tensor_options::{
@@ -74,23 +75,25 @@ pub static NODE: NodeSpec = NodeSpec {
 };
 
 /// The tensor connected to the port `tensor` of a node or, where none is, that of `color` with the
-/// defaults.
+/// defaults, bent to what is connected to its port `flow`.
 pub fn connected(scope: &mut Scope<'_>, color: ImageId) -> ImageId {
-    match scope.input("tensor") {
+    let tensors = match scope.input("tensor") {
         Some(tensor) => tensor,
         None => of_color(scope.plan, color, &TensorOptions::at_scale(scope.scale())),
-    }
+    };
+    flow_map::bent(scope, tensors)
 }
 
 /// [`connected`] for nodes that say by `rho` how their own tensor is smoothed.
 pub fn connected_or_smoothed(scope: &mut Scope<'_>, color: ImageId) -> ImageId {
-    match scope.input("tensor") {
+    let tensors = match scope.input("tensor") {
         Some(tensor) => tensor,
         None => {
             let options = TensorOptions { rho: scope.float("rho"), ..TensorOptions::at_scale(scope.scale()) };
             of_color(scope.plan, color, &options)
         }
-    }
+    };
+    flow_map::bent(scope, tensors)
 }
 
 /// The smoothed tensor of a colour.
@@ -230,7 +233,7 @@ mod tests {
             let has = |name: &str| self.images.iter().any(|(n, _)| *n == name);
             let mut request = Request::new(self.size[0], self.size[1]);
             request.guides =
-                Guides { normal: has("normal"), depth: has("depth"), object_id: has("object_id") };
+                Guides { normal: has("normal"), depth: has("depth"), object_id: has("object_id"), ..Guides::default() };
             Planned::new(&graph, request).unwrap()
         }
 

@@ -4,6 +4,7 @@ use crate::kernels::colour::blueprint_paper::{self, Sheet};
 use crate::kernels::colour::{lightness, rgb_to_lab};
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::lines::flow_dog;
+use crate::nodes::structure::flow_map;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
 use crate::stages::abstraction::{self, Abstraction};
@@ -66,6 +67,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let guide_weight = scope.float("guide_weight");
     let guides = flow_dog::guides(scope, guide_weight);
     let tensor = flow_dog::tensor(scope, color, &guides);
+    let tensor = flow_map::bent(scope, tensor);
     let abstraction = Abstraction::of(scope);
     let n_e = scope.int("n_e");
     let lab = rgb_to_lab::pass(scope.plan, color, 1.0);

@@ -9,6 +9,7 @@ use crate::nodes::colour::warp_sharpen;
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::lines::flow_dog;
 use crate::nodes::smoothing::line_integral_convolution as lic;
+use crate::nodes::structure::flow_map;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
 use crate::stages::abstraction::{self, Abstraction};
@@ -108,6 +109,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let guide_weight = scope.float("guide_weight");
     let guides = flow_dog::guides(scope, guide_weight);
     let tensor = flow_dog::tensor(scope, color, &guides);
+    let tensor = flow_map::bent(scope, tensor);
     let abstraction = Abstraction::of(scope);
     let (n_e, n_a) = (scope.int("n_e"), scope.int("n_a"));
 

@@ -13,6 +13,7 @@ use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::lines::flow_dog::{self, FlowDog, Kernel};
 use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::nodes::structure::structure_tensor::{TensorOptions, of_color_and_guides};
+use crate::nodes::structure::flow_map;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
 use crate::stages::abstraction::{self, Abstraction};
@@ -329,6 +330,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let guides = flow_dog::guides(scope, guide_weight);
     let options = TensorOptions { rho: drawing.rho * scale, ..TensorOptions::at_scale(scale) };
     let tensor = of_color_and_guides(scope.plan, color, &guides, &options);
+    let tensor = flow_map::bent(scope, tensor);
     let (abstraction, n_e) = (Abstraction::of(scope), scope.int("n_e"));
     let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
     let smooth = abstraction.apply(scope.plan, lab, tensor, n_e + own.flattening);

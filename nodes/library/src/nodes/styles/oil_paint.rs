@@ -8,6 +8,7 @@ use crate::kernels::smoothing::{flow_dilation, gaussian_blur};
 use crate::kernels::structure::noise;
 use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
+use crate::nodes::structure::flow_map;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
 use crate::stages::abstraction::{self, Abstraction};
@@ -113,6 +114,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         ..TensorOptions::default()
     };
     let tensors = structure_tensor::of_color(scope.plan, color, &options);
+    let tensors = flow_map::bent(scope, tensors);
     let abstraction = Abstraction::of(scope);
     let n_a = scope.int("n_a");
     let (scale, seed) = (scope.scale(), scope.int("seed") as u32);

@@ -7,6 +7,7 @@ use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic}
 use crate::kernels::smoothing::wobble::{self, Options as Wobble};
 use crate::nodes::smoothing::{line_integral_convolution as lic, morphology};
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
+use crate::nodes::structure::flow_map;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
 use crate::stages::abstraction::{self, Abstraction};
@@ -94,6 +95,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = scope.required("color");
     let options = TensorOptions::at_scale(scope.scale());
     let tensors = structure_tensor::of_color(scope.plan, color, &options);
+    let tensors = flow_map::bent(scope, tensors);
     let abstraction = Abstraction::of(scope);
     let n_a = scope.int("n_a");
     let lab = rgb_to_lab::pass(scope.plan, color, 1.0);

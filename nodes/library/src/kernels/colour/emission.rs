@@ -1,0 +1,35 @@
+//! The light of a picture beyond what its coverage can carry ([`beyond_coverage`]), as an opaque picture in the
+//! host's own space.
+//!
+//! Fire, glows and additive renders have colour where coverage is 0 or little: no straight colour could stand for
+//! it. It is taken apart on entry, filtered as light, and added to the result.
+//!
+//! Cost: about ten operations.
+
+use crate::kernels::shared::host_colour::{beyond_coverage, finite_pixels};
+use crate::kernels::simd::pixels::map_pixels;
+use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+
+crate::kernel!(emission {
+    cpu: run,
+    cost: |_| 10.0,
+    tolerance: Tolerance {
+        absolute: 1e-6,
+        relative: 1e-6,
+        outliers: 0.0,
+        reason: "a fourth power and a quotient of a few roundings",
+    },
+});
+
+/// Adds the pass; `image` is the host's, premultiplied.
+pub fn pass(plan: &mut PlanBuilder, image: ImageId) -> ImageId {
+    plan.pass(&KERNEL, &[image], &(), Class::Colour, Support::Pixels(0))
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |pixels| {
+        let [r, g, b] = beyond_coverage(finite_pixels(pixels));
+        [r, g, b, f32x8::splat(simd, 1.0)]
+    }));
+}

@@ -1,0 +1,36 @@
+// A painted flow map as tensors of trace 1 at most: the tangent is the painted direction, the trace its strength.
+// Cost: one load and about 15 operations.
+#import gpu/grid
+#import shared/host_colour
+
+struct Params {
+    /// Factor on the strength.
+    strength: f32,
+    /// Nonzero where green grows upwards.
+    invert_y: u32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var source: texture_2d<f32>;
+@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let v = clamp(finite(fetch(source, 0u, pixel(id))), vec4f(0.0), vec4f(1.0));
+    var d = 2.0 * v.rg - 1.0;
+    if params.invert_y != 0u {
+        d.y = -d.y;
+    }
+    let square = dot(d, d);
+    let length = sqrt(square);
+    // Eight bits have no exact half: less than one and a half of their steps is no direction.
+    let weight = select(0.0, clamp(params.strength * v.a * min(length, 1.0), 0.0, 1.0), length > FLOW_LEAST);
+    let scale = weight / max(square, 1e-12);
+    textureStore(target_image, vec2i(id.xy), vec4f(scale * d.y * d.y, -scale * d.x * d.y, scale * d.x * d.x, weight));
+}
+
+// Length up to which a painted vector stands for none.
+const FLOW_LEAST: f32 = 0.012;
