@@ -87,6 +87,10 @@
 // A number per object, one channel; 0 where there is nothing.
 #define ISOPHOTE_KIND_OBJECT_ID 5
 
+// A flow map: a painted direction, x and y in red and green, 0.5 for none, and its strength in alpha. Its values are
+// data, which no colour space changes.
+#define ISOPHOTE_KIND_FLOW 6
+
 // A number.
 #define ISOPHOTE_PARAM_FLOAT 0
 

@@ -58,6 +58,9 @@ pub const ISOPHOTE_KIND_NORMAL: u32 = 3;
 pub const ISOPHOTE_KIND_DEPTH: u32 = 4;
 /// A number per object, one channel; 0 where there is nothing.
 pub const ISOPHOTE_KIND_OBJECT_ID: u32 = 5;
+/// A flow map: a painted direction, x and y in red and green, 0.5 for none, and its strength in alpha. Its values are
+/// data, which no colour space changes.
+pub const ISOPHOTE_KIND_FLOW: u32 = 6;
 
 /// Type of a parameter. One of `ISOPHOTE_PARAM_...`.
 pub type IsophoteParamKind = u32;

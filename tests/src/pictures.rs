@@ -123,6 +123,10 @@ pub fn field(kind: ImageKind, width: u32, height: u32) -> Image {
         ImageKind::Depth => from_fn(width, height, |x, y| {
             if empty(x, y) { [0.0] } else { [2.0 + 0.01 * x as f32 + if y > 20 { 7.0 } else { 0.0 }] }
         }),
+        ImageKind::Flow => from_fn(width, height, |x, y| {
+            let strength = if empty(x, y) { 0.0 } else { random.unit() as f32 };
+            [random.unit() as f32, random.unit() as f32, 0.0, strength]
+        }),
         ImageKind::ObjectId => {
             from_fn(width, height, |x, y| [if empty(x, y) { 0.0 } else { (1 + x / 13 + 7 * (y / 9)) as f32 }])
         }

@@ -64,6 +64,8 @@ pub enum Kind {
     Depth,
     /// Object numbers.
     ObjectId,
+    /// A painted direction and its strength.
+    Flow,
     /// Something that this program does not know.
     Other,
 }
@@ -77,6 +79,7 @@ impl Kind {
             c::ISOPHOTE_KIND_NORMAL => Self::Normal,
             c::ISOPHOTE_KIND_DEPTH => Self::Depth,
             c::ISOPHOTE_KIND_OBJECT_ID => Self::ObjectId,
+            c::ISOPHOTE_KIND_FLOW => Self::Flow,
             _ => Self::Other,
         }
     }
@@ -95,6 +98,7 @@ impl Kind {
             Self::Normal => "normal",
             Self::Depth => "depth",
             Self::ObjectId => "object id",
+            Self::Flow => "flow map",
             Self::Other => "something unknown",
         }
     }

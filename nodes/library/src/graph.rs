@@ -30,9 +30,8 @@ impl GraphInput {
     /// Stable name, which is also the name of the plan's input.
     pub const fn id(self) -> &'static str {
         match self {
-            Self::Color | Self::Normal | Self::Depth | Self::ObjectId => self.kind().id(),
             Self::Mask => "mask",
-            Self::Flow => "flow",
+            other => other.kind().id(),
         }
     }
 
@@ -44,8 +43,7 @@ impl GraphInput {
             Self::Depth => ImageKind::Depth,
             Self::ObjectId => ImageKind::ObjectId,
             Self::Mask => ImageKind::Scalar,
-            // Its values are data, which no colour space changes.
-            Self::Flow => ImageKind::Color,
+            Self::Flow => ImageKind::Flow,
         }
     }
 
@@ -107,7 +105,8 @@ impl Graph {
         let mut graph = Self::new();
         let id = graph.add(node, node)?;
         for (i, port) in graph.nodes[0].spec.ports().enumerate() {
-            graph.nodes[0].inputs[i] = GraphInput::from_id(port.id).map(Source::Input);
+            graph.nodes[0].inputs[i] =
+                GraphInput::from_id(port.id).filter(|i| i.kind() == port.kind).map(Source::Input);
         }
         graph.set_output(id)?;
         Ok(graph)
@@ -283,7 +282,8 @@ impl Graph {
     fn attach(&mut self, source: Source, kind: ImageKind, to: NodeId, port: &str) -> Result<()> {
         let node = self.get(to)?;
         let (index, wanted) = find_input(node.spec, port)?;
-        if wanted != kind {
+        // A flow map is a picture, too.
+        if wanted != kind && !(wanted == ImageKind::Color && kind == ImageKind::Flow) {
             return Err(Error::Connection(format!(
                 "input '{port}' of node '{}' ({}) takes {}, not {}",
                 node.name,

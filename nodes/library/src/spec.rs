@@ -21,6 +21,9 @@ pub enum ImageKind {
     Depth,
     /// A number per object, one channel; 0 where there is nothing.
     ObjectId,
+    /// A painted direction, x and y in red and green, 0.5 for none, and its strength in alpha. Its values are data,
+    /// which no colour space changes and nothing multiplies.
+    Flow,
 }
 
 impl ImageKind {
@@ -33,13 +36,14 @@ impl ImageKind {
             Self::Normal => "normal",
             Self::Depth => "depth",
             Self::ObjectId => "object_id",
+            Self::Flow => "flow",
         }
     }
 
     /// Values a pixel.
     pub const fn channels(self) -> u32 {
         match self {
-            Self::Color | Self::Tensor | Self::Normal => 4,
+            Self::Color | Self::Tensor | Self::Normal | Self::Flow => 4,
             Self::Scalar | Self::Depth | Self::ObjectId => 1,
         }
     }
@@ -104,7 +108,7 @@ pub const MASK: Port = Port {
 /// What an artist painted for a node to follow; every node from colour to colour has it.
 pub const FLOW: Port = Port {
     id: "flow",
-    kind: ImageKind::Color,
+    kind: ImageKind::Flow,
     optional: true,
     doc: "A flow map (see `flow_map`) that bends the orientation which the node follows, if it follows any.",
 };

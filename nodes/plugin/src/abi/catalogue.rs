@@ -174,6 +174,7 @@ pub fn kind(kind: ImageKind) -> IsophoteKind {
         ImageKind::Normal => ISOPHOTE_KIND_NORMAL,
         ImageKind::Depth => ISOPHOTE_KIND_DEPTH,
         ImageKind::ObjectId => ISOPHOTE_KIND_OBJECT_ID,
+        ImageKind::Flow => ISOPHOTE_KIND_FLOW,
     }
 }
 

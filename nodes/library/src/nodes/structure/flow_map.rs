@@ -20,7 +20,7 @@ pub static NODE: NodeSpec = NodeSpec {
             id: "color",
             kind: ImageKind::Color,
             optional: false,
-            doc: "The flow map; connect the graph's input `flow`, whose values no colour space changes.",
+            doc: "The flow map; the graph's input `flow` enters without any change of colour space.",
         },
         Port {
             doc: "The field to bend; when open, nothing but the painted directions counts.",
