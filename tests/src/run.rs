@@ -7,15 +7,9 @@ use isophote_engine::{Image, Plan, Rect};
 use std::sync::OnceLock;
 
 /// One pool for all tests of a binary.
-///
-/// # Panics
-/// When the system refuses threads.
 pub fn pool() -> &'static Pool {
     static POOL: OnceLock<Pool> = OnceLock::new();
-    POOL.get_or_init(|| match Pool::new(0) {
-        Ok(pool) => pool,
-        Err(e) => panic!("{e}"),
-    })
+    POOL.get_or_init(|| Pool::new(0))
 }
 
 /// Plans a graph.

@@ -139,7 +139,7 @@ fn a_tile_is_the_same_part_of_the_full_frame(spec: &'static NodeSpec) -> Vec<Str
 
 fn the_number_of_threads_changes_nothing(spec: &'static NodeSpec) -> Vec<String> {
     static POOLS: OnceLock<Vec<Pool>> = OnceLock::new();
-    let pools = POOLS.get_or_init(|| [1, 2, 3, 7].map(|n| Pool::new(n).unwrap()).into());
+    let pools = POOLS.get_or_init(|| [1, 2, 3, 7].map(Pool::new).into());
     let mut wrong = Vec::new();
     for run in runs(spec, SIZE).into_iter().step_by(2) {
         let plan = run.planned.plan();

@@ -4,6 +4,7 @@
 //! absolute pixel positions whether it is given the full frame or a tile with its halo.
 
 use crate::error::{Error, Result};
+use crate::memory;
 
 /// A half-open rectangle of pixels, `x0 <= x < x1` and `y0 <= y < y1`, y down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -107,7 +108,8 @@ impl Image {
     /// A picture of `width` x `height` pixels, all zero.
     ///
     /// # Errors
-    /// [`Error::Geometry`] when a side is 0 or above [`MAX_SIDE`], or `channels` is not 1..=4.
+    /// [`Error::Geometry`] when a side is 0 or above [`MAX_SIDE`], or `channels` is not 1..=4;
+    /// [`Error::Memory`] when there is not enough.
     pub fn new(width: u32, height: u32, channels: u32) -> Result<Self> {
         Self::with_window(Rect::of_size(width, height), channels)
     }
@@ -122,7 +124,7 @@ impl Image {
         if !(1..=4).contains(&channels) {
             return Err(Error::Geometry(format!("an image has 1 to 4 channels, not {channels}")));
         }
-        let data = vec![0.0; width as usize * height as usize * channels as usize];
+        let data = memory::zeroed(width as usize * height as usize * channels as usize)?;
         Ok(Self { window, channels, data })
     }
 
@@ -142,12 +144,22 @@ impl Image {
         Ok(Self { window: Rect::of_size(width, height), channels, data })
     }
 
-    /// Turns this image into one of another shape, keeping its memory. Values are unspecified.
-    pub(crate) fn reshape(&mut self, window: Rect, channels: u32) {
-        self.window = window;
-        self.channels = channels;
+    /// Turns this image into one of another shape, keeping its memory where that is enough. Values are
+    /// unspecified.
+    ///
+    /// # Errors
+    /// [`Error::Memory`] when there is not enough; the image has then no pixel.
+    pub(crate) fn reshape(&mut self, window: Rect, channels: u32) -> Result<()> {
         let len = window.width() as usize * window.height() as usize * channels as usize;
-        self.data.resize(len, 0.0);
+        let mut data = std::mem::take(self).data;
+        if data.capacity() >= len {
+            data.resize(len, 0.0);
+        } else {
+            drop(data);
+            data = memory::zeroed(len)?;
+        }
+        *self = Self { window, channels, data };
+        Ok(())
     }
 
     /// Lets go of the rows before `y0` and makes room for as many below: the memory stays the same, and the

@@ -12,6 +12,7 @@ pub mod gpu;
 pub mod image;
 pub mod kernel;
 pub mod math;
+pub mod memory;
 pub mod pixels;
 pub mod plan;
 pub mod program;

@@ -8,3 +8,4 @@
 pub mod abi;
 pub mod ofx;
 mod pinned;
+mod reserve;

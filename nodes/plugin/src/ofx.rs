@@ -232,6 +232,7 @@ static PLUGINS: LazyLock<Plugins> = LazyLock::new(|| {
 #[unsafe(no_mangle)]
 pub extern "C" fn OfxGetNumberOfPlugins() -> c_int {
     crate::pinned::pin();
+    crate::reserve::keep();
     catch_unwind(|| PLUGINS.0.len() as c_int).unwrap_or(0)
 }
 
@@ -240,6 +241,7 @@ pub extern "C" fn OfxGetNumberOfPlugins() -> c_int {
 #[unsafe(no_mangle)]
 pub extern "C" fn OfxGetPlugin(nth: c_int) -> *const OfxPlugin {
     crate::pinned::pin();
+    crate::reserve::keep();
     let find = || usize::try_from(nth).ok().and_then(|n| PLUGINS.0.get(n)).map_or(null(), |p| &raw const *p);
     catch_unwind(find).unwrap_or(null())
 }

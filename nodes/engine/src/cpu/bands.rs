@@ -2,15 +2,20 @@
 
 use super::control::Control;
 use super::threads::Threads;
+use crate::error::Result;
 use crate::image::{Image, Rect};
 use crate::kernel::{Band, CpuPass, Kernel};
-use std::sync::Mutex;
+use crate::memory;
+use std::sync::{Mutex, OnceLock};
 
 /// Least rows of a band.
 pub(super) const BAND: i32 = 16;
 
 /// Runs `kernel` over the rows of `window` of `outputs`, which must hold them. Does less when `control`
 /// says to stop.
+///
+/// # Errors
+/// [`Error::Memory`](crate::Error::Memory) when the kernel got none to work with.
 pub(super) fn run_bands(
     kernel: &Kernel,
     pass: &CpuPass<'_>,
@@ -19,21 +24,27 @@ pub(super) fn run_bands(
     outputs: &mut [Image],
     threads: &dyn Threads,
     control: Control<'_>,
-) {
+) -> Result<()> {
     let height = window.height() as usize;
     // Some bands per thread even out unequal rows; very thin ones would read their halo too often.
     let bands = (threads.count() * 4).clamp(1, height.div_ceil(BAND as usize).max(1));
     let jobs = split(window, full, outputs, height.div_ceil(bands));
     let cancelled = control.cancelled;
+    let failed = OnceLock::new();
     threads.run(jobs.len(), &|i| {
-        if cancelled.is_some_and(|c| c()) {
+        if failed.get().is_some() || cancelled.is_some_and(|c| c()) {
             return;
         }
         // A band is locked once, by the one job that owns it.
-        if let Ok(mut band) = jobs[i].lock() {
-            (kernel.cpu)(pass, &mut band);
+        if let Ok(mut band) = jobs[i].lock()
+            && let Err(error) = memory::caught(|| (kernel.cpu)(pass, &mut band))
+        {
+            // The first one is as good as any.
+            let _ = failed.set(error);
         }
     });
+    drop(jobs);
+    failed.into_inner().map_or(Ok(()), Err)
 }
 
 /// Bands of `rows` rows of `window`, each with its part of every image.

@@ -5,7 +5,7 @@ use super::control::{Control, PassTime};
 use super::images::Images;
 use super::strips::Schedule;
 use super::threads::Threads;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::image::{Image, Rect, View};
 use crate::kernel::CpuPass;
 use crate::plan::{ImageId, Pass, Plan, Port};
@@ -77,7 +77,8 @@ impl CpuExecutor {
     ///
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) for a missing or unfitting input, [`Error::Geometry`](crate::Error::Geometry) for a region outside
-    /// the picture, [`Error::Cancelled`](crate::Error::Cancelled) when `control` says so.
+    /// the picture, [`Error::Cancelled`](crate::Error::Cancelled) when `control` says so,
+    /// [`Error::Memory`] when there is not enough; what was kept for the next run is then given back.
     pub fn run(
         &mut self,
         plan: &Plan,
@@ -96,11 +97,17 @@ impl CpuExecutor {
         let mut run = Run { executor: self, plan, windows, schedule, images, threads, control };
         let results = run.passes().and_then(|()| run.results(region));
         run.images.recycle(&mut run.executor.spare);
+        if matches!(results, Err(Error::Memory(_))) {
+            self.purge();
+        }
         results
     }
 
     /// Memory for an image that passes write: the spare one that wastes least, or a new one.
-    fn take(&mut self, window: Rect, channels: u32) -> Image {
+    ///
+    /// # Errors
+    /// [`Error::Memory`] when there is not enough.
+    fn take(&mut self, window: Rect, channels: u32) -> Result<Image> {
         let need = window.area() as usize * channels as usize;
         let best = self
             .spare
@@ -109,8 +116,12 @@ impl CpuExecutor {
             .min_by_key(|(_, image)| image.data().len().abs_diff(need))
             .map(|(i, _)| i);
         let mut image = best.map(|i| self.spare.swap_remove(i)).unwrap_or_default();
-        image.reshape(window, channels);
-        image
+        if image.reshape(window, channels).is_err() {
+            // What is kept may be all that there is.
+            self.purge();
+            image.reshape(window, channels)?;
+        }
+        Ok(image)
     }
 }
 
@@ -147,7 +158,7 @@ impl Run<'_> {
             for (place, index) in needed.iter().enumerate() {
                 self.control.check()?;
                 let started = Instant::now();
-                done += self.compute(step, &plan.passes()[*index]);
+                done += self.compute(step, &plan.passes()[*index])?;
                 if step + 1 == steps {
                     self.release(*index);
                 }
@@ -163,37 +174,41 @@ impl Run<'_> {
     }
 
     /// Takes a pass from the row it has reached to that of the step; returns how many pixels that were.
-    fn compute(&mut self, step: usize, pass: &Pass) -> u64 {
+    fn compute(&mut self, step: usize, pass: &Pass) -> Result<u64> {
         let first = pass.outputs[0];
         let (all, end) = (self.windows[first.index()], self.schedule.frontiers[step][first.index()]);
         let window = Rect { y0: self.images.filled(first).max(all.y0), y1: end, ..all };
-        let mut outputs: Vec<Image> = pass.outputs.iter().map(|id| self.output(step, *id)).collect();
+        let outputs: Result<Vec<Image>> = pass.outputs.iter().map(|id| self.output(step, *id)).collect();
+        let mut outputs = outputs?;
         if !window.is_empty() {
             let views: Vec<View<'_>> =
                 pass.inputs.iter().map(|id| self.images.view(self.plan, *id)).collect();
             let call = CpuPass { params: &pass.params, inputs: &views, level: self.executor.level };
             let full = self.plan.level_size(self.plan.desc(first).level);
-            run_bands(pass.kernel, &call, window, full, &mut outputs, self.threads, self.control);
+            run_bands(pass.kernel, &call, window, full, &mut outputs, self.threads, self.control)?;
         }
         for (id, image) in pass.outputs.iter().zip(outputs) {
             self.images.put(*id, image, end);
         }
-        window.area()
+        Ok(window.area())
     }
 
     /// The memory that a pass writes an image to, with room for the rows of the step. Rows that are
     /// not read any more give way.
-    fn output(&mut self, step: usize, id: ImageId) -> Image {
+    fn output(&mut self, step: usize, id: ImageId) -> Result<Image> {
         let at = id.index();
-        let mut image = self.images.take(id).unwrap_or_else(|| {
-            let window = self.windows[at];
-            let y1 = window.y0 + self.schedule.capacity[at];
-            self.executor.take(Rect { y1, ..window }, self.plan.desc(id).channels)
-        });
+        let mut image = match self.images.take(id) {
+            Some(image) => image,
+            None => {
+                let window = self.windows[at];
+                let y1 = window.y0 + self.schedule.capacity[at];
+                self.executor.take(Rect { y1, ..window }, self.plan.desc(id).channels)?
+            }
+        };
         if self.schedule.frontiers[step][at] > image.window().y1 {
             image.slide(self.schedule.kept[step - 1][at], self.images.filled(id));
         }
-        image
+        Ok(image)
     }
 
     /// Hands on the memory of images that no pass after this one reads.

@@ -1,7 +1,10 @@
 //! Who runs the jobs of a pass.
 
-use crate::error::{Error, Result};
+use crate::memory;
 use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Bytes that a thread may take: its stack, and what kernels work with.
+const THREAD: usize = 8 << 20;
 
 /// Something that runs independent jobs: the engine's own pool, the caller's thread, or the host's
 /// threads.
@@ -36,24 +39,20 @@ pub struct Pool {
 }
 
 impl Pool {
-    /// A pool of `threads` threads, the calling one among them; 0 means one per core.
-    ///
-    /// # Errors
-    /// [`Error::Memory`] when the system refuses the threads.
-    pub fn new(threads: usize) -> Result<Self> {
+    /// A pool of `threads` threads, the calling one among them; 0 means one per core. Where the system refuses
+    /// some there are fewer, the calling one at least.
+    pub fn new(threads: usize) -> Self {
         let count = match threads {
             0 => std::thread::available_parallelism().map_or(1, usize::from),
             given => given,
         };
-        if count == 1 {
-            return Ok(Self { helpers: None });
-        }
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(count - 1)
-            .thread_name(|i| format!("isophote-{i}"))
-            .build()
-            .map(|helpers| Self { helpers: Some(helpers) })
-            .map_err(|e| Error::Memory(format!("cannot start worker threads: {e}")))
+        let started = |helpers: usize| {
+            memory::must_have((helpers * THREAD) as u64).ok()?;
+            let builder = rayon::ThreadPoolBuilder::new().num_threads(helpers);
+            builder.thread_name(|i| format!("isophote-{i}")).build().ok()
+        };
+        let fewer = std::iter::successors(Some(count - 1), |helpers| Some(helpers / 2));
+        Self { helpers: fewer.take_while(|helpers| *helpers > 0).find_map(started) }
     }
 }
 

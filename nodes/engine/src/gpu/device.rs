@@ -2,6 +2,7 @@
 
 use super::pipeline::{self, Pipeline, Pipelines};
 use crate::error::{Error, Result};
+use crate::memory;
 use crate::program::Shader;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -11,6 +12,10 @@ use std::time::Duration;
 /// Environment variable that chooses the adapter where [`Options::adapter`] does not: `gpu`,
 /// `software`, or a part of an adapter's name.
 const ADAPTER_VARIABLE: &str = "ISOPHOTE_ADAPTER";
+
+/// Bytes that a driver may take to be opened, of which those that compute on the CPU take most. Drivers that do not
+/// get it end the process.
+const DRIVER: u64 = 1 << 30;
 
 /// How to open a device.
 #[derive(Clone, Debug, Default)]
@@ -85,8 +90,15 @@ impl Device {
     /// Opens a device of the library's own.
     ///
     /// # Errors
-    /// [`Error::NoDevice`] when there is no adapter, none as asked for, or none that can compute.
+    /// [`Error::NoDevice`] when there is no adapter, none as asked for, none that can compute, or too little memory
+    /// for a driver.
     pub fn open(options: &Options) -> Result<Arc<Self>> {
+        memory::must_have(DRIVER).map_err(|_| {
+            let needed = DRIVER >> 20;
+            Error::NoDevice(format!(
+                "drivers take {needed} MiB of memory, more than there is; run on the CPU"
+            ))
+        })?;
         let from_environment = || std::env::var(ADAPTER_VARIABLE).ok().filter(|v| !v.is_empty());
         let wanted = options.adapter.clone().or_else(from_environment);
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {

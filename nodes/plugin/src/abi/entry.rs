@@ -8,5 +8,6 @@ use super::contract::{ISOPHOTE_ABI_VERSION, IsophoteApi};
 #[unsafe(no_mangle)]
 pub extern "C" fn isophote_api(abi_version: u32) -> *const IsophoteApi {
     crate::pinned::pin();
+    crate::reserve::keep();
     if abi_version == ISOPHOTE_ABI_VERSION { (&raw const super::API).cast() } else { std::ptr::null() }
 }

@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn a_panic_on_a_worker_thread_becomes_a_status_too() {
-        let pool = threads::pool(2).unwrap();
+        let pool = threads::pool(2);
         let status = call(
             || {
                 engine::cpu::Threads::run(&*pool, 4, &|i| assert!(i != 3, "job {i} broke"));

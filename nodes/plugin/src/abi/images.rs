@@ -133,7 +133,7 @@ impl Checked {
         }
         let channels = input.kind().channels();
         let mut image = Image::with_window(window, channels)?;
-        let mut bytes = vec![0; window.width() as usize * self.channels * self.sample.size()];
+        let mut bytes = self.row_of_bytes(&window)?;
         let mut replaced = 0;
         for y in window.y0..window.y1 {
             // SAFETY: the row lies in the image, whose memory is readable as the caller promised; the copy
@@ -154,19 +154,34 @@ impl Checked {
         Ok((image, replaced))
     }
 
+    /// Room for a copy of one row of `window`.
+    fn row_of_bytes(&self, window: &Rect) -> Outcome<Vec<u8>> {
+        let len = window.width() as usize * self.channels * self.sample.size();
+        let mut bytes = Vec::new();
+        bytes.try_reserve_exact(len).map_err(|_| {
+            Failure::new(ISOPHOTE_OUT_OF_MEMORY, format!("there is no memory for a row of {len} bytes"))
+        })?;
+        bytes.resize(len, 0);
+        Ok(bytes)
+    }
+
     /// Writes all pixels of `result`, which must lie within the image.
+    ///
+    /// # Errors
+    /// Out of memory.
     ///
     /// # Safety
     /// The memory of the image must be writable.
-    pub unsafe fn write(&self, result: &Image) {
+    pub unsafe fn write(&self, result: &Image) -> Outcome<()> {
         let window = result.window();
-        let mut bytes = vec![0; window.width() as usize * self.channels * self.sample.size()];
+        let mut bytes = self.row_of_bytes(&window)?;
         for y in window.y0..window.y1 {
             write_row(result.row(y), result.channels() as usize, &mut bytes, self.sample, self.channels);
             // SAFETY: the row lies in the image, whose memory is writable as the caller promised; the copy is
             // of bytes and needs no alignment.
             unsafe { self.at(&window, y).copy_from_nonoverlapping(bytes.as_ptr(), bytes.len()) };
         }
+        Ok(())
     }
 }
 

@@ -13,7 +13,7 @@ use super::threads::{CallThreads, User};
 use super::warm::Warm;
 use isophote::Request;
 use isophote::engine::cpu::{Control, PassTime};
-use isophote::engine::{Image, ImageId, Plan, Rect, Support, gpu};
+use isophote::engine::{Image, ImageId, Plan, Rect, Support, gpu, memory};
 use isophote::graph::GraphInput;
 use isophote::kernels::shared::host_colour::has_light;
 use isophote::request::Guides;
@@ -95,14 +95,14 @@ pub(super) unsafe extern "C" fn process(
         let job = Job { object, request, region, inputs: &inputs, threads: &threads, control: &control };
         // SAFETY: the host promised that the images' memory may be read.
         let computed = unsafe { job.run(&mut warm, device.as_deref()) };
-        let computed = computed.map(|(result, replaced)| {
+        let computed = computed.and_then(|(result, replaced)| {
             // SAFETY: the host promised that the target's memory may be written; all inputs were copied,
             // so that it does not matter whether it is theirs.
-            unsafe { target.write(&result) };
+            unsafe { target.write(&result)? };
             if device.is_none() {
                 warm.recycle(result);
             }
-            replaced
+            Ok(replaced)
         });
         object.keep(warm);
         let replaced = computed?;
@@ -303,8 +303,7 @@ impl Job<'_> {
     }
 }
 
-/// Fails when the images of a run would not fit into memory, which the allocator answers by ending the
-/// process.
+/// Fails when the images of a run would not fit into memory, before any of them is computed.
 fn must_fit(plan: &Plan, windows: &[Rect], on_device: bool) -> Outcome<()> {
     let most = if on_device {
         let bytes = |id: ImageId| windows[id.index()].area() * u64::from(plan.desc(id).channels) * 4;
@@ -312,13 +311,10 @@ fn must_fit(plan: &Plan, windows: &[Rect], on_device: bool) -> Outcome<()> {
     } else {
         plan.peak_bytes(windows)
     };
-    let fits =
-        usize::try_from(most).is_ok_and(|bytes| Vec::<u8>::new().try_reserve_exact(bytes.max(1)).is_ok());
-    if fits {
-        return Ok(());
-    }
-    Err(Failure::new(
-        ISOPHOTE_OUT_OF_MEMORY,
-        format!("{} MiB are needed at once, more than there is; compute smaller regions", most >> 20),
-    ))
+    memory::must_have(most).map_err(|_| {
+        Failure::new(
+            ISOPHOTE_OUT_OF_MEMORY,
+            format!("{} MiB are needed at once, more than there is; compute smaller regions", most >> 20),
+        )
+    })
 }

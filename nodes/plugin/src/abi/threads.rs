@@ -22,21 +22,31 @@ const KEPT: usize = 4;
 
 static POOLS: Mutex<Vec<(usize, Arc<Pool>)>> = Mutex::new(Vec::new());
 
-/// The pool of so many threads, 0 for one per core; shared by all who ask for the same.
-///
-/// # Errors
-/// Out of memory when the system refuses the threads.
-pub fn pool(threads: usize) -> Outcome<Arc<Pool>> {
+/// The pool of so many threads, 0 for one per core; shared by all who ask for the same. It has fewer where the
+/// system refuses them.
+pub fn pool(threads: usize) -> Arc<Pool> {
     let mut pools = lock(&POOLS);
     if let Some((_, pool)) = pools.iter().find(|(n, _)| *n == threads) {
-        return Ok(Arc::clone(pool));
+        return Arc::clone(pool);
     }
-    let pool = Arc::new(Pool::new(threads)?);
+    let pool = Arc::new(Pool::new(threads));
+    if pool.count() < wanted(threads) {
+        // The next call may find more.
+        return pool;
+    }
     if pools.len() == KEPT {
         pools.remove(0);
     }
     pools.push((threads, Arc::clone(&pool)));
-    Ok(pool)
+    pool
+}
+
+/// How many threads a number stands for, of which 0 means one per core.
+fn wanted(threads: usize) -> usize {
+    match threads {
+        0 => std::thread::available_parallelism().map_or(1, usize::from),
+        given => given,
+    }
 }
 
 /// Ends the pools that no call uses.
@@ -59,7 +69,7 @@ impl CallThreads {
     /// What `control` asks for.
     ///
     /// # Errors
-    /// Out of range for too many threads, out of memory when the system refuses them.
+    /// Out of range for too many threads.
     pub fn new(control: &IsophoteControl) -> Outcome<Self> {
         if control.threads > MOST {
             return Err(Failure::new(
@@ -69,11 +79,9 @@ impl CallThreads {
         }
         let threads = control.threads as usize;
         if let Some(run) = control.run {
-            let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-            let count = if threads == 0 { cores() } else { threads };
-            return Ok(Self::Host(HostThreads::new(run, User(control.user), count)));
+            return Ok(Self::Host(HostThreads::new(run, User(control.user), wanted(threads))));
         }
-        Ok(if threads == 1 { Self::Calling(CallingThread) } else { Self::Pool(pool(threads)?) })
+        Ok(if threads == 1 { Self::Calling(CallingThread) } else { Self::Pool(pool(threads)) })
     }
 
     /// The executor's view of them.

@@ -226,7 +226,10 @@ impl<'h> Fetched<'h> {
     pub fn read_mask(&self, frame: &Frame, window: Rect) -> Outcome<Vec<f32>> {
         if self.channels == 4 {
             let image = self.read(frame, window, GraphInput::Color, Beyond::Zero)?;
-            return Ok(image.data().chunks_exact(4).map(|p| p[3]).collect());
+            let mut mask = Vec::new();
+            mask.try_reserve_exact(image.data().len() / 4).map_err(|_| kOfxStatErrMemory)?;
+            mask.extend(image.data().chunks_exact(4).map(|p| p[3]));
+            return Ok(mask);
         }
         Ok(self.read(frame, window, GraphInput::Depth, Beyond::Zero)?.into_data())
     }
@@ -248,8 +251,7 @@ impl<'h> Fetched<'h> {
             image.data_mut().chunks_exact_mut(4).for_each(|p| p.swap(0, 2));
         }
         // SAFETY: the host gave the image to be written, until it is released.
-        unsafe { checked.write(&image) };
-        Ok(())
+        unsafe { checked.write(&image) }.map_err(|_| kOfxStatErrMemory)
     }
 }
 

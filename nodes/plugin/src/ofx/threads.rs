@@ -34,7 +34,7 @@ pub enum FrameThreads {
 impl FrameThreads {
     /// The threads to use now, on the thread that asks.
     pub fn of(host: &Host) -> Self {
-        let own = || threads::pool(0).map_or(Self::Calling(CallingThread), Self::Pool);
+        let own = || Self::Pool(threads::pool(0));
         let Some(suite) = host.threads.filter(|_| host.quirks.threads) else { return own() };
         // SAFETY: a function of the host's without arguments.
         if suite.multiThreadIsSpawnedThread.is_some_and(|spawned| unsafe { spawned() } != 0) {

@@ -18,7 +18,7 @@ use crate::kernels::simd::moment_buffer::{CHANNELS, for_rows};
 use crate::kernels::simd::pixels::{Block, eight, read, write};
 use block_convolution::{Convolution, Mask, block_side};
 use isophote_engine::fearless_simd::{Level, Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View, memory};
 use rustfft::FftNum;
 use rustfft::num_complex::Complex;
 use std::f32::consts::FRAC_1_SQRT_2;
@@ -211,7 +211,8 @@ fn by_blocks<const N: usize>(pass: &CpuPass<'_>, params: &Params, masks: &[Mask]
     let (side, reach) = (params.block as usize, params.reach);
     let kept = side - 2 * reach as usize;
     let stride = kept.next_multiple_of(8);
-    let mut sums = Sums { values: vec![0.0; N * CHANNELS * stride * kept], kept, stride };
+    let mut sums = Sums { values: Vec::new(), kept, stride };
+    memory::resize(&mut sums.values, N * CHANNELS * stride * kept, 0.0);
     let mut single: Convolution<f32> = Convolution::new(side, masks);
     let mut double: Option<Convolution<f64>> = None;
     let totals: Vec<f32> = masks.iter().map(|m| m.iter().map(|(_, w)| w).sum()).collect();

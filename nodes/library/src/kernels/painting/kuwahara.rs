@@ -12,7 +12,7 @@ use crate::kernels::painting::kuwahara_rows::{self, Side};
 pub use crate::kernels::shaders::kuwahara::Params;
 use crate::kernels::simd::pixels::{Block, read, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View, memory};
 
 crate::kernel!(kuwahara {
     cpu: run,
@@ -147,7 +147,7 @@ fn blocks<S: Simd>(simd: S, strip: &Strip<'_>, params: &Params, [y0, y1]: [i32; 
     let (count, len) = (params.count as i32, strip.len());
     let weight = params.weights[0][0];
     table.clear();
-    table.resize((y1 - y0) as usize * len, 0.0);
+    memory::resize(table, (y1 - y0) as usize * len, 0.0);
     let mut sum = vec![0.0; len];
     let mut block = y0.div_euclid(count) * count;
     while block < y1 {

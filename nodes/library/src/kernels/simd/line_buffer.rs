@@ -4,7 +4,7 @@
 
 use crate::kernels::simd::pixels::{eight, read};
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
-use isophote_engine::{Band, View};
+use isophote_engine::{Band, View, memory};
 
 /// Columns of a strip. Bands are worked through in strips so that their rows stay in the first-level
 /// cache.
@@ -35,7 +35,7 @@ impl LineBuffer {
         self.len = ((x1 - x0) as usize).next_multiple_of(8) + (2 * radius as usize).next_multiple_of(8);
         self.count = 2 * radius as usize + 1;
         self.channels = channels;
-        self.data.resize(self.len * self.count * channels, 0.0);
+        memory::resize(&mut self.data, self.len * self.count * channels, 0.0);
     }
 
     /// Values of one channel of a row, padding included; a multiple of eight.

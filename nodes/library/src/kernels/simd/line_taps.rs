@@ -13,7 +13,7 @@
 use crate::kernels::simd::pixels::load_pixels;
 use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::math::transposed;
-use isophote_engine::{Band, Rect, View};
+use isophote_engine::{Band, Rect, View, memory};
 
 /// Columns of a strip when lines are short: its rows stay in the first-level cache.
 const COLUMNS: i32 = 128;
@@ -242,7 +242,7 @@ impl LineTaps {
         self.width = (strip.width() as usize).next_multiple_of(8) + (2 * margin as usize).next_multiple_of(8);
         let rows = strip.height() as usize + 2 * margin as usize;
         self.len = self.width * rows;
-        self.data.resize(4 * self.len, 0.0);
+        memory::resize(&mut self.data, 4 * self.len, 0.0);
         rows
     }
 

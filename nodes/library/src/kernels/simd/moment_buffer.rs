@@ -5,7 +5,7 @@
 use crate::kernels::simd::line_buffer::strips;
 use crate::kernels::simd::pixels::read;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
-use isophote_engine::{Band, View};
+use isophote_engine::{Band, View, memory};
 
 /// Channels of a row: a r, a g, a b, a (r^2 + g^2 + b^2), a.
 pub const CHANNELS: usize = 5;
@@ -31,7 +31,7 @@ impl MomentBuffer {
         // The last vectors of the output and their neighbours to the right.
         self.len = ((x1 - x0) as usize).next_multiple_of(16) + (2 * reach as usize).next_multiple_of(8);
         self.count = rows;
-        self.data.resize(self.len * self.count as usize * CHANNELS, 0.0);
+        memory::resize(&mut self.data, self.len * self.count as usize * CHANNELS, 0.0);
         self.opaque.clear();
         self.opaque.resize(self.count as usize, true);
     }

@@ -11,7 +11,7 @@
 pub use crate::kernels::shaders::disc_extremum::Params;
 use crate::kernels::simd::pixels::eight;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, memory};
 
 crate::kernel!(disc_extremum {
     cpu: run,
@@ -118,7 +118,7 @@ fn extrema<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
         let len = 4 * (x1 - x0) as usize;
         chord_row.resize(len, 0.0f32);
         results.clear();
-        results.resize(len * count as usize, f32::NEG_INFINITY);
+        memory::resize(&mut results, len * count as usize, f32::NEG_INFINITY);
         let mut opaque = true;
         for y in window.y0 - extent..window.y1 + extent {
             let source = view.padded_row(y, x0 - extent, x1 + extent, &mut scratch);

@@ -2,6 +2,7 @@
 //! (overlap-save): blocks lie at fixed places of the picture, so that a tile meets the blocks that the
 //! full frame does.
 
+use isophote_engine::memory;
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftNum, FftPlanner};
 use std::sync::Arc;
@@ -43,11 +44,13 @@ impl<T: FftNum> Convolution<T> {
             inverse,
             spectra: Vec::new(),
             scratch: vec![zero; scratch],
-            turned: vec![zero; side * side],
+            turned: Vec::new(),
         };
+        memory::resize(&mut this.turned, side * side, zero);
         let share = 1.0 / (side * side) as f64;
         for mask in masks {
-            let mut image = vec![zero; side * side];
+            let mut image = Vec::new();
+            memory::resize(&mut image, side * side, zero);
             for ([dx, dy], weight) in mask {
                 // A weight at offset d counts the pixel at x + d: the convolution's kernel is mirrored.
                 let (x, y) = ((-dx).rem_euclid(side as i32) as usize, (-dy).rem_euclid(side as i32) as usize);
