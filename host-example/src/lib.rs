@@ -3,9 +3,11 @@
 pub mod apply;
 pub mod bench;
 pub mod cli;
+pub mod drivers;
 pub mod error;
 pub mod files;
 pub mod frames;
+pub mod limits;
 pub mod loader;
 pub mod output;
 pub mod pixels;

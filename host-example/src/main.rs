@@ -5,8 +5,11 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::ErrorKind;
 use isophote_host::cli::Cli;
+use isophote_host::{drivers, limits};
 
 fn main() -> ExitCode {
+    drivers::keep_quiet();
+    limits::end_where_memory_ends();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => return usage(&error),

@@ -1,7 +1,7 @@
 //! Pictures from files: PNG, JPEG, TIFF, WebP, HDR and EXR, recognized by their first bytes.
 
 use std::fs;
-use std::io::Cursor;
+use std::io::{self, Cursor};
 use std::path::Path;
 
 use image::codecs::hdr::HdrDecoder;
@@ -15,6 +15,7 @@ use super::exr::{self, ExrFile, Picture, Selection};
 use super::{jpeg, png};
 use crate::error::{Error, Result};
 use crate::frames;
+use crate::limits;
 use crate::pixels::{MOST_PIXELS, Pixels, Precision, Samples};
 
 /// First bytes of an EXR file.
@@ -129,7 +130,10 @@ impl Opened {
 
 /// The bytes of a file. Pipes and devices might not end.
 fn bytes(path: &Path) -> Result<Vec<u8>> {
-    let unreadable = |e| Error::file(path, format!("cannot be read: {e}"), hint(path));
+    let unreadable = |e: io::Error| match e.kind() {
+        io::ErrorKind::OutOfMemory => limits::too_little(&path.display().to_string()),
+        _ => Error::file(path, format!("cannot be read: {e}"), hint(path)),
+    };
     let found = fs::metadata(path).map_err(unreadable)?;
     if found.is_dir() {
         return Err(Error::file(path, "is a folder and cannot be read as a picture", hint(path)));

@@ -2,10 +2,11 @@
 //!
 //! One thread reads and decodes, the calling one filters, one encodes and writes; decoding and encoding use all
 //! cores within a frame. A frame takes its share of the memory before it is decoded and gives it back when it is
-//! written.
+//! written. Where the system gives no threads the calling one does it all, frame by frame.
 
 use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::{Builder, Scope, ScopedJoinHandle};
 
 use super::exr::Selection;
 use super::filter::{Filter, Filtered, Planner};
@@ -15,6 +16,7 @@ use super::report::{Outcome, Report};
 use super::tasks::Task;
 use super::write::{self, Format};
 use crate::error::{Error, Result};
+use crate::limits::{self, Threads};
 use crate::stop::Stop;
 
 /// Most frames between being read and being written: one in each hand and one waiting between them.
@@ -31,6 +33,8 @@ pub struct Run<'a> {
     pub format: Format,
     /// Whether whole outputs stay as they are.
     pub skip_existing: bool,
+    /// Whether frames are read and written beside being filtered.
+    pub threads: Threads,
     /// Memory of frames in flight.
     pub budget: &'a Budget,
     /// Where progress is reported.
@@ -59,12 +63,25 @@ impl Run<'_> {
     /// # Errors
     /// What kept a frame from being written, [`Error::Failure`] of the library or the device.
     pub fn all(&self, filter: &mut Filter, mut planner: Planner, first: Option<Opened>) -> Result<()> {
+        if self.threads == Threads::Calling {
+            let mut result = Ok(());
+            self.read(&mut planner, first, &mut |ready| {
+                result = self
+                    .filter_one(filter, ready)
+                    .and_then(|done| done.map_or(Ok(()), |d| self.write_one(d)));
+                result.is_ok()
+            })?;
+            return result;
+        }
         std::thread::scope(|scope| {
             let (send, decoded) = sync_channel(1);
             let (finished, receive) = sync_channel(1);
-            let reader = scope.spawn(move || self.read(&mut planner, first, &send));
-            let writer = scope.spawn(move || self.write(&receive));
-            let filtered = self.filter(filter, decoded, finished);
+            // Nobody takes it when the run ends early.
+            let mut sink = move |ready| SyncSender::send(&send, ready).is_ok();
+            let reader = spawn(scope, move || self.read(&mut planner, first, &mut sink))?;
+            let writer = spawn(scope, move || receive.into_iter().try_for_each(|done| self.write_one(done)))?;
+            let filtered = self.filter(filter, decoded, &finished);
+            drop(finished);
             let read = reader.join().unwrap_or_else(|_| Err(broken("reading")));
             let written = writer.join().unwrap_or_else(|_| Err(broken("writing")));
             // What could not be written is why the others ended.
@@ -76,7 +93,7 @@ impl Run<'_> {
         &'a self,
         planner: &mut Planner,
         mut first: Option<Opened>,
-        send: &SyncSender<Ready<'a>>,
+        sink: &mut dyn FnMut(Ready<'a>) -> bool,
     ) -> Result<()> {
         for task in self.tasks {
             let early = first.take();
@@ -89,11 +106,12 @@ impl Run<'_> {
             }
             match self.read_one(planner, task, early) {
                 Ok(ready) => {
-                    // Nobody takes it when the run ends early.
-                    if send.send(ready).is_err() {
+                    if !sink(ready) {
                         break;
                     }
                 }
+                // The next frame would find no more memory.
+                Err(error @ Error::Failure { .. }) => return Err(error),
                 Err(error) => self.failed(task, error)?,
             }
         }
@@ -120,6 +138,7 @@ impl Run<'_> {
         };
         if let Some(needs) = planner.needs(&task.input, task.frame, &opened)? {
             grow(needs)?;
+            limits::must_have(needs.total(), &task.input.display().to_string())?;
         }
         Ok(Ready { task, source: opened.decode(&task.input)?, share })
     }
@@ -128,35 +147,38 @@ impl Run<'_> {
         &'a self,
         filter: &mut Filter,
         decoded: Receiver<Ready<'a>>,
-        finished: SyncSender<Done<'a>>,
+        finished: &SyncSender<Done<'a>>,
     ) -> Result<()> {
         for ready in decoded {
             if self.stop.is_requested() {
                 break;
             }
-            let name = ready.task.input.display().to_string();
-            let mut progress = |done: f32| self.report.progress(done);
-            match filter.run(&name, ready.task.frame, &ready.source, self.format, &mut progress) {
-                Ok(filtered) => {
-                    if finished.send(Done { ready, filtered }).is_err() {
-                        break;
-                    }
-                }
-                // Neither device nor memory is better for the next frame.
-                Err(error @ Error::Failure { .. }) => return Err(error),
-                Err(error) => self.failed(ready.task, error)?,
+            if let Some(done) = self.filter_one(filter, ready)?
+                && finished.send(done).is_err()
+            {
+                break;
             }
         }
         Ok(())
     }
 
-    fn write(&self, receive: &Receiver<Done<'_>>) -> Result<()> {
-        for Done { ready: Ready { task, source, share }, filtered } in receive {
-            let replaced = filtered.replaced;
-            write::write(&task.output, self.format, filtered.results, source)?;
-            drop(share);
-            self.report.frame(task, &Outcome::Written(replaced));
+    /// Nothing where the frame failed and the run goes on.
+    fn filter_one<'a>(&self, filter: &mut Filter, ready: Ready<'a>) -> Result<Option<Done<'a>>> {
+        let name = ready.task.input.display().to_string();
+        let mut progress = |done: f32| self.report.progress(done);
+        match filter.run(&name, ready.task.frame, &ready.source, self.format, &mut progress) {
+            Ok(filtered) => Ok(Some(Done { ready, filtered })),
+            // Neither device nor memory is better for the next frame.
+            Err(error @ Error::Failure { .. }) => Err(error),
+            Err(error) => self.failed(ready.task, error).map(|()| None),
         }
+    }
+
+    fn write_one(&self, Done { ready: Ready { task, source, share }, filtered }: Done<'_>) -> Result<()> {
+        let replaced = filtered.replaced;
+        write::write(&task.output, self.format, filtered.results, source)?;
+        drop(share);
+        self.report.frame(task, &Outcome::Written(replaced));
         Ok(())
     }
 
@@ -177,6 +199,15 @@ pub fn too_large(path: &Path, needed: Bytes, most: Bytes) -> Error {
         format!("a frame needs about {needed} of memory, and {most} may be used"),
         "give more by --memory",
     )
+}
+
+fn spawn<'scope, 'env, T: Send + 'scope>(
+    scope: &'scope Scope<'scope, 'env>,
+    work: impl FnOnce() -> T + Send + 'scope,
+) -> Result<ScopedJoinHandle<'scope, T>> {
+    Builder::new()
+        .spawn_scoped(scope, work)
+        .map_err(|e| Error::failure(format!("a thread cannot be started: {e}"), "start again"))
 }
 
 fn broken(what: &str) -> Error {

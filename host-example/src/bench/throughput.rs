@@ -15,6 +15,7 @@ use crate::apply::sequence::Run;
 use crate::apply::tasks::Task;
 use crate::apply::write::Format;
 use crate::error::{Error, Result};
+use crate::limits::Threads;
 use crate::output::{self, Picture, Precision};
 use crate::pixels::Pixels;
 use crate::stop::Stop;
@@ -75,6 +76,7 @@ pub fn measure(
         selection: &selection,
         format: Format::Exr,
         skip_existing: false,
+        threads: Threads::Several,
         budget: &budget,
         report: &report,
         stop: &stop,

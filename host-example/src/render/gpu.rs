@@ -4,9 +4,13 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::error::{Error, Result};
+use crate::limits;
 
 /// What to install on a machine without any adapter.
 const NO_ADAPTER: &str = "install a graphics driver; a software one will do (on Debian: apt install mesa-vulkan-drivers libvulkan1)";
+
+/// Bytes that a driver may take to be opened, of which those that compute on the CPU take most.
+const DRIVER: u64 = 1 << 30;
 
 /// A device with its queue and the errors it has reported.
 #[derive(Clone, Debug)]
@@ -32,8 +36,10 @@ impl Gpu {
     /// Opens the best adapter there is, software drivers included; `WGPU_BACKEND` restricts the choice.
     ///
     /// # Errors
-    /// [`Error::Failure`] without an adapter, with what to install, or when its device cannot be opened.
+    /// [`Error::Failure`] without an adapter, with what to install, when its device cannot be opened, or without the
+    /// memory that drivers take.
     pub fn open() -> Result<Self> {
+        limits::must_have(DRIVER, "a graphics driver")?;
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
         Self::with_instance(instance, None)
     }

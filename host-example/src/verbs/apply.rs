@@ -18,6 +18,7 @@ use crate::apply::write::Format;
 use crate::error::{Error, Result};
 use crate::files;
 use crate::frames::FrameList;
+use crate::limits;
 use crate::loader::Library;
 use crate::stop::Stop;
 use crate::stylize::style::{Setting, Style};
@@ -96,13 +97,10 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let format = Format::of(files.output)?;
     let tasks = args.tasks()?;
     let library = Library::open()?;
+    let threads = limits::start_threads(args.threads as usize)?;
     let style = Style::load(&library, files.style, &args.set)?;
     let selection = args.selection(&style, format)?;
     let opened = args.open_first(&tasks, &selection)?;
-    if args.threads > 0 {
-        // It may have been set by an earlier run of this process.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(args.threads as usize).build_global();
-    }
     let backend = if args.dry_run { Backend::Cpu } else { args.backend };
     let mut planner = Planner::new(library.clone(), Style::load(&library, files.style, &args.set)?)?;
     let mut filter = Filter::new(library, style, backend, args.space, args.threads)?;
@@ -134,6 +132,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         selection: &selection,
         format,
         skip_existing: args.skip_existing,
+        threads,
         budget: &Budget::new(most.0),
         report: &report,
         stop: &stop,

@@ -10,6 +10,7 @@ use crate::apply::read;
 use crate::error::{Error, Result};
 use crate::files;
 use crate::frames::{FrameList, Pattern};
+use crate::limits;
 use crate::loader::Library;
 use crate::output::{self, Layer, Picture, Precision};
 use crate::render::targets::{Target, Targets};
@@ -75,6 +76,7 @@ pub struct RenderArgs {
 pub fn run(args: &RenderArgs) -> Result<()> {
     args.check()?;
     let library = args.is_stylized().then(Library::open).transpose()?;
+    limits::start_threads(0)?;
     let style = match &library {
         Some(library) => Some((library, Style::load(library, &args.style, &args.set)?)),
         None => None,

@@ -6,6 +6,7 @@ use clap::Args;
 
 use crate::error::{Error, Result};
 use crate::files;
+use crate::limits;
 use crate::sheet::{arranged, cells};
 
 /// Options of `sheet`.
@@ -41,6 +42,7 @@ pub fn run(args: &SheetArgs) -> Result<()> {
         return Err(Error::input("--label", problem, "give one for each picture, in their order"));
     }
     files::check_writable(&args.sheet)?;
+    limits::start_threads(0)?;
     let mut all = Vec::new();
     for (index, path) in args.pictures.iter().enumerate() {
         let label = args.label.get(index).cloned().unwrap_or_else(|| name(&args.pictures, path));

@@ -41,8 +41,7 @@ pub fn root() -> PathBuf {
 /// The program, which finds the library.
 pub fn isophote() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_isophote"));
-    // Mesa's device selection layer complains on standard error where there is no desktop.
-    command.env("ISOPHOTE_LIBRARY", library()).env("NODEVICE_SELECT", "1");
+    command.env("ISOPHOTE_LIBRARY", library());
     command
 }
 

@@ -1,0 +1,121 @@
+//! What the system refuses: memory and threads. The program ends in order or does with less.
+
+#![cfg(target_os = "linux")]
+
+mod support;
+
+use std::ffi::OsString;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use support::{cube, errors, folder, isophote, library, picture, succeeds};
+
+/// Says where the program lies.
+const PROGRAM: &str = env!("CARGO_BIN_EXE_isophote");
+
+/// The same command in a process that may have so many MiB of addresses.
+fn within(mebibytes: u64, command: &Command) -> Output {
+    let mut limited = Command::new("sh");
+    limited.arg("-c").arg(format!("ulimit -c 0; ulimit -v {}; exec \"$@\"", mebibytes * 1024)).arg("sh");
+    limited.arg(command.get_program()).args(command.get_args());
+    for (name, value) in command.get_envs() {
+        limited.env(name, value.unwrap_or_default());
+    }
+    // What the standard library prints of memory that is refused is one line then.
+    limited.env("RUST_BACKTRACE", "0");
+    limited
+        .current_dir(command.get_current_dir().expect("a folder"))
+        .output()
+        .expect("the shell can be started")
+}
+
+/// Runs the command with more and more memory. It ends well or with a sentence; returns how often it did which.
+fn sweep(limits: impl Iterator<Item = u64>, command: &Command) -> [usize; 2] {
+    let mut counts = [0; 2];
+    for limit in limits {
+        let output = within(limit, command);
+        let text = errors(&output);
+        // Where the system cannot load the program, and where it cannot make room for variables of threads, it ends
+        // the process itself.
+        if output.status.code() == Some(127) {
+            continue;
+        }
+        let is_said = text.starts_with("error: ") || text.starts_with("memory allocation of ");
+        match output.status.code() {
+            Some(0) => counts[0] += 1,
+            Some(1 | 2) if is_said && !text.contains("panicked") => counts[1] += 1,
+            _ => panic!("{limit} MiB: {}\n{text}", output.status),
+        }
+    }
+    counts
+}
+
+fn apply(folder: &Path, input: &str, output: &str) -> Command {
+    let mut command = isophote();
+    command.current_dir(folder).args(["apply", "cartoon", input, output, "--backend", "cpu"]);
+    command
+}
+
+#[test]
+fn apply_ends_in_order_without_memory() {
+    let folder = folder();
+    picture(900, 700).save(folder.path().join("in.png")).expect("the picture can be written");
+    succeeds(&mut apply(folder.path(), "in.png", "in.exr"));
+    for (input, output) in [("in.png", "out.png"), ("in.exr", "out.exr"), ("in.png", "out.exr")] {
+        let command = apply(folder.path(), input, output);
+        let [well, refused] = sweep((40..640).step_by(24).chain([4096]), &command);
+        assert!(well > 0 && refused > 0, "{input}: {well} ended well, {refused} were refused");
+    }
+    let left = support::listing(folder.path());
+    assert_eq!(left, ["in.exr", "in.png", "out.exr", "out.png"]);
+}
+
+#[test]
+fn render_ends_in_order_without_memory() {
+    let folder = folder();
+    cube(folder.path());
+    let mut command = isophote();
+    command.current_dir(folder.path()).args(["render", "cube.gltf", "out.exr", "--size", "160x90"]);
+    let [well, refused] = sweep((60..1200).step_by(100).chain([8192]), &command);
+    assert!(well > 0 && refused > 0, "{well} ended well, {refused} were refused");
+}
+
+#[test]
+fn without_threads_the_calling_one_does_it_all() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    picture(90, 70).save(at("in.0001.png")).expect("the picture can be written");
+    fs::copy(at("in.0001.png"), at("in.0002.png")).expect("the folder is writable");
+    // No address space holds such stacks.
+    let stack = OsString::from((1_u64 << 60).to_string());
+    succeeds(&mut apply(folder.path(), "in.####.png", "many.####.exr"));
+    succeeds(apply(folder.path(), "in.####.png", "one.####.exr").env("RUST_MIN_STACK", &stack));
+    succeeds(apply(folder.path(), "one.####.exr", "again.####.exr").env("RUST_MIN_STACK", &stack));
+    succeeds(&mut apply(folder.path(), "one.####.exr", "twice.####.exr"));
+    for frame in ["0001", "0002"] {
+        let read = |name: &str| fs::read(at(&format!("{name}.{frame}.exr"))).expect("it was written");
+        assert!(read("many") == read("one") && read("again") == read("twice"), "{frame}");
+    }
+    let mut missing = apply(folder.path(), "in.####.png", "other.####.png");
+    fs::write(at("in.0001.png"), "broken").expect("the folder is writable");
+    let output = missing.env("RUST_MIN_STACK", &stack).output().expect("the program can be started");
+    assert_eq!(output.status.code(), Some(2), "{}", errors(&output));
+    assert!(at("other.0002.png").is_file());
+}
+
+#[test]
+fn nothing_but_ours_is_said_where_nobody_is_logged_in() {
+    let folder = folder();
+    cube(folder.path());
+    picture(40, 30).save(folder.path().join("in.png")).expect("the picture can be written");
+    for arguments in [
+        ["render", "cube.gltf", "out.png", "--size", "64x36"],
+        ["apply", "gaussian", "in.png", "out.png", "--backend=auto"],
+    ] {
+        let mut command = Command::new(PROGRAM);
+        command.current_dir(folder.path()).args(arguments).env_clear().env("ISOPHOTE_LIBRARY", library());
+        let (printed, said) = succeeds(&mut command);
+        assert_eq!((printed.as_str(), said.as_str()), ("", ""), "{arguments:?}");
+    }
+}
