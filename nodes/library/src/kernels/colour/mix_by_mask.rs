@@ -17,12 +17,7 @@ crate::kernel!(mix_by_mask {
 });
 
 /// (1 - amount mask) first + amount mask second; `mask` has one channel, cut to 0..=1.
-pub fn pass(
-    plan: &mut PlanBuilder,
-    [first, second]: [ImageId; 2],
-    mask: ImageId,
-    amount: f32,
-) -> ImageId {
+pub fn pass(plan: &mut PlanBuilder, [first, second]: [ImageId; 2], mask: ImageId, amount: f32) -> ImageId {
     plan.pass(&KERNEL, &[first, second, mask], &Params { amount }, Class::Colour, Support::Pixels(0))
 }
 

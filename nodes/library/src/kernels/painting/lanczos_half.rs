@@ -32,7 +32,12 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, limited: bool) -> ImageId {
     let weights: [f64; 6] = std::array::from_fn(|i| lanczos((i as f64 + 0.5) / 2.0));
     let sum = 2.0 * weights.iter().sum::<f64>();
     let [a, b, c, d, e, f] = weights.map(|w| (w / sum) as f32);
-    let params = Params { near: [a, b, c, d], far: [e, f, 0.0, 0.0], limited: limited.into(), padding: Default::default() };
+    let params = Params {
+        near: [a, b, c, d],
+        far: [e, f, 0.0, 0.0],
+        limited: limited.into(),
+        padding: Default::default(),
+    };
     let level = plan.desc(color).level + 1;
     plan.pass_at(&KERNEL, &[color], &params, &[Class::Colour], Support::Pixels(5), level)
 }

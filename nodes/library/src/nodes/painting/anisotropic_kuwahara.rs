@@ -5,8 +5,8 @@ use crate::kernels::painting::anisotropic_kuwahara::{self as polynomial, Options
 use crate::kernels::painting::propagate_colour::{self, Params as Propagation};
 use crate::kernels::painting::{anisotropic_kuwahara_texture as texture, lanczos_half, propagate_tensor};
 use crate::nodes::painting::generalized_kuwahara::{Q, SECTORS, THRESHOLD, sectors};
-use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::nodes::structure::flow_map::Flow;
+use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Port, Scope};
 use isophote_engine::{ImageId, PlanBuilder};

@@ -34,11 +34,10 @@ pub static NODE: NodeSpec = NodeSpec {
 
 const STRENGTH: Param = Param::float("strength", "Strength", 1.0, [0.0, 1.0])
     .doc("How far the field gives way where alpha is 1.");
-const SOFTNESS: Param = Param::float("softness", "Softness", 8.0, [0.0, 64.0])
-    .slider(0.0, 32.0)
-    .pixels()
-    .structural()
-    .doc("Standard deviation of the Gaussian that smooths what was painted, so that directions turn gently.");
+const SOFTNESS: Param =
+    Param::float("softness", "Softness", 8.0, [0.0, 64.0]).slider(0.0, 32.0).pixels().structural().doc(
+        "Standard deviation of the Gaussian that smooths what was painted, so that directions turn gently.",
+    );
 const INVERT_Y: Param = Param::bool("invert_y", "Invert y", false)
     .doc("For maps whose green grows upwards, as OpenGL has it; off where it grows downwards.");
 
@@ -122,7 +121,8 @@ mod tests {
         let planned = Planned::new(graph, Request { guides, ..Request::new(SIDE, SIDE) }).unwrap();
         let (color, all) = (waves(), Rect::of_size(SIDE, SIDE));
         let inputs = [("color", &color), ("flow", flow)];
-        let results = CpuExecutor::new().run(planned.plan(), &inputs, all, &CallingThread, Control::default());
+        let results =
+            CpuExecutor::new().run(planned.plan(), &inputs, all, &CallingThread, Control::default());
         results.unwrap().remove(0)
     }
 

@@ -232,8 +232,12 @@ mod tests {
             }
             let has = |name: &str| self.images.iter().any(|(n, _)| *n == name);
             let mut request = Request::new(self.size[0], self.size[1]);
-            request.guides =
-                Guides { normal: has("normal"), depth: has("depth"), object_id: has("object_id"), ..Guides::default() };
+            request.guides = Guides {
+                normal: has("normal"),
+                depth: has("depth"),
+                object_id: has("object_id"),
+                ..Guides::default()
+            };
             Planned::new(&graph, request).unwrap()
         }
 

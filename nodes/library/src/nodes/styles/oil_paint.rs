@@ -7,8 +7,8 @@ use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options 
 use crate::kernels::smoothing::{flow_dilation, gaussian_blur};
 use crate::kernels::structure::noise;
 use crate::nodes::smoothing::line_integral_convolution as lic;
-use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::nodes::structure::flow_map;
+use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
 use crate::stages::abstraction::{self, Abstraction};
