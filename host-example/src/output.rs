@@ -173,6 +173,12 @@ pub fn warn(warning: impl Display) {
     let _ = writeln!(std::io::stderr(), "warning: {warning}");
 }
 
+/// Prints one of several errors on standard error.
+pub fn complain(error: &Error) {
+    // As for warnings; the exit code tells, too.
+    let _ = writeln!(std::io::stderr(), "error: {error}");
+}
+
 #[cfg(test)]
 mod tests {
     use std::fs;

@@ -105,3 +105,68 @@ fn presets_that_cannot_be_used_say_why() {
     }
     assert_eq!(listing(folder.path()), ["bad.json"]);
 }
+
+#[test]
+fn every_fault_of_a_preset_is_named_at_once() {
+    let folder = folder();
+    let text = r##"{"styl": "x", "look": 1, "style": "ink", "parameters": {"tonee": 1, "tone": 7, "grain": null,
+        "cover": {"1": false, "between": "linear"}, "a": {"x": 1, "2": [], "3": 0, "03": 1},
+        "line_color": {"1": "red", "5": "#ffffff", "9": "#ggg"}}}"##;
+    fs::write(folder.path().join("bad.json"), text).expect("a file can be written");
+    fs::write(folder.path().join("worse.json"), r#"{"parameters": {"a": {}, "b": {"1": {}}}}"#)
+        .expect("as above");
+    let mut command = isophote();
+    command.current_dir(folder.path()).args(["preset", "check", "bad.json", "worse.json"]);
+    let output = command.output().expect("the program starts");
+    assert_eq!(output.status.code(), Some(2));
+    let said = support::errors(&output);
+    let lines: Vec<&str> = said.lines().collect();
+    let wanted = [
+        "unknown key 'styl'",
+        "unknown key 'look'",
+        "'grain': cannot be null",
+        "'a': 'x' is no number of a frame",
+        "'a' at frame 2: cannot be []",
+        "'a': has frame 3 twice",
+        "'tonee'",
+        "'tone'",
+        "'cover': cannot change evenly",
+        "'line_color' at frame 1",
+        "'line_color' at frame 9",
+        "worse.json: names no style",
+        "'a': has no keyframe",
+        "'b' at frame 1: cannot be {}",
+        "2 of 2 cannot be used",
+    ];
+    assert_eq!(lines.len(), wanted.len(), "{said}");
+    for (line, words) in lines.iter().zip(wanted) {
+        assert!(line.starts_with("error: ") && line.contains(words), "'{line}' does not say {words}");
+    }
+}
+
+#[test]
+fn keyframes_beyond_the_frames_are_warned_of() {
+    let folder = folder();
+    let scene = cube(folder.path());
+    for frame in 3..=5 {
+        picture(24, 16).save(folder.path().join(format!("in.{frame:04}.png"))).expect("as below");
+    }
+    let keys = r##"{"style": "gaussian", "parameters": {"sigma": {"1": 0, "4": 8, "9": 1}}}"##;
+    fs::write(folder.path().join("keys.json"), keys).expect("a file can be written");
+    let mut render = isophote();
+    render.current_dir(folder.path()).arg("render").arg(&scene);
+    render.args(["out.####.png", "--size", "64x48", "--style", "keys.json", "--frames"]);
+    let mut apply = isophote();
+    apply.current_dir(folder.path()).args(["apply", "keys.json", "in.####.png", "out.####.png"]);
+    for (said, warning) in [
+        (succeeds(render.arg("2-4")).1, "keys.json: the keyframes 1,9 are outside the frames 2 to 4"),
+        (succeeds(&mut apply).1, "keys.json: the keyframes 1,9 are outside the frames 3 to 5"),
+        (succeeds(apply.args(["--set", "sigma=2"])).1, ""),
+    ] {
+        let warnings: Vec<&str> = said.lines().filter(|line| line.starts_with("warning: ")).collect();
+        match warning {
+            "" => assert!(warnings.is_empty(), "{said}"),
+            _ => assert!(warnings.len() == 1 && warnings[0].contains(warning), "{said}"),
+        }
+    }
+}

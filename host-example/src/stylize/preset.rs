@@ -71,43 +71,52 @@ impl Preset {
     /// [`Error::Input`] for what is no JSON, keys that are not known, naming the nearest, and values that no
     /// parameter can have.
     pub fn parse(path: &Path, text: &str) -> Result<Self> {
+        let (preset, faults) = Self::examine(path, text)?;
+        faults.into_iter().next().map_or(Ok(preset), Err)
+    }
+
+    /// As [`Preset::parse`], but goes on after what is wrong: what can be read, with all faults. The style is empty
+    /// where none can be read.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for what is no JSON object, of which nothing can be read.
+    pub fn examine(path: &Path, text: &str) -> Result<(Self, Vec<Error>)> {
         let fix = "correct the preset";
         let json: Value = serde_json::from_str(text)
             .map_err(|e| Error::file(path, format!("is no JSON: {e}"), "correct the file"))?;
         let Value::Object(mut file) = json else {
             return Err(Error::file(path, "is no preset: an object is wanted", fix));
         };
-        if let Some(key) = file.keys().find(|key| !KEYS.contains(&key.as_str())) {
+        let mut faults = Vec::new();
+        for key in file.keys().filter(|key| !KEYS.contains(&key.as_str())) {
             let known = nearest(key, KEYS.into_iter()).map_or_else(
                 || format!("the keys are {}", KEYS.join(" and ")),
                 |near| format!("did you mean '{near}'?"),
             );
-            return Err(Error::file(path, format!("has an unknown key '{}'", key.escape_default()), known));
+            faults.push(Error::file(path, format!("has an unknown key '{}'", key.escape_default()), known));
         }
         let style = match file.remove("style") {
             Some(Value::String(style)) => style,
-            Some(_) => return Err(Error::file(path, "its style is no text", "write the id of a node")),
-            None => {
-                return Err(Error::file(
-                    path,
-                    "names no style",
-                    "add \"style\": \"cartoon\" or another node",
-                ));
+            other => {
+                faults.push(match other {
+                    Some(_) => Error::file(path, "its style is no text", "write the id of a node"),
+                    None => Error::file(path, "names no style", "add \"style\": \"cartoon\" or another node"),
+                });
+                String::new()
             }
         };
-        let params = match file.remove("parameters") {
-            Some(Value::Object(params)) => params,
-            Some(_) => return Err(Error::file(path, "its parameters are no object", fix)),
-            None => Map::new(),
-        };
-        let params = params
-            .into_iter()
-            .map(|(name, value)| {
-                let place = format!("{}: parameter '{name}'", path.display());
-                Ok((name, track(&place, value)?))
-            })
-            .collect::<Result<_>>()?;
-        Ok(Self { style, params })
+        let mut params = Vec::new();
+        match file.remove("parameters") {
+            Some(Value::Object(object)) => {
+                for (name, value) in object {
+                    let place = format!("{}: parameter '{name}'", path.display());
+                    params.extend(track(&place, value, &mut faults).map(|track| (name, track)));
+                }
+            }
+            Some(_) => faults.push(Error::file(path, "its parameters are no object", fix)),
+            None => {}
+        }
+        Ok((Self { style, params }, faults))
     }
 
     /// The style as it is to be opened by a program whose folder is another than that of the preset at `path`:
@@ -148,14 +157,19 @@ pub fn is_graph(text: &str) -> bool {
     serde_json::from_str(text).is_ok_and(|json| has(&json, "nodes") || has(&json, "format"))
 }
 
-fn track(place: &str, value: Value) -> Result<Track> {
+/// What the file says of a parameter, unless it has faults, which are added.
+fn track(place: &str, value: Value, faults: &mut Vec<Error>) -> Option<Track> {
+    let before = faults.len();
     let Value::Object(object) = value else {
-        return Ok(Track::Still(text_of(place, &value)?));
+        return text_of(place, &value).map_err(|fault| faults.push(fault)).ok().map(Track::Still);
     };
     let (mut keys, mut step) = (Vec::new(), None);
     for (key, value) in object {
         if let Ok(frame) = key.parse::<i64>() {
-            keys.push((frame, text_of(place, &value)?));
+            match text_of(&format!("{place} at frame {frame}"), &value) {
+                Ok(text) => keys.push((frame, text)),
+                Err(fault) => faults.push(fault),
+            }
             continue;
         }
         step = match (key.as_str(), value.as_str()) {
@@ -163,7 +177,8 @@ fn track(place: &str, value: Value) -> Result<Track> {
             (BETWEEN, Some("linear")) => Some(false),
             (BETWEEN, _) => {
                 let fix = "write \"between\": \"linear\" or \"step\"";
-                return Err(Error::input(place, "does not say how values change between frames", fix));
+                faults.push(Error::input(place, "does not say how values change between frames", fix));
+                None
             }
             _ => {
                 let problem = format!("'{}' is no number of a frame", key.escape_default());
@@ -171,22 +186,21 @@ fn track(place: &str, value: Value) -> Result<Track> {
                     || "write keyframes such as {\"1001\": 2, \"1050\": 6}".to_owned(),
                     |near| format!("did you mean '{near}'?"),
                 );
-                return Err(Error::input(place, problem, fix));
+                faults.push(Error::input(place, problem, fix));
+                step
             }
         };
     }
     keys.sort_by_key(|(frame, _)| *frame);
-    if keys.is_empty() {
-        return Err(Error::input(
-            place,
-            "has no keyframe",
-            "write keyframes such as {\"1001\": 2, \"1050\": 6}",
-        ));
+    if keys.is_empty() && faults.len() == before {
+        let fix = "write keyframes such as {\"1001\": 2, \"1050\": 6}";
+        faults.push(Error::input(place, "has no keyframe", fix));
     }
-    if let Some(twice) = keys.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-        return Err(Error::input(place, format!("has frame {} twice", twice[0].0), "leave one of them out"));
+    for twice in keys.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+        let problem = format!("has frame {} twice", twice[0].0);
+        faults.push(Error::input(place, problem, "leave one of them out"));
     }
-    Ok(Track::Keys { keys, step })
+    (faults.len() == before).then_some(Track::Keys { keys, step })
 }
 
 /// A value as `--set` takes it.
@@ -259,6 +273,11 @@ impl Animated {
             .flatten()
             .map(|numbers| (numbers, matches!(kind, ParamKind::Int { .. })));
         Ok(Self { name: name.to_owned(), node, param: param.id.to_owned(), keys: keys.to_vec(), ramp })
+    }
+
+    /// Frames of the keys.
+    pub fn frames(&self) -> impl Iterator<Item = i64> {
+        self.keys.iter().map(|(frame, _)| *frame)
     }
 
     /// The value at a frame, as text.

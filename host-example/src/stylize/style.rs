@@ -7,8 +7,9 @@ use std::str::FromStr;
 
 use super::preset::{self, Animated, Preset, Track};
 use crate::error::{Error, Result};
-use crate::loader::catalogue::{Kind, Node, Port};
+use crate::loader::catalogue::{Kind, Node, Param, Port};
 use crate::loader::{Answer, Graph, Library, Refusal};
+use crate::{frames, output};
 
 /// Most bytes of a graph file; real ones have some thousands.
 const MOST_BYTES: u64 = 16 << 20;
@@ -89,19 +90,59 @@ impl Style {
     /// # Errors
     /// As [`Style::load`].
     pub fn any(library: &Library, name: impl AsRef<OsStr>, settings: &[Setting]) -> Result<Self> {
-        let Opened { graph, single, preset } = open(library, name.as_ref())?;
-        let name = name.as_ref().to_string_lossy().into_owned();
-        let kind =
-            graph.output_kind().map_err(|e| e.at(&name, "name the node whose output is the graph's"))?;
-        let mut style = Self { name, graph, kind, single, animated: Vec::new() };
+        let mut opened = open(library, name.as_ref())?;
+        let preset = opened.preset.take();
+        let mut style = Self::of(opened, name.as_ref())?;
+        let mut faults = Vec::new();
         for (param, track) in preset.iter().flat_map(|p| &p.params) {
-            style.follow(param, track)?;
+            style.follow(param, track, &mut faults);
+        }
+        if let Some(fault) = faults.into_iter().next() {
+            return Err(fault);
         }
         for setting in settings {
             let (node, _) = style.set(setting)?;
             style.animated.retain(|a| (a.node, &a.param) != (node, &setting.param));
         }
         Ok(style)
+    }
+
+    /// All that keeps the preset of the file `path` from being used, beside what [`Preset::examine`] finds.
+    pub fn faults(library: &Library, path: &Path, preset: &Preset) -> Vec<Error> {
+        let opened = inside(library, path, preset).and_then(|opened| Self::of(opened, path.as_os_str()));
+        let mut style = match opened {
+            Ok(style) => style,
+            Err(fault) => return vec![fault],
+        };
+        let mut faults = Vec::new();
+        for (param, track) in &preset.params {
+            style.follow(param, track, &mut faults);
+        }
+        faults
+    }
+
+    fn of(opened: Opened, name: &OsStr) -> Result<Self> {
+        let Opened { graph, single, .. } = opened;
+        let name = name.to_string_lossy().into_owned();
+        let kind =
+            graph.output_kind().map_err(|e| e.at(&name, "name the node whose output is the graph's"))?;
+        Ok(Self { name, graph, kind, single, animated: Vec::new() })
+    }
+
+    /// Warns of keyframes before and after all of `frames`.
+    pub fn warn_of_keys_beyond(&self, frames: &[i64]) {
+        let (Some(first), Some(last)) = (frames.iter().min(), frames.iter().max()) else { return };
+        let mut keys: Vec<i64> = self.animated.iter().flat_map(Animated::frames).collect();
+        keys.retain(|key| !(first..=last).contains(&key));
+        keys.sort_unstable();
+        keys.dedup();
+        if !keys.is_empty() {
+            output::warn(format_args!(
+                "{}: the keyframes {} are outside the frames {first} to {last}",
+                self.name,
+                frames::summary(&keys)
+            ));
+        }
     }
 
     /// Gives animated parameters their values at a frame, and says whether there are any.
@@ -126,32 +167,38 @@ impl Style {
         self.animated.iter().find(|a| a.name == name).map(|a| a.at(frame))
     }
 
-    /// Takes over what a preset says of a parameter.
-    fn follow(&mut self, name: &str, track: &Track) -> Result<()> {
+    /// Takes over what a preset says of a parameter. What it cannot take is added to `faults`.
+    fn follow(&mut self, name: &str, track: &Track, faults: &mut Vec<Error>) {
         let place = format!("{}: parameter '{name}'", self.name);
-        let named = |value: &str| {
-            let text = format!("{name}={value}");
-            text.parse::<Setting>()
-                .map_err(|_| Error::input(&place, "is no name", "write the id of a parameter"))
-        };
         match track {
-            Track::Still(value) => {
-                self.put(&named(value)?, &place)?;
-            }
+            Track::Still(value) => faults.extend(self.follow_value(name, value, &place).err()),
             Track::Keys { keys, step } => {
+                let mut refused = Vec::new();
                 // From the last to the first, whose value stays.
                 for (frame, value) in keys.iter().rev() {
-                    let setting = named(value)?;
-                    let (node, spec) = self.put(&setting, &format!("{place} at frame {frame}"))?;
-                    if *frame == keys[0].0
-                        && let Some(param) = spec.params.iter().find(|p| p.id == setting.param)
-                    {
-                        self.animated.push(Animated::new(&place, (name, node, param), keys, *step)?);
+                    let put = self.follow_value(name, value, &format!("{place} at frame {frame}"));
+                    let animated = put.and_then(|(node, param)| {
+                        let is_first = *frame == keys[0].0;
+                        is_first.then(|| Animated::new(&place, (name, node, &param), keys, *step)).transpose()
+                    });
+                    match animated {
+                        Ok(animated) => self.animated.extend(animated),
+                        Err(fault) => refused.push(fault),
                     }
                 }
+                faults.extend(refused.into_iter().rev());
             }
         }
-        Ok(())
+    }
+
+    /// Sets a parameter by the name that a preset has for it; returns the index of its node and what that says of it.
+    fn follow_value(&self, name: &str, value: &str, place: &str) -> Result<(u32, Param)> {
+        let unknown = || Error::input(place, "is no name", "write the id of a parameter");
+        let setting = format!("{name}={value}").parse::<Setting>().map_err(|_| unknown())?;
+        let (node, spec) = self.put(&setting, place)?;
+        // The node has taken a value for it.
+        let param = spec.params.into_iter().find(|p| p.id == setting.param).ok_or_else(unknown)?;
+        Ok((node, param))
     }
 
     /// Sets a parameter of the node that is named, or of the only one that has it. Returns the index of the node
@@ -248,6 +295,12 @@ fn open(library: &Library, style: &OsStr) -> Result<Opened> {
         return Ok(Opened { graph, single: false, preset: None });
     }
     let preset = Preset::parse(path, &json)?;
+    let opened = inside(library, path, &preset)?;
+    Ok(Opened { preset: Some(preset), ..opened })
+}
+
+/// The graph that the preset of the file `path` sets the parameters of.
+fn inside(library: &Library, path: &Path, preset: &Preset) -> Result<Opened> {
     let inner = preset.style_beside(path);
     if Path::new(&inner).is_file() && !preset::is_graph(&read(Path::new(&inner))?) {
         return Err(Error::file(
@@ -256,8 +309,7 @@ fn open(library: &Library, style: &OsStr) -> Result<Opened> {
             "name a node or a graph file",
         ));
     }
-    let opened = open(library, &inner).map_err(|e| e.within(path))?;
-    Ok(Opened { preset: Some(preset), ..opened })
+    open(library, &inner).map_err(|e| e.within(path))
 }
 
 fn read(path: &Path) -> Result<String> {

@@ -99,6 +99,11 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let library = Library::open()?;
     let threads = limits::start_threads(args.threads as usize)?;
     let style = Style::load(&library, files.style, &args.set)?;
+    if tasks.is_sequence {
+        let frames: Vec<i64> =
+            tasks.ready.iter().chain(&tasks.missing).filter_map(|task| task.frame).collect();
+        style.warn_of_keys_beyond(&frames);
+    }
     let selection = args.selection(&style, format)?;
     let opened = args.open_first(&tasks, &selection)?;
     let backend = if args.dry_run { Backend::Cpu } else { args.backend };

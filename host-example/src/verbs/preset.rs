@@ -164,8 +164,8 @@ fn show(library: &Library, file: &Path, frame: Option<i64>) -> Result<()> {
 fn check(library: &Library, files: &[PathBuf]) -> Result<()> {
     let mut wrong = 0;
     for file in files {
-        match open(library, file) {
-            Ok((_, preset)) => {
+        match faults(library, file) {
+            Ok((preset, faults)) if faults.is_empty() => {
                 let frames: Vec<i64> = preset.params.iter().flat_map(|(_, track)| track.frames()).collect();
                 let animated = match (frames.iter().min(), frames.iter().max()) {
                     (Some(first), Some(last)) => format!(", keyframes {first} to {last}"),
@@ -179,10 +179,13 @@ fn check(library: &Library, files: &[PathBuf]) -> Result<()> {
                     if count == 1 { "" } else { "s" }
                 ))?;
             }
-            Err(error @ Error::Failure { .. }) => return Err(error),
-            Err(error) => {
-                eprintln!("error: {error}");
+            Ok((_, faults)) => {
                 wrong += 1;
+                faults.into_iter().try_for_each(report)?;
+            }
+            Err(fault) => {
+                wrong += 1;
+                report(fault)?;
             }
         }
     }
@@ -193,16 +196,39 @@ fn check(library: &Library, files: &[PathBuf]) -> Result<()> {
     Ok(())
 }
 
+/// Prints what is wrong with a preset; what is wrong with the machine ends the run.
+fn report(fault: Error) -> Result<()> {
+    if let Error::Failure { .. } = fault {
+        return Err(fault);
+    }
+    output::complain(&fault);
+    Ok(())
+}
+
+/// What can be read of the preset of a file, and all that is wrong with it.
+fn faults(library: &Library, file: &Path) -> Result<(Preset, Vec<Error>)> {
+    let (preset, mut faults) = Preset::examine(file, &text(file)?)?;
+    if !preset.style.is_empty() {
+        faults.extend(Style::faults(library, file, &preset));
+    }
+    Ok((preset, faults))
+}
+
 /// The preset of a file, and the style that it makes.
 fn open(library: &Library, file: &Path) -> Result<(Style, Preset)> {
+    let preset = Preset::parse(file, &text(file)?)?;
+    let style = Style::any(library, file, &[])?;
+    Ok((style, preset))
+}
+
+/// The text of a preset.
+fn text(file: &Path) -> Result<String> {
     let text = fs::read_to_string(file)
         .map_err(|e| Error::file(file, format!("cannot be read: {e}"), "name a preset (.json)"))?;
     if preset::is_graph(&text) {
         return Err(Error::file(file, "is a graph and no preset", "name a preset"));
     }
-    let preset = Preset::parse(file, &text)?;
-    let style = Style::any(library, file, &[])?;
-    Ok((style, preset))
+    Ok(text)
 }
 
 /// The default of a parameter as `--set` takes it.

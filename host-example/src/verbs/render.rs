@@ -81,6 +81,9 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         Some(library) => Some((library, Style::load(library, &args.style, &args.set)?)),
         None => None,
     };
+    if let Some((_, style)) = &style {
+        style.warn_of_keys_beyond(args.frames.frames());
+    }
     let scene = args.scene.load()?;
     let options = args.options(&scene)?;
     let mut shot = Shot::new(scene, style, options)?;
