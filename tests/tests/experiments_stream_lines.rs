@@ -1,13 +1,14 @@
 //! Experiments on stream lines: their drift on a circular field (Figure 2.31), and the Gaussian along them
 //! on images that are constant on pixels (2.193).
 
-use isophote::kernels::shared::stream::Integrator;
+use isophote::kernels::shared::stream::{Integrator, STRETCH};
 use isophote::kernels::smoothing::cabral_leedom;
 use isophote::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
 use isophote::nodes::smoothing::line_integral_convolution::options;
 use isophote_engine::{Class, Image, PlanBuilder};
 use isophote_tests::compare::psnr;
 use isophote_tests::pictures::{self, Kind, from_fn};
+use isophote_tests::random::Random;
 use isophote_tests::run;
 use isophote_tests::table::Table;
 
@@ -62,10 +63,15 @@ fn euler_drifts_outwards_and_runge_kutta_does_not() {
 }
 
 #[test]
-fn stretched_steps_are_better_than_short_ones_of_first_order() {
+fn two_step_lines_are_as_good_as_runge_kuttas_and_stretched_ones_are_not() {
     let picture = pictures::scenery(240, 160);
+    let mut random = Random::new(63);
+    let noise = from_fn(240, 160, |_, _| {
+        let v = random.unit() as f32;
+        [v, v, v, 1.0]
+    });
     let tensors = run::node("structure_tensor", &[("rho", "1")], &picture);
-    let filtered = |options: &Options| {
+    let filtered = |picture: &Image, options: &Options| {
         let mut plan = PlanBuilder::new(240, 160).unwrap();
         let color = plan.input("color", 4, Class::Colour);
         let tensor = plan.input("tensor", 4, Class::Field);
@@ -77,25 +83,40 @@ fn stretched_steps_are_better_than_short_ones_of_first_order() {
     let mut table = Table::new(
         7,
         "§ 6.3",
-        "Distance from steps of a quarter of a pixel, dB, sigma 6",
-        &["largest turn", "not filtered", "Euler", "Runge-Kutta", "two-step, stretched"],
+        "Distance of lines in steps of one pixel from ones in steps of a quarter, dB, sigma 6, and noise that they leave",
+        &["largest turn", "not filtered", "Euler", "Runge-Kutta", "two-step", "two-step, stretched"],
     );
     for max_angle in [0.0, 90.0] {
-        let styles = Options { max_angle, ..options() };
-        let short = |integrator: Integrator, step: f32| Options { integrator, step, stretch: 1.0, ..styles };
-        let exact = filtered(&short(Integrator::Midpoint, 0.25));
-        let none = psnr(&picture, &exact);
-        let [euler, rk2, stretched] =
-            [short(Integrator::Euler, 1.0), short(Integrator::Midpoint, 1.0), styles]
-                .map(|options| psnr(&filtered(&options), &exact));
+        let usual = Options { max_angle, ..options() };
+        let all = [
+            Options { integrator: Integrator::Euler, ..usual },
+            Options { integrator: Integrator::Midpoint, ..usual },
+            usual,
+            Options { stretch: STRETCH, ..usual },
+        ];
+        let exact = Options { integrator: Integrator::Midpoint, step: 0.25, ..usual };
+        let [clean, rough] = [&picture, &noise].map(|picture| filtered(picture, &exact));
+        let none = psnr(&picture, &clean);
+        let near = all.map(|options| psnr(&filtered(&picture, &options), &clean));
+        let left = all.map(|options| deviation(&filtered(&noise, &options)) / deviation(&rough));
         let turn = if max_angle > 0.0 { format!("{max_angle} degrees") } else { "any".into() };
-        let distances = [none, euler, rk2, stretched].map(|distance| format!("{distance:.1}"));
-        table.row(&[&[turn], &distances[..]].concat());
-        assert!(stretched > euler + 4.0, "Euler {euler}, stretched {stretched}");
+        let cells = near.iter().zip(left).map(|(near, left)| format!("{near:.1}, x{left:.2}")).collect();
+        table.row(&[vec![turn, format!("{none:.1}")], cells].concat());
+        let [euler, rk2, two_step, stretched] = near;
+        assert!(two_step > rk2 - 2.5 && two_step > euler + 10.0, "{near:?}");
+        assert!(stretched < two_step - 1.5 && left[3] > left[2] + 0.1, "{near:?}, {left:?}");
         // Lines that end at once leave the picture as it is.
         assert!(stretched > none + 4.0, "not filtered {none}, stretched {stretched}");
     }
     table.print();
+}
+
+/// Standard deviation of the reds.
+fn deviation(image: &Image) -> f64 {
+    let reds = || image.data().iter().step_by(4).map(|v| f64::from(*v));
+    let count = reds().count() as f64;
+    let mean = reds().sum::<f64>() / count;
+    (reds().map(|v| (v - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
 #[test]
@@ -104,7 +125,7 @@ fn long_lines_of_short_steps_weigh_as_the_gaussian() {
     let sigma = 40.0;
     let picture = from_fn(400, 3, |x, _| if x == 200 { [1.0; 4] } else { [0.0, 0.0, 0.0, 1.0] });
     let tensors = from_fn(400, 3, |_, _| [0.0, 0.0, 1.0, 1.0]);
-    let options = Options { sigma, step: 0.25, stretch: 1.0, adapt: Adapt::None, ..options() };
+    let options = Options { sigma, step: 0.25, adapt: Adapt::None, ..options() };
     let mut plan = PlanBuilder::new(400, 3).unwrap();
     let color = plan.input("color", 4, Class::Colour);
     let tensor = plan.input("tensor", 4, Class::Field);
