@@ -7,6 +7,7 @@ pub mod drivers;
 pub mod error;
 pub mod files;
 pub mod frames;
+pub mod input;
 pub mod limits;
 pub mod loader;
 pub mod output;

@@ -102,6 +102,11 @@ fn pipes_and_devices_are_refused() {
     }
     assert!(fs::metadata(at("pipe.png")).expect("a pipe").file_type().is_fifo());
     assert_eq!(listing(folder.path()), ["in.png", "pipe.png", "zero.png"]);
+    // So are styles: nobody waits for one to be written.
+    fs::rename(at("pipe.png"), at("pipe.json")).expect("the folder is writable");
+    for arguments in [&["apply", "pipe.json", "in.png", "out.png"][..], &["preset", "show", "pipe.json"]] {
+        fails(isophote().current_dir(folder.path()).args(arguments), 2, &["pipe.json", "pipe or a device"]);
+    }
 }
 
 #[test]

@@ -5,7 +5,7 @@ use serde_json::json;
 use super::exr::Selection;
 use super::filter::Planner;
 use super::memory::{Bytes, Needs};
-use super::read;
+use super::read::{self, Unread};
 use super::sequence::{MOST_IN_FLIGHT, too_large};
 use super::tasks::{Task, Tasks};
 use crate::error::Result;
@@ -65,11 +65,12 @@ impl DryRun<'_> {
 
     /// Refuses what the run would refuse before it decodes the frame.
     fn check(&self, planner: &mut Planner, task: &Task) -> Result<()> {
-        let least = Bytes(read::length(&task.input));
+        let file = Unread::open(&task.input)?;
+        let least = Bytes(file.length());
         if least.0 > self.most.0 {
             return Err(too_large(&task.input, least, self.most));
         }
-        let opened = read::open(&task.input, self.selection)?;
+        let opened = file.read(&task.input, self.selection)?;
         match planner.needs(&task.input, task.frame, &opened)? {
             Some(needs) if needs.total() > self.most.0 => {
                 Err(too_large(&task.input, Bytes(needs.total()), self.most))

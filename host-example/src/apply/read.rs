@@ -1,7 +1,7 @@
 //! Pictures from files: PNG, JPEG, TIFF, WebP, HDR and EXR, recognized by their first bytes.
 
-use std::fs;
-use std::io::{self, Cursor};
+use std::fs::File;
+use std::io::{self, Cursor, Read};
 use std::path::Path;
 
 use image::codecs::hdr::HdrDecoder;
@@ -15,6 +15,7 @@ use super::exr::{self, ExrFile, Picture, Selection};
 use super::{jpeg, png};
 use crate::error::{Error, Result};
 use crate::frames;
+use crate::input;
 use crate::limits;
 use crate::pixels::{MOST_PIXELS, Pixels, Precision, Samples};
 
@@ -71,11 +72,61 @@ enum Kind {
 /// [`Error::Input`] when it is missing or cannot be read; when it is a damaged EXR file or one that lacks what
 /// `selection` chooses.
 pub fn open(path: &Path, selection: &Selection) -> Result<Opened> {
-    let bytes = bytes(path)?;
-    if bytes.starts_with(&EXR) {
-        return exr::Opened::new(path, bytes, selection).map(Kind::Exr).map(Opened);
+    Unread::open(path)?.read(path, selection)
+}
+
+/// An open file of which nothing is read yet. Whatever takes its place on disk meanwhile, this is what is read.
+#[derive(Debug)]
+pub struct Unread {
+    file: File,
+    length: u64,
+}
+
+impl Unread {
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when it is missing or cannot be opened; when it is a folder, or a pipe or a device, which might
+    /// not end.
+    pub fn open(path: &Path) -> Result<Self> {
+        let (file, found) = input::open(path).map_err(|e| unreadable(path, &e))?;
+        if found.is_dir() {
+            return Err(Error::file(path, "is a folder and cannot be read as a picture", hint(path)));
+        }
+        if !found.is_file() {
+            let problem = "is a pipe or a device and cannot be read as a picture";
+            return Err(Error::file(path, problem, "write the picture to a file first"));
+        }
+        Ok(Self { file, length: found.len() })
     }
-    Ok(Opened(Kind::Other(bytes, selection.option())))
+
+    /// Length of the file in bytes; no more is read.
+    pub fn length(&self) -> u64 {
+        self.length
+    }
+
+    /// Reads it.
+    ///
+    /// # Errors
+    /// As [`open`].
+    pub fn read(self, path: &Path, selection: &Selection) -> Result<Opened> {
+        let bytes = self.bytes(path)?;
+        if bytes.starts_with(&EXR) {
+            return exr::Opened::new(path, bytes, selection).map(Kind::Exr).map(Opened);
+        }
+        Ok(Opened(Kind::Other(bytes, selection.option())))
+    }
+
+    fn bytes(self, path: &Path) -> Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        let room = usize::try_from(self.length).ok().and_then(|length| bytes.try_reserve_exact(length).ok());
+        let read = match room {
+            Some(()) => self.file.take(self.length).read_to_end(&mut bytes),
+            None => Err(io::ErrorKind::OutOfMemory.into()),
+        };
+        read.map_err(|e| unreadable(path, &e))?;
+        Ok(bytes)
+    }
 }
 
 impl Opened {
@@ -128,26 +179,11 @@ impl Opened {
     }
 }
 
-/// The bytes of a file. Pipes and devices might not end.
-fn bytes(path: &Path) -> Result<Vec<u8>> {
-    let unreadable = |e: io::Error| match e.kind() {
+fn unreadable(path: &Path, problem: &io::Error) -> Error {
+    match problem.kind() {
         io::ErrorKind::OutOfMemory => limits::too_little(&path.display().to_string()),
-        _ => Error::file(path, format!("cannot be read: {e}"), hint(path)),
-    };
-    let found = fs::metadata(path).map_err(unreadable)?;
-    if found.is_dir() {
-        return Err(Error::file(path, "is a folder and cannot be read as a picture", hint(path)));
+        _ => Error::file(path, format!("cannot be read: {problem}"), hint(path)),
     }
-    if !found.is_file() {
-        let problem = "is a pipe or a device and cannot be read as a picture";
-        return Err(Error::file(path, problem, "write the picture to a file first"));
-    }
-    fs::read(path).map_err(unreadable)
-}
-
-/// Length of a file in bytes; nothing for what cannot be read, which is refused when it is.
-pub fn length(path: &Path) -> u64 {
-    fs::metadata(path).map_or(0, |found| found.len())
 }
 
 /// How to write what somebody may have meant who named this path.
@@ -160,7 +196,7 @@ fn hint(path: &Path) -> String {
 
 /// Whether a file is a whole picture, and no beginning of one.
 pub fn is_whole(path: &Path) -> bool {
-    let Ok(bytes) = bytes(path) else { return false };
+    let Ok(bytes) = Unread::open(path).and_then(|file| file.bytes(path)) else { return false };
     if bytes.starts_with(&EXR) {
         return exr::is_whole(bytes);
     }

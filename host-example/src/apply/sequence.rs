@@ -11,7 +11,7 @@ use std::thread::{Builder, Scope, ScopedJoinHandle};
 use super::exr::Selection;
 use super::filter::{Filter, Filtered, Planner};
 use super::memory::{Budget, Bytes, Needs, Share};
-use super::read::{self, Opened, Source};
+use super::read::{self, Opened, Source, Unread};
 use super::report::{Outcome, Report};
 use super::tasks::Task;
 use super::write::{self, Format};
@@ -132,8 +132,9 @@ impl Run<'_> {
         let opened = match early {
             Some(opened) => opened,
             None => {
-                grow(Needs { frame: read::length(&task.input), filter: 0 })?;
-                read::open(&task.input, self.selection)?
+                let file = Unread::open(&task.input)?;
+                grow(Needs { frame: file.length(), filter: 0 })?;
+                file.read(&task.input, self.selection)?
             }
         };
         if let Some(needs) = planner.needs(&task.input, task.frame, &opened)? {

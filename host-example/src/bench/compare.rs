@@ -1,12 +1,12 @@
 //! Measurements of another day, to set today's against.
 
-use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
 
 use super::entry::Entry;
 use crate::error::{Error, Result};
+use crate::input;
 
 /// Most bytes of a saved run; real ones have some hundred thousands.
 const MOST_BYTES: u64 = 64 << 20;
@@ -34,11 +34,7 @@ impl Saved {
     /// [`Error::Input`] when the file cannot be read or is none.
     pub fn read(path: &Path) -> Result<Self> {
         let fix = "give a file written by `isophote bench --save`";
-        let length = fs::metadata(path).map_err(|e| Error::file(path, e, fix))?.len();
-        if length > MOST_BYTES {
-            return Err(Error::file(path, "too long for a saved run", fix));
-        }
-        let text = fs::read_to_string(path).map_err(|e| Error::file(path, e, fix))?;
+        let text = input::text(path, MOST_BYTES).map_err(|e| Error::file(path, e, fix))?;
         Self::parse(&text).map_err(|problem| Error::file(path, problem, fix))
     }
 

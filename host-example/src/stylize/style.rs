@@ -1,7 +1,6 @@
 //! What `--style` and `--set` say, as a graph of the library.
 
 use std::ffi::OsStr;
-use std::fs;
 use std::path::Path;
 use std::str::FromStr;
 
@@ -9,7 +8,7 @@ use super::preset::{self, Animated, Preset, Track};
 use crate::error::{Error, Result};
 use crate::loader::catalogue::{Kind, Node, Param, Port};
 use crate::loader::{Answer, Graph, Library, Refusal};
-use crate::{frames, output};
+use crate::{frames, input, output};
 
 /// Most bytes of a graph file; real ones have some thousands.
 const MOST_BYTES: u64 = 16 << 20;
@@ -312,13 +311,13 @@ fn inside(library: &Library, path: &Path, preset: &Preset) -> Result<Opened> {
     open(library, &inner).map_err(|e| e.within(path))
 }
 
-fn read(path: &Path) -> Result<String> {
+/// The text of a graph file or a preset.
+///
+/// # Errors
+/// [`Error::Input`] when it cannot be read or is too large for either.
+pub fn read(path: &Path) -> Result<String> {
     let fix = "name a graph file or a preset (.json), or a node";
-    let size = fs::metadata(path).map_or(0, |m| m.len());
-    if size > MOST_BYTES {
-        return Err(Error::file(path, "is too large for a graph or a preset", fix));
-    }
-    fs::read_to_string(path).map_err(|e| Error::file(path, format!("cannot be read: {e}"), fix))
+    input::text(path, MOST_BYTES).map_err(|e| Error::file(path, format!("cannot be read: {e}"), fix))
 }
 
 /// Feeds what a single node needs and no picture gives, such as a tensor, from the first node of the catalogue

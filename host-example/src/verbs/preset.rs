@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::loader::Library;
 use crate::loader::catalogue::ParamKind;
 use crate::stylize::preset::{self, Preset, Track};
-use crate::stylize::style::{Setting, Style};
+use crate::stylize::style::{self, Setting, Style};
 use crate::{files, output};
 
 const AFTER_HELP: &str = "A parameter in the file may have keyframes instead of a value, such as \
@@ -84,7 +84,7 @@ fn save(library: &Library, base: &Path, file: &Path, settings: &[Setting], all: 
     let mut preset = if library.find_node(&style.name).is_ok() {
         Preset { style: style.name.clone(), params: Vec::new() }
     } else {
-        let text = fs::read_to_string(base).map_err(|e| Error::file(base, e, "name a readable file"))?;
+        let text = style::read(base)?;
         if preset::is_graph(&text) {
             Preset { style: from(file, base)?, params: Vec::new() }
         } else {
@@ -223,8 +223,7 @@ fn open(library: &Library, file: &Path) -> Result<(Style, Preset)> {
 
 /// The text of a preset.
 fn text(file: &Path) -> Result<String> {
-    let text = fs::read_to_string(file)
-        .map_err(|e| Error::file(file, format!("cannot be read: {e}"), "name a preset (.json)"))?;
+    let text = style::read(file)?;
     if preset::is_graph(&text) {
         return Err(Error::file(file, "is a graph and no preset", "name a preset"));
     }
