@@ -73,8 +73,21 @@ fn statuses<T: Copy + PartialEq + std::fmt::Debug>(ok: T, refused: T, mut call: 
     assert_eq!(call(), ok);
 }
 
-/// Computes a node on so many threads, 0 for one per core.
-fn node_on_threads(name: &str, node: &CStr, threads: u32) {
+/// Calls three times with as little memory as one call needs: what is enough once is enough again, whatever is kept
+/// from call to call.
+fn repeated<T: Copy + PartialEq + std::fmt::Debug>(ok: T, mut call: impl FnMut() -> T) {
+    let calls = (0..LIMITS).map(|step| within(step * STEP, || [call(), call(), call()]));
+    let enough: Vec<[T; 3]> = calls.filter(|[first, ..]| *first == ok).take(1).collect();
+    assert_eq!(enough, [[ok; 3]]);
+}
+
+/// Tries calls of `process` for a node on so many threads, 0 for one per core.
+fn node_on_threads(
+    name: &str,
+    node: &CStr,
+    threads: u32,
+    test: impl FnOnce(&mut dyn FnMut() -> IsophoteStatus),
+) {
     in_a_process(name, || {
         let library = Loaded::new();
         let api = library.api;
@@ -83,25 +96,36 @@ fn node_on_threads(name: &str, node: &CStr, threads: u32) {
         // SAFETY: the pointers lead to what the table asks for.
         let made = unsafe { (api.graph_create_single)(node.as_ptr(), null_mut(), &raw mut graph) };
         assert_eq!(made, ISOPHOTE_OK);
-        statuses(ISOPHOTE_OK, ISOPHOTE_OUT_OF_MEMORY, || process(api, graph, threads));
+        test(&mut || process(api, graph, threads));
         // SAFETY: the handle was made above.
         unsafe { (api.graph_destroy)(graph) };
     });
 }
 
+fn node_answers(name: &str, node: &CStr, threads: u32) {
+    node_on_threads(name, node, threads, |call| statuses(ISOPHOTE_OK, ISOPHOTE_OUT_OF_MEMORY, call));
+}
+
 #[test]
 fn process_answers_with_a_status() {
-    node_on_threads("process_answers_with_a_status", c"cartoon", 0);
+    node_answers("process_answers_with_a_status", c"cartoon", 0);
 }
 
 #[test]
 fn process_on_more_threads_answers_with_a_status() {
-    node_on_threads("process_on_more_threads_answers_with_a_status", c"generalized_kuwahara", 24);
+    node_answers("process_on_more_threads_answers_with_a_status", c"generalized_kuwahara", 24);
 }
 
 #[test]
 fn process_on_the_calling_thread_answers_with_a_status() {
-    node_on_threads("process_on_the_calling_thread_answers_with_a_status", c"coherence_enhancing", 1);
+    node_answers("process_on_the_calling_thread_answers_with_a_status", c"coherence_enhancing", 1);
+}
+
+#[test]
+fn memory_that_was_enough_is_enough_again() {
+    node_on_threads("memory_that_was_enough_is_enough_again", c"coherence_enhancing", 1, |call| {
+        repeated(ISOPHOTE_OK, call)
+    });
 }
 
 fn process(api: &IsophoteApi, graph: IsophoteGraph, threads: u32) -> IsophoteStatus {

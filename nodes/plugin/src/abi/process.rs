@@ -175,7 +175,7 @@ impl Job<'_> {
             image.must_hold(&window, &format!("input image '{}'", port.name))?;
             needed.push((*input, *image, window));
         }
-        must_fit(plan, &windows, device.is_some())?;
+        self.make_room(warm, device.is_some())?;
         let mut images = Vec::new();
         let mut replaced = 0;
         for (input, image, window) in needed {
@@ -187,8 +187,7 @@ impl Job<'_> {
         if self.has_light(&images) {
             let request = Request { emission: true, ..self.request };
             warm.plan_for(&self.object.snapshot(), &request)?;
-            let plan = warm.plan()?;
-            must_fit(plan, &plan.windows(self.region), device.is_some())?;
+            self.make_room(warm, device.is_some())?;
         }
         let images: Vec<(&str, &Image)> = images.iter().map(|(name, image)| (*name, image)).collect();
         let result = self.execute(warm, device, &images)?;
@@ -199,6 +198,18 @@ impl Job<'_> {
             ));
         }
         Ok((result, replaced))
+    }
+
+    /// Fails when there is no memory for the run, also not when what earlier runs left is given back.
+    fn make_room(&self, warm: &mut Warm, on_device: bool) -> Outcome<()> {
+        let fits = |warm: &Warm| {
+            let plan = warm.plan()?;
+            must_fit(plan, &plan.windows(self.region), on_device)
+        };
+        fits(warm).or_else(|_| {
+            warm.purge();
+            fits(warm)
+        })
     }
 
     /// Whether colour has light where coverage is 0 or little, which the plan does not know of.

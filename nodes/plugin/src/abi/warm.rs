@@ -51,6 +51,13 @@ impl Warm {
         Ok((plan, &mut self.cpu, &mut self.gpu))
     }
 
+    /// Gives back the memory kept for the next run on the CPU.
+    pub fn purge(&mut self) {
+        if let Some(cpu) = &mut self.cpu {
+            cpu.purge();
+        }
+    }
+
     /// Keeps the memory of a result for the next run on the CPU.
     pub fn recycle(&mut self, image: Image) {
         if let Some(cpu) = &mut self.cpu {
