@@ -390,8 +390,8 @@ fn impossible_requests_are_refused() {
     }
     let bad = [
         IsophoteRequest { space: 3, ..good },
-        IsophoteRequest { alpha: 2, ..good },
-        IsophoteRequest { guides: 8, ..good },
+        IsophoteRequest { alpha: 3, ..good },
+        IsophoteRequest { guides: 32, ..good },
     ];
     for request in bad {
         assert_eq!(make(request, None).0, ISOPHOTE_INVALID_ARGUMENT, "{request:?}");
