@@ -152,3 +152,16 @@ fn text(pipe: &mut impl Read) -> String {
     pipe.read_to_string(&mut text).unwrap();
     text
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn without_a_display_the_reason_is_the_system_s_own() {
+    let folder = support::folder();
+    let mut command = support::isophote();
+    command.arg("view").arg(support::cube(folder.path()));
+    for name in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        command.env_remove(name);
+    }
+    let problem = "error: no window can be opened: neither WAYLAND_DISPLAY";
+    support::fails(&mut command, 1, &[problem, "start the viewer in a desktop session"]);
+}

@@ -5,6 +5,7 @@ mod present;
 mod stage;
 pub mod viewer;
 
+use winit::error::EventLoopError;
 use winit::event_loop::EventLoop;
 
 use crate::error::{Error, Result};
@@ -29,15 +30,22 @@ Keys and mouse:
 /// [`Error::Failure`] without a display or a graphics device; [`Error::Input`] for scenes and styles that
 /// cannot be shown.
 pub fn show(viewer: Viewer, with_report: bool) -> Result<()> {
-    let failed =
-        |e| Error::failure(format!("no window can be opened: {e}"), "start the viewer in a desktop session");
-    let event_loop = EventLoop::new().map_err(|e| failed(e.to_string()))?;
+    let failed = |e: &EventLoopError| {
+        let problem = reason(&e.to_string()).to_owned();
+        Error::failure(format!("no window can be opened: {problem}"), "start the viewer in a desktop session")
+    };
+    let event_loop = EventLoop::new().map_err(|e| failed(&e))?;
     let mut app = App::new(viewer);
-    event_loop.run_app(&mut app).map_err(|e| failed(e.to_string()))?;
+    event_loop.run_app(&mut app).map_err(|e| failed(&e))?;
     if with_report {
         report(app.viewer())?;
     }
     app.failure.map_or(Ok(()), Err)
+}
+
+/// Why the system refuses a window, without the line of winit's source that the text begins with.
+fn reason(problem: &str) -> &str {
+    problem.split_once(".rs:").and_then(|(_, place)| place.split_once(": ")).map_or(problem, |(_, why)| why)
 }
 
 fn report(viewer: &Viewer) -> Result<()> {
