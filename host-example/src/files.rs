@@ -26,7 +26,7 @@ const MOST_LINKS: usize = 40;
 /// Temporary files of this process.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// What a file is written to by [`write`].
+/// What a file is written to by [`write()`].
 #[derive(Debug)]
 pub struct Sink<'a> {
     file: &'a mut File,
