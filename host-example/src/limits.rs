@@ -2,6 +2,7 @@
 
 use std::num::NonZero;
 use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::sync_channel;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, Builder};
 
@@ -75,15 +76,32 @@ pub fn start_threads(wanted: usize) -> Result<Threads> {
     }
 }
 
+/// Whether there is memory for a thread beside its stack: the standard library and the system's own need some when
+/// it begins, and panic where there is none.
+pub fn has_room_for_a_thread() -> bool {
+    const ROOM: usize = 8 << 20;
+    Vec::<u8>::new().try_reserve_exact(ROOM).is_ok()
+}
+
 /// How many threads the system gives this process now, up to `most`.
 fn available(most: usize) -> usize {
     let gate = Arc::new(Mutex::new(()));
     let closed = gate.lock().unwrap_or_else(PoisonError::into_inner);
-    let wait = || {
+    let start = || {
         let gate = Arc::clone(&gate);
-        move || drop(gate.lock().unwrap_or_else(PoisonError::into_inner))
+        let (up, is_up) = sync_channel(1);
+        let wait = move || {
+            // Whoever started it waits for that.
+            let _ = up.send(());
+            drop(gate.lock().unwrap_or_else(PoisonError::into_inner));
+        };
+        has_room_for_a_thread().then_some(())?;
+        let thread = Builder::new().spawn(wait).ok()?;
+        // One after the other: what a thread takes when it begins cannot be refused.
+        is_up.recv().ok()?;
+        Some(thread)
     };
-    let started: Vec<_> = (0..most).map_while(|_| Builder::new().spawn(wait()).ok()).collect();
+    let started: Vec<_> = (0..most).map_while(|_| start()).collect();
     drop(closed);
     // What they return is nothing.
     started.into_iter().filter_map(|thread| thread.join().ok()).count()

@@ -206,6 +206,9 @@ fn spawn<'scope, 'env, T: Send + 'scope>(
     scope: &'scope Scope<'scope, 'env>,
     work: impl FnOnce() -> T + Send + 'scope,
 ) -> Result<ScopedJoinHandle<'scope, T>> {
+    if !limits::has_room_for_a_thread() {
+        return Err(limits::too_little("another thread"));
+    }
     Builder::new()
         .spawn_scoped(scope, work)
         .map_err(|e| Error::failure(format!("a thread cannot be started: {e}"), "start again"))
