@@ -1,7 +1,35 @@
 /* Isophote: structure-adaptive stylization filters.
  *
- * The library exports one symbol, isophote_api; look it up with dlsym or GetProcAddress, ask it for
+ * The library exports one symbol, isophote_api. Look it up with dlsym or GetProcAddress, or link against it; ask it for
  * ISOPHOTE_ABI_VERSION, and call everything else through the table that it returns.
+ *
+ * Objects
+ *
+ *   IsophoteGraph   nodes, their parameters and connections
+ *   IsophotePlan    what a graph comes to for one size: textures and passes, for a graphics device of the host's own
+ *   IsophoteDevice  a graphics device of the library's own; {0} is the CPU
+ *
+ * Order of calls
+ *
+ *   api = isophote_api(ISOPHOTE_ABI_VERSION);
+ *   api->graph_create_single("cartoon", &error, &graph);
+ *   api->graph_set_float(graph, 0, "detail", 0.4);             as often as wanted
+ *   api->request_init(width, height, &request);
+ *   api->process(graph, cpu, &request, inputs, 1, NULL, &target, NULL, NULL);   for images in memory
+ *   api->graph_destroy(graph);
+ *
+ * A host that renders runs the plan instead:
+ *
+ *   api->plan_create(graph, &request, NULL, &error, &plan);
+ *   api->plan_textures(plan, &textures, &texture_count);         make those that are transient or an output
+ *   api->plan_passes(plan, &passes, &pass_count);
+ *   for (i = 0; i < pass_count; i++)
+ *       api->plan_shader(plan, i, ISOPHOTE_LANGUAGE_SPIRV, &shader);   make a pipeline of each kernel
+ *   each frame:
+ *       api->graph_set_float(...), api->plan_update(plan, graph, &change);
+ *       for (i = 0; i < pass_count; i++)
+ *           bind passes[i].grid and passes[i].params as uniforms, the textures passes[i].inputs and passes[i].outputs,
+ *           dispatch passes[i].workgroups, and let the next pass wait for what it reads
  *
  * SPDX-License-Identifier: MIT OR Apache-2.0
  */
@@ -14,6 +42,29 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* The calling convention of every function here. */
+#ifndef ISOPHOTE_ABI
+#ifdef _WIN32
+#define ISOPHOTE_ABI __cdecl
+#else
+#define ISOPHOTE_ABI
+#endif
+#endif
+
+/* How isophote_api is declared to hosts that link against the library. Define it as nothing before this header for
+ * a static library. */
+#ifndef ISOPHOTE_IMPORT
+#ifdef _WIN32
+#define ISOPHOTE_IMPORT __declspec(dllimport)
+#else
+#define ISOPHOTE_IMPORT
+#endif
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 // The version of this header. Ask `isophote_api` for it. A version is never changed once released:
 // what is new comes with a new number, and a library may offer several.
 #define ISOPHOTE_ABI_VERSION 1
@@ -22,52 +73,52 @@
 #define ISOPHOTE_OK 0
 
 // A null pointer, text that is not UTF-8, or a number that is none of the listed ones.
-#define ISOPHOTE_INVALID_ARGUMENT 1
+#define ISOPHOTE_ERROR_INVALID_ARGUMENT 1
 
 // A handle that was never given out, is of another kind, or whose object was destroyed.
-#define ISOPHOTE_INVALID_HANDLE 2
+#define ISOPHOTE_ERROR_INVALID_HANDLE 2
 
 // A node, parameter, port, option, input or index that does not exist.
-#define ISOPHOTE_UNKNOWN 3
+#define ISOPHOTE_ERROR_UNKNOWN 3
 
 // The parameter is of another kind than the function called.
-#define ISOPHOTE_WRONG_TYPE 4
+#define ISOPHOTE_ERROR_WRONG_TYPE 4
 
 // A value that the parameter cannot have: out of range, not finite, or text that does not read as one.
-#define ISOPHOTE_OUT_OF_RANGE 5
+#define ISOPHOTE_ERROR_OUT_OF_RANGE 5
 
 // Ports that do not fit, a cycle, a required input left open, or no output.
-#define ISOPHOTE_CONNECTION 6
+#define ISOPHOTE_ERROR_CONNECTION 6
 
 // A graph file that cannot be read as one.
-#define ISOPHOTE_MALFORMED 7
+#define ISOPHOTE_ERROR_MALFORMED 7
 
 // A size, stride or region that no image can have, or an image that does not cover what is needed.
-#define ISOPHOTE_GEOMETRY 8
+#define ISOPHOTE_ERROR_GEOMETRY 8
 
 // An input image is missing, or has a form that its port does not take.
-#define ISOPHOTE_INPUT 9
+#define ISOPHOTE_ERROR_INPUT 9
 
 // Something that this library does not do.
-#define ISOPHOTE_UNSUPPORTED 10
+#define ISOPHOTE_ERROR_UNSUPPORTED 10
 
 // The host asked to stop; the target image is as it was.
-#define ISOPHOTE_CANCELLED 11
+#define ISOPHOTE_ERROR_CANCELLED 11
 
 // There is no graphics adapter that can do the work.
-#define ISOPHOTE_NO_DEVICE 12
+#define ISOPHOTE_ERROR_NO_DEVICE 12
 
 // The graphics device reported an error or was lost; destroy it and create another.
-#define ISOPHOTE_DEVICE 13
+#define ISOPHOTE_ERROR_DEVICE 13
 
 // The system does not give the memory or the threads needed.
-#define ISOPHOTE_OUT_OF_MEMORY 14
+#define ISOPHOTE_ERROR_OUT_OF_MEMORY 14
 
 // The text did not fit into the buffer; it was cut, and `length` says how long it is.
-#define ISOPHOTE_TRUNCATED 15
+#define ISOPHOTE_ERROR_TRUNCATED 15
 
 // A mistake inside the library, which caught it; the object may be used further.
-#define ISOPHOTE_INTERNAL 16
+#define ISOPHOTE_ERROR_INTERNAL 16
 
 // RGBA.
 #define ISOPHOTE_KIND_COLOR 0
@@ -78,7 +129,7 @@
 // A symmetric 2x2 tensor (E, F, G) and its validity.
 #define ISOPHOTE_KIND_TENSOR 2
 
-// View-space normal x, y, z in -1..1 and its validity.
+// View-space normal x, y, z in -1 to 1 and its validity.
 #define ISOPHOTE_KIND_NORMAL 3
 
 // Distance from the camera, one channel, scene units; 0 or less where there is nothing.
@@ -103,7 +154,7 @@
 // One of several.
 #define ISOPHOTE_PARAM_CHOICE 3
 
-// RGBA, gamma-encoded sRGB, each 0..=1.
+// RGBA, gamma-encoded sRGB, each 0 to 1.
 #define ISOPHOTE_PARAM_COLOR 4
 
 // None.
@@ -112,7 +163,7 @@
 // Pixels of the full-size picture; scaled with the request's `scale`.
 #define ISOPHOTE_UNIT_PIXELS 1
 
-// Share of something, 0..100.
+// Share of something, 0 to 100.
 #define ISOPHOTE_UNIT_PERCENT 2
 
 // Degrees of angle.
@@ -326,8 +377,11 @@ typedef struct IsophoteText {
   size_t length;
 } IsophoteText;
 
-// A graph of nodes. Never 0; of one library in one process.
-typedef uint64_t IsophoteGraph;
+// A graph of nodes; of one library in one process. Its number is never 0.
+typedef struct IsophoteGraph {
+  // The handle.
+  uint64_t id;
+} IsophoteGraph;
 
 // Value of a parameter.
 typedef struct IsophoteValue {
@@ -349,9 +403,9 @@ typedef uint32_t IsophoteAlpha;
 
 // What the host wants of a graph.
 typedef struct IsophoteRequest {
-  // Width of the whole rendered picture in pixels, 1..=65536.
+  // Width of the whole rendered picture in pixels, 1 to 65536.
   uint32_t width;
-  // Height of the whole rendered picture in pixels, 1..=65536.
+  // Height of the whole rendered picture in pixels, 1 to 65536.
   uint32_t height;
   // Rendered size over full size, above 0 and at most 64: 0.5 for a half-size proxy. Scales every
   // parameter in pixels.
@@ -387,8 +441,11 @@ typedef struct IsophoteSupport {
   uint32_t global;
 } IsophoteSupport;
 
-// A graphics device of the library's own. Never 0.
-typedef uint64_t IsophoteDevice;
+// A graphics device of the library's own. Its number is 0 for none, which is the CPU.
+typedef struct IsophoteDevice {
+  // The handle.
+  uint64_t id;
+} IsophoteDevice;
 
 // How one sample of an image is stored, in the machine's byte order. One of `ISOPHOTE_SAMPLE_...`.
 typedef uint32_t IsophoteSample;
@@ -422,7 +479,7 @@ typedef struct IsophoteImage {
 
 // An image that enters a graph.
 typedef struct IsophoteInput {
-  // `color`, `normal`, `depth` or `object_id`.
+  // `color`, `normal`, `depth`, `object_id`, `mask` or `flow`.
   const char *name;
   // The pixels.
   struct IsophoteImage image;
@@ -451,18 +508,18 @@ typedef struct IsophoteTarget {
 
 // One job of a batch, to be called by the host's threads: job `index` of `batch`, each once, at the
 // same time or not.
-typedef void (*IsophoteJob)(uint64_t batch, uint32_t index);
+typedef void (ISOPHOTE_ABI *IsophoteJob)(uint64_t batch, uint32_t index);
 
 // The host's threads: calls `job(batch, 0)` ... `job(batch, jobs - 1)` and returns when all have
 // returned. Called on the thread that called the library. Jobs left out are then done there; a job
 // called later or with a wrong number does nothing.
-typedef void (*IsophoteRun)(void *user, uint32_t jobs, IsophoteJob job, uint64_t batch);
+typedef void (ISOPHOTE_ABI *IsophoteRun)(void *user, uint32_t jobs, IsophoteJob job, uint64_t batch);
 
-// Receives the share of the work done, 0..=1, on the thread that called the library.
-typedef void (*IsophoteProgress)(void *user, float done);
+// Receives the share of the work done, 0 to 1, on the thread that called the library.
+typedef void (ISOPHOTE_ABI *IsophoteProgress)(void *user, float done);
 
 // Asked often, on any thread; another value than 0 stops the work.
-typedef uint32_t (*IsophoteCancelled)(void *user);
+typedef uint32_t (ISOPHOTE_ABI *IsophoteCancelled)(void *user);
 
 // What one pass took on the CPU.
 typedef struct IsophotePassTime {
@@ -480,7 +537,7 @@ typedef struct IsophotePassTime {
 
 // Receives the time of each pass, in their order, when the work is done, on the thread that called
 // the library. On a device it is not called.
-typedef void (*IsophoteMeasured)(void *user, const struct IsophotePassTime *pass);
+typedef void (ISOPHOTE_ABI *IsophoteMeasured)(void *user, const struct IsophotePassTime *pass);
 
 // How work is done and watched. Callbacks may be null, must return normally (no exception, no
 // longjmp), and may themselves call the library.
@@ -508,8 +565,11 @@ typedef struct IsophoteReport {
   double seconds;
 } IsophoteReport;
 
-// A plan of passes as data. Never 0.
-typedef uint64_t IsophotePlan;
+// A plan of passes as data. Its number is never 0.
+typedef struct IsophotePlan {
+  // The handle.
+  uint64_t id;
+} IsophotePlan;
 
 // What an update of a plan came to. One of `ISOPHOTE_CHANGE_...`.
 typedef uint32_t IsophoteChange;
@@ -605,9 +665,14 @@ typedef struct IsophoteShader {
 
 // The functions of ABI version 1.
 //
-// Thread rules stand in brackets. [any thread]: no restriction. [one thread per object]: calls with
-// the same handle must not overlap in time; with different handles they may. Breaking the rule
-// crashes nothing, but it is open which call comes first and whose message is the last. An object
+// Tags in brackets say where and when a function may be called.
+//
+// `any-thread`: from any thread at any time. `object-thread`: calls with the same handle must not overlap in time; with
+// different handles they may. `not-while-processing`: so not while `process` runs on the same graph in another thread, nor
+// from the functions that `process` calls. `also-while-processing`: even then. `needs-output`: once the graph has an
+// output, that is after `graph_set_output`, `graph_create_single` or `graph_create_from_json`.
+//
+// Breaking a rule crashes nothing, but it is open which call comes first and whose message is the last. An object
 // may be destroyed while a call uses it: the call ends as if it were still there.
 //
 // Ownership: pointers handed in are read or written during the call only. Pointers handed out are
@@ -623,120 +688,125 @@ typedef struct IsophoteApi {
   uint32_t struct_size;
   // Version of the library, such as "0.1.0".
   const char *version;
-  // [any thread] Name of a status in lower case, such as "out of range"; never null.
-  const char *(*status_name)(IsophoteStatus status);
-  // [any thread] Ends the library's worker threads that are idle and gives back memory kept for
+  // [any-thread] Name of a status in lower case, such as "out of range"; never null.
+  const char *(ISOPHOTE_ABI *status_name)(IsophoteStatus status);
+  // [any-thread] Ends the library's worker threads that are idle and gives back memory kept for
   // later calls. Both return by themselves when they are needed.
-  IsophoteStatus (*trim)(void);
-  // [any thread] All nodes.
-  IsophoteStatus (*catalogue)(struct IsophoteCatalogue *catalogue);
-  // [any thread] The node of an id; the message of a failure names the nearest.
-  IsophoteStatus (*find_node)(const char *id,
+  IsophoteStatus (ISOPHOTE_ABI *trim)(void);
+  // [any-thread] All nodes.
+  IsophoteStatus (ISOPHOTE_ABI *catalogue)(struct IsophoteCatalogue *catalogue);
+  // [any-thread] The node of an id; the message of a failure names the nearest.
+  IsophoteStatus (ISOPHOTE_ABI *find_node)(const char *id,
                               struct IsophoteText *error,
                               const struct IsophoteNode **node);
-  // [any thread] Makes a graph without nodes. The caller owns it and destroys it.
-  IsophoteStatus (*graph_create)(struct IsophoteText *error, IsophoteGraph *graph);
-  // [any thread] Makes a graph of one node, index 0, named like its id: inputs that bear the name
-  // of a picture that enters (`color`, `normal`, `depth`, `object_id`) are connected to it, and
+  // [any-thread] Makes a graph without nodes. The caller owns it and destroys it.
+  IsophoteStatus (ISOPHOTE_ABI *graph_create)(struct IsophoteText *error, struct IsophoteGraph *graph);
+  // [any-thread] Makes a graph of one node, index 0, named like its id: inputs that bear the name
+  // of a picture that enters (`color`, `normal`, `depth`, `object_id`, `mask`, `flow`) are connected to it, and
   // the node's output is the graph's. The caller owns it and destroys it.
-  IsophoteStatus (*graph_create_single)(const char *node_id,
+  IsophoteStatus (ISOPHOTE_ABI *graph_create_single)(const char *node_id,
                                         struct IsophoteText *error,
-                                        IsophoteGraph *graph);
-  // [any thread] Makes a graph from JSON (format `isophote-graph`, version 1). The caller owns it
+                                        struct IsophoteGraph *graph);
+  // [any-thread] Makes a graph from JSON (format `isophote-graph`, version 1). The caller owns it
   // and destroys it.
-  IsophoteStatus (*graph_create_from_json)(const char *json,
+  IsophoteStatus (ISOPHOTE_ABI *graph_create_from_json)(const char *json,
                                            struct IsophoteText *error,
-                                           IsophoteGraph *graph);
-  // [any thread] Destroys a graph. Plans made from it live on.
-  IsophoteStatus (*graph_destroy)(IsophoteGraph graph);
-  // [one thread per object] Message of the last failed call on the graph; empty before the first.
-  IsophoteStatus (*graph_error)(IsophoteGraph graph, struct IsophoteText *text);
-  // [one thread per object] Writes the graph as JSON, with the parameters that differ from their
+                                           struct IsophoteGraph *graph);
+  // [any-thread, also-while-processing] Destroys a graph. Plans made from it live on.
+  IsophoteStatus (ISOPHOTE_ABI *graph_destroy)(struct IsophoteGraph graph);
+  // [object-thread, not-while-processing] Message of the last failed call on the graph; empty before the first.
+  IsophoteStatus (ISOPHOTE_ABI *graph_error)(struct IsophoteGraph graph, struct IsophoteText *text);
+  // [object-thread, not-while-processing] Writes the graph as JSON, with the parameters that differ from their
   // defaults, into the caller's buffer.
-  IsophoteStatus (*graph_to_json)(IsophoteGraph graph, struct IsophoteText *json);
-  // [one thread per object] Adds the node `node_id` under a name of its own, and writes its index to
+  IsophoteStatus (ISOPHOTE_ABI *graph_to_json)(struct IsophoteGraph graph, struct IsophoteText *json);
+  // [object-thread, not-while-processing] Adds the node `node_id` under a name of its own, and writes its index to
   // `node`.
-  IsophoteStatus (*graph_add)(IsophoteGraph graph,
+  IsophoteStatus (ISOPHOTE_ABI *graph_add)(struct IsophoteGraph graph,
                               const char *name,
                               const char *node_id,
                               uint32_t *node);
-  // [one thread per object] Number of nodes; their indices count from 0 in the order of addition.
-  IsophoteStatus (*graph_count)(IsophoteGraph graph, uint32_t *count);
-  // [one thread per object] Index of the node of a name.
-  IsophoteStatus (*graph_find)(IsophoteGraph graph, const char *name, uint32_t *node);
-  // [one thread per object] Name of a node within the graph, into the caller's buffer.
-  IsophoteStatus (*graph_name)(IsophoteGraph graph, uint32_t node, struct IsophoteText *name);
-  // [one thread per object] The declaration of a node.
-  IsophoteStatus (*graph_spec)(IsophoteGraph graph, uint32_t node, const struct IsophoteNode **spec);
-  // [one thread per object] Sets a parameter that is a number.
-  IsophoteStatus (*graph_set_float)(IsophoteGraph graph,
+  // [object-thread, not-while-processing] Number of nodes; their indices count from 0 in the order of addition.
+  IsophoteStatus (ISOPHOTE_ABI *graph_count)(struct IsophoteGraph graph, uint32_t *count);
+  // [object-thread, not-while-processing] Index of the node of a name.
+  IsophoteStatus (ISOPHOTE_ABI *graph_find)(struct IsophoteGraph graph, const char *name, uint32_t *node);
+  // [object-thread, not-while-processing] Name of a node within the graph, into the caller's buffer.
+  IsophoteStatus (ISOPHOTE_ABI *graph_name)(struct IsophoteGraph graph, uint32_t node, struct IsophoteText *name);
+  // [object-thread, not-while-processing] The declaration of a node.
+  IsophoteStatus (ISOPHOTE_ABI *graph_spec)(struct IsophoteGraph graph,
+                               uint32_t node,
+                               const struct IsophoteNode **spec);
+  // [object-thread, not-while-processing] Sets a parameter that is a number.
+  IsophoteStatus (ISOPHOTE_ABI *graph_set_float)(struct IsophoteGraph graph,
                                     uint32_t node,
                                     const char *param,
                                     double value);
-  // [one thread per object] Sets a parameter that is a whole number, or a number.
-  IsophoteStatus (*graph_set_int)(IsophoteGraph graph,
+  // [object-thread, not-while-processing] Sets a parameter that is a whole number, or a number.
+  IsophoteStatus (ISOPHOTE_ABI *graph_set_int)(struct IsophoteGraph graph,
                                   uint32_t node,
                                   const char *param,
                                   int32_t value);
-  // [one thread per object] Sets a switch: 0 is off, any other value on.
-  IsophoteStatus (*graph_set_bool)(IsophoteGraph graph,
+  // [object-thread, not-while-processing] Sets a switch: 0 is off, any other value on.
+  IsophoteStatus (ISOPHOTE_ABI *graph_set_bool)(struct IsophoteGraph graph,
                                    uint32_t node,
                                    const char *param,
                                    uint32_t value);
-  // [one thread per object] Sets a choice by the id of the option.
-  IsophoteStatus (*graph_set_choice)(IsophoteGraph graph,
+  // [object-thread, not-while-processing] Sets a choice by the id of the option.
+  IsophoteStatus (ISOPHOTE_ABI *graph_set_choice)(struct IsophoteGraph graph,
                                      uint32_t node,
                                      const char *param,
                                      const char *option);
-  // [one thread per object] Sets a colour: four numbers R, G, B, A, gamma-encoded sRGB, 0..=1.
-  IsophoteStatus (*graph_set_color)(IsophoteGraph graph,
+  // [object-thread, not-while-processing] Sets a colour: four numbers R, G, B, A, gamma-encoded sRGB, 0 to 1.
+  IsophoteStatus (ISOPHOTE_ABI *graph_set_color)(struct IsophoteGraph graph,
                                     uint32_t node,
                                     const char *param,
                                     const float *rgba);
-  // [one thread per object] Sets a parameter of any type from text as a person writes it: `2.5`,
+  // [object-thread, not-while-processing] Sets a parameter of any type from text as a person writes it: `2.5`,
   // `true`, `scharr3`, `#12407b`, `0.1,0.2,0.5`.
-  IsophoteStatus (*graph_set_text)(IsophoteGraph graph,
+  IsophoteStatus (ISOPHOTE_ABI *graph_set_text)(struct IsophoteGraph graph,
                                    uint32_t node,
                                    const char *param,
                                    const char *text);
-  // [one thread per object] Value of a parameter.
-  IsophoteStatus (*graph_get)(IsophoteGraph graph,
+  // [object-thread, not-while-processing] Value of a parameter.
+  IsophoteStatus (ISOPHOTE_ABI *graph_get)(struct IsophoteGraph graph,
                               uint32_t node,
                               const char *param,
                               struct IsophoteValue *value);
-  // [one thread per object] Connects the output of node `from` to an input of node `to`, instead of
+  // [object-thread, not-while-processing] Connects the output of node `from` to an input of node `to`, instead of
   // what was there. On failure the graph is as before.
-  IsophoteStatus (*graph_connect)(IsophoteGraph graph, uint32_t from, uint32_t to, const char *port);
-  // [one thread per object] Connects a picture that enters the graph (`color`, `normal`, `depth`,
+  IsophoteStatus (ISOPHOTE_ABI *graph_connect)(struct IsophoteGraph graph,
+                                  uint32_t from,
+                                  uint32_t to,
+                                  const char *port);
+  // [object-thread, not-while-processing] Connects a picture that enters the graph (`color`, `normal`, `depth`,
   // `object_id`) to an input of node `to`.
-  IsophoteStatus (*graph_connect_input)(IsophoteGraph graph,
+  IsophoteStatus (ISOPHOTE_ABI *graph_connect_input)(struct IsophoteGraph graph,
                                         const char *input,
                                         uint32_t to,
                                         const char *port);
-  // [one thread per object] Opens an input of node `to`.
-  IsophoteStatus (*graph_disconnect)(IsophoteGraph graph, uint32_t to, const char *port);
-  // [one thread per object] Makes the output of a node the graph's.
-  IsophoteStatus (*graph_set_output)(IsophoteGraph graph, uint32_t node);
-  // [one thread per object] What leaves the graph.
-  IsophoteStatus (*graph_output_kind)(IsophoteGraph graph, IsophoteKind *kind);
-  // [any thread] Fills a request for a whole picture: full scale, sRGB, premultiplied, no guides.
-  IsophoteStatus (*request_init)(uint32_t width, uint32_t height, struct IsophoteRequest *request);
-  // [one thread per object] What `region` of the result (null: the whole picture) reads of the input
+  // [object-thread, not-while-processing] Opens an input of node `to`.
+  IsophoteStatus (ISOPHOTE_ABI *graph_disconnect)(struct IsophoteGraph graph, uint32_t to, const char *port);
+  // [object-thread, not-while-processing] Makes the output of a node the graph's.
+  IsophoteStatus (ISOPHOTE_ABI *graph_set_output)(struct IsophoteGraph graph, uint32_t node);
+  // [object-thread, not-while-processing, needs-output] What leaves the graph.
+  IsophoteStatus (ISOPHOTE_ABI *graph_output_kind)(struct IsophoteGraph graph, IsophoteKind *kind);
+  // [any-thread] Fills a request for a whole picture: full scale, sRGB, premultiplied, no guides.
+  IsophoteStatus (ISOPHOTE_ABI *request_init)(uint32_t width, uint32_t height, struct IsophoteRequest *request);
+  // [object-thread, not-while-processing, needs-output] What `region` of the result (null: the whole picture) reads of the input
   // `input`, or of all inputs together when that is null.
-  IsophoteStatus (*graph_support)(IsophoteGraph graph,
+  IsophoteStatus (ISOPHOTE_ABI *graph_support)(struct IsophoteGraph graph,
                                   const struct IsophoteRequest *request,
                                   const struct IsophoteRect *region,
                                   const char *input,
                                   struct IsophoteSupport *support);
-  // [one thread per object] Computes `region` of the result (null: the whole picture) and writes it
+  // [object-thread, needs-output] Computes `region` of the result (null: the whole picture) and writes it
   // to `target`, which must hold it; other pixels stay as they are, and on any failure all do.
   //
   // `inputs` are `input_count` images that must each hold what `graph_support` names. Guides that
   // are not given count as open; inputs that the graph does not read are ignored. `device` is 0 for
   // the CPU, where a region is the same bit for bit whether it is computed alone or not. `control`
   // and `report` may be null. Memory is kept with the graph for the next call of the same request.
-  IsophoteStatus (*process)(IsophoteGraph graph,
-                            IsophoteDevice device,
+  IsophoteStatus (ISOPHOTE_ABI *process)(struct IsophoteGraph graph,
+                            struct IsophoteDevice device,
                             const struct IsophoteRequest *request,
                             const struct IsophoteInput *inputs,
                             uint32_t input_count,
@@ -744,69 +814,72 @@ typedef struct IsophoteApi {
                             const struct IsophoteTarget *target,
                             const struct IsophoteControl *control,
                             struct IsophoteReport *report);
-  // [any thread] Makes a plan that computes `region` (null: the whole picture) of what `graph` gives
+  // [any-thread, also-while-processing, needs-output] Makes a plan that computes `region` (null: the whole picture) of what `graph` gives
   // now, as data for the host's own graphics device. The caller owns it and destroys it.
-  IsophoteStatus (*plan_create)(IsophoteGraph graph,
+  IsophoteStatus (ISOPHOTE_ABI *plan_create)(struct IsophoteGraph graph,
                                 const struct IsophoteRequest *request,
                                 const struct IsophoteRect *region,
                                 struct IsophoteText *error,
-                                IsophotePlan *plan);
-  // [any thread] Destroys a plan and with it every texture and pass that it handed out.
-  IsophoteStatus (*plan_destroy)(IsophotePlan plan);
-  // [one thread per object] Message of the last failed call on the plan; empty before the first.
-  IsophoteStatus (*plan_error)(IsophotePlan plan, struct IsophoteText *text);
-  // [one thread per object] Takes over the parameters and connections that `graph` has now, and
+                                struct IsophotePlan *plan);
+  // [any-thread] Destroys a plan and with it every texture and pass that it handed out.
+  IsophoteStatus (ISOPHOTE_ABI *plan_destroy)(struct IsophotePlan plan);
+  // [object-thread] Message of the last failed call on the plan; empty before the first.
+  IsophoteStatus (ISOPHOTE_ABI *plan_error)(struct IsophotePlan plan, struct IsophoteText *text);
+  // [object-thread] Takes over the parameters and connections that `graph` has now, and
   // reports what changed. When only uniforms changed, the bytes that `IsophotePass` points to were
   // rewritten in place; when the structure changed, textures and passes must be asked for again
   // and earlier pointers are void. After a failure the plan is as before.
-  IsophoteStatus (*plan_update)(IsophotePlan plan, IsophoteGraph graph, IsophoteChange *change);
-  // [one thread per object] All textures: inputs, outputs, then transients. The array is the plan's,
+  IsophoteStatus (ISOPHOTE_ABI *plan_update)(struct IsophotePlan plan,
+                                struct IsophoteGraph graph,
+                                IsophoteChange *change);
+  // [object-thread] All textures: inputs, outputs, then transients. The array is the plan's,
   // until it is destroyed or its structure changes.
-  IsophoteStatus (*plan_textures)(IsophotePlan plan,
+  IsophoteStatus (ISOPHOTE_ABI *plan_textures)(struct IsophotePlan plan,
                                   const struct IsophoteTexture **textures,
                                   uint32_t *count);
-  // [one thread per object] All passes in the order of execution. The array and what it points to are
+  // [object-thread] All passes in the order of execution. The array and what it points to are
   // the plan's, until it is destroyed or its structure changes.
-  IsophoteStatus (*plan_passes)(IsophotePlan plan,
+  IsophoteStatus (ISOPHOTE_ABI *plan_passes)(struct IsophotePlan plan,
                                 const struct IsophotePass **passes,
                                 uint32_t *count);
-  // [one thread per object] The shader of pass `pass` in a language, translated when it is first asked
+  // [object-thread] The shader of pass `pass` in a language, translated when it is first asked
   // for. It is valid for the life of the process.
-  IsophoteStatus (*plan_shader)(IsophotePlan plan,
+  IsophoteStatus (ISOPHOTE_ABI *plan_shader)(struct IsophotePlan plan,
                                 uint32_t pass,
                                 IsophoteLanguage language,
                                 const struct IsophoteShader **shader);
-  // [any thread] Opens a graphics device of the library's own. `adapter` is `gpu` for hardware only,
+  // [any-thread] Opens a graphics device of the library's own. `adapter` is `gpu` for hardware only,
   // `software` for a driver on the CPU, or a part of the adapter's name; null takes the best there
   // is. Graphics drivers are loaded now and not before. The caller owns it and destroys it.
-  IsophoteStatus (*device_create)(const char *adapter,
+  IsophoteStatus (ISOPHOTE_ABI *device_create)(const char *adapter,
                                   struct IsophoteText *error,
-                                  IsophoteDevice *device);
-  // [any thread] Destroys a device, once the calls that use it have ended.
-  IsophoteStatus (*device_destroy)(IsophoteDevice device);
-  // [one thread per object] Message of the last failed call on the device; empty before the first.
-  IsophoteStatus (*device_error)(IsophoteDevice device, struct IsophoteText *text);
-  // [one thread per object] Name of the device's adapter, into the caller's buffer, and whether it
+                                  struct IsophoteDevice *device);
+  // [any-thread] Destroys a device, once the calls that use it have ended.
+  IsophoteStatus (ISOPHOTE_ABI *device_destroy)(struct IsophoteDevice device);
+  // [object-thread] Message of the last failed call on the device; empty before the first.
+  IsophoteStatus (ISOPHOTE_ABI *device_error)(struct IsophoteDevice device, struct IsophoteText *text);
+  // [object-thread] Name of the device's adapter, into the caller's buffer, and whether it
   // computes on the CPU (1). Each may be null.
-  IsophoteStatus (*device_name)(IsophoteDevice device, struct IsophoteText *name, uint32_t *software);
+  IsophoteStatus (ISOPHOTE_ABI *device_name)(struct IsophoteDevice device,
+                                struct IsophoteText *name,
+                                uint32_t *software);
+  // [any-thread] What an extension of this table offers, by its name: a struct that the extension's own header declares,
+  // valid for the life of the process. Null for names that this library does not know, an empty one and null.
+  const void *(ISOPHOTE_ABI *extension)(const char *id);
 } IsophoteApi;
 
 // The library's one symbol, `isophote_api`, as a host looks it up.
 //
-// [any thread] Returns the table of ABI version `abi_version`, or null when this library has none
+// [any-thread] Returns the table of ABI version `abi_version`, or null when this library has none
 // of that number. The table is the library's and valid until the library is unloaded.
-typedef const struct IsophoteApi *(*IsophoteEntry)(uint32_t abi_version);
+typedef const struct IsophoteApi *(ISOPHOTE_ABI *IsophoteEntry)(uint32_t abi_version);
 
-#ifdef __cplusplus
-extern "C" {
-#endif // __cplusplus
-
-// [any thread] Returns the table of ABI version `abi_version`, or null when this library has none of
+// [any-thread] Returns the table of ABI version `abi_version`, or null when this library has none of
 // that number. The table is the library's and valid for the life of the process.
-const struct IsophoteApi *isophote_api(uint32_t abi_version);
+ISOPHOTE_IMPORT const struct IsophoteApi *ISOPHOTE_ABI isophote_api(uint32_t abi_version);
 
 #ifdef __cplusplus
-}  // extern "C"
-#endif  // __cplusplus
+} /* extern "C" */
+#endif
 
 #endif  /* ISOPHOTE_H */

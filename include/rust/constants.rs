@@ -12,37 +12,37 @@ pub type IsophoteStatus = u32;
 /// Success.
 pub const ISOPHOTE_OK: u32 = 0;
 /// A null pointer, text that is not UTF-8, or a number that is none of the listed ones.
-pub const ISOPHOTE_INVALID_ARGUMENT: u32 = 1;
+pub const ISOPHOTE_ERROR_INVALID_ARGUMENT: u32 = 1;
 /// A handle that was never given out, is of another kind, or whose object was destroyed.
-pub const ISOPHOTE_INVALID_HANDLE: u32 = 2;
+pub const ISOPHOTE_ERROR_INVALID_HANDLE: u32 = 2;
 /// A node, parameter, port, option, input or index that does not exist.
-pub const ISOPHOTE_UNKNOWN: u32 = 3;
+pub const ISOPHOTE_ERROR_UNKNOWN: u32 = 3;
 /// The parameter is of another kind than the function called.
-pub const ISOPHOTE_WRONG_TYPE: u32 = 4;
+pub const ISOPHOTE_ERROR_WRONG_TYPE: u32 = 4;
 /// A value that the parameter cannot have: out of range, not finite, or text that does not read as one.
-pub const ISOPHOTE_OUT_OF_RANGE: u32 = 5;
+pub const ISOPHOTE_ERROR_OUT_OF_RANGE: u32 = 5;
 /// Ports that do not fit, a cycle, a required input left open, or no output.
-pub const ISOPHOTE_CONNECTION: u32 = 6;
+pub const ISOPHOTE_ERROR_CONNECTION: u32 = 6;
 /// A graph file that cannot be read as one.
-pub const ISOPHOTE_MALFORMED: u32 = 7;
+pub const ISOPHOTE_ERROR_MALFORMED: u32 = 7;
 /// A size, stride or region that no image can have, or an image that does not cover what is needed.
-pub const ISOPHOTE_GEOMETRY: u32 = 8;
+pub const ISOPHOTE_ERROR_GEOMETRY: u32 = 8;
 /// An input image is missing, or has a form that its port does not take.
-pub const ISOPHOTE_INPUT: u32 = 9;
+pub const ISOPHOTE_ERROR_INPUT: u32 = 9;
 /// Something that this library does not do.
-pub const ISOPHOTE_UNSUPPORTED: u32 = 10;
+pub const ISOPHOTE_ERROR_UNSUPPORTED: u32 = 10;
 /// The host asked to stop; the target image is as it was.
-pub const ISOPHOTE_CANCELLED: u32 = 11;
+pub const ISOPHOTE_ERROR_CANCELLED: u32 = 11;
 /// There is no graphics adapter that can do the work.
-pub const ISOPHOTE_NO_DEVICE: u32 = 12;
+pub const ISOPHOTE_ERROR_NO_DEVICE: u32 = 12;
 /// The graphics device reported an error or was lost; destroy it and create another.
-pub const ISOPHOTE_DEVICE: u32 = 13;
+pub const ISOPHOTE_ERROR_DEVICE: u32 = 13;
 /// The system does not give the memory or the threads needed.
-pub const ISOPHOTE_OUT_OF_MEMORY: u32 = 14;
+pub const ISOPHOTE_ERROR_OUT_OF_MEMORY: u32 = 14;
 /// The text did not fit into the buffer; it was cut, and `length` says how long it is.
-pub const ISOPHOTE_TRUNCATED: u32 = 15;
+pub const ISOPHOTE_ERROR_TRUNCATED: u32 = 15;
 /// A mistake inside the library, which caught it; the object may be used further.
-pub const ISOPHOTE_INTERNAL: u32 = 16;
+pub const ISOPHOTE_ERROR_INTERNAL: u32 = 16;
 
 /// What flows through a port. One of `ISOPHOTE_KIND_...`.
 pub type IsophoteKind = u32;
@@ -52,7 +52,7 @@ pub const ISOPHOTE_KIND_COLOR: u32 = 0;
 pub const ISOPHOTE_KIND_SCALAR: u32 = 1;
 /// A symmetric 2x2 tensor (E, F, G) and its validity.
 pub const ISOPHOTE_KIND_TENSOR: u32 = 2;
-/// View-space normal x, y, z in -1..1 and its validity.
+/// View-space normal x, y, z in -1 to 1 and its validity.
 pub const ISOPHOTE_KIND_NORMAL: u32 = 3;
 /// Distance from the camera, one channel, scene units; 0 or less where there is nothing.
 pub const ISOPHOTE_KIND_DEPTH: u32 = 4;
@@ -72,7 +72,7 @@ pub const ISOPHOTE_PARAM_INT: u32 = 1;
 pub const ISOPHOTE_PARAM_BOOL: u32 = 2;
 /// One of several.
 pub const ISOPHOTE_PARAM_CHOICE: u32 = 3;
-/// RGBA, gamma-encoded sRGB, each 0..=1.
+/// RGBA, gamma-encoded sRGB, each 0 to 1.
 pub const ISOPHOTE_PARAM_COLOR: u32 = 4;
 
 /// Unit of a parameter. One of `ISOPHOTE_UNIT_...`.
@@ -81,7 +81,7 @@ pub type IsophoteUnit = u32;
 pub const ISOPHOTE_UNIT_NONE: u32 = 0;
 /// Pixels of the full-size picture; scaled with the request's `scale`.
 pub const ISOPHOTE_UNIT_PIXELS: u32 = 1;
-/// Share of something, 0..100.
+/// Share of something, 0 to 100.
 pub const ISOPHOTE_UNIT_PERCENT: u32 = 2;
 /// Degrees of angle.
 pub const ISOPHOTE_UNIT_DEGREES: u32 = 3;

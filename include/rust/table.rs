@@ -2,19 +2,24 @@
 
 use super::constants::*;
 use super::types::*;
-use core::ffi::c_char;
+use core::ffi::{c_char, c_void};
 
 /// The library's one symbol, `isophote_api`, as a host looks it up.
 ///
-/// [any thread] Returns the table of ABI version `abi_version`, or null when this library has none
+/// [any-thread] Returns the table of ABI version `abi_version`, or null when this library has none
 /// of that number. The table is the library's and valid until the library is unloaded.
 pub type IsophoteEntry = Option<unsafe extern "C" fn(abi_version: u32) -> *const IsophoteApi>;
 
 /// The functions of ABI version 1.
 ///
-/// Thread rules stand in brackets. [any thread]: no restriction. [one thread per object]: calls with
-/// the same handle must not overlap in time; with different handles they may. Breaking the rule
-/// crashes nothing, but it is open which call comes first and whose message is the last. An object
+/// Tags in brackets say where and when a function may be called.
+///
+/// `any-thread`: from any thread at any time. `object-thread`: calls with the same handle must not overlap in time; with
+/// different handles they may. `not-while-processing`: so not while `process` runs on the same graph in another thread, nor
+/// from the functions that `process` calls. `also-while-processing`: even then. `needs-output`: once the graph has an
+/// output, that is after `graph_set_output`, `graph_create_single` or `graph_create_from_json`.
+///
+/// Breaking a rule crashes nothing, but it is open which call comes first and whose message is the last. An object
 /// may be destroyed while a call uses it: the call ends as if it were still there.
 ///
 /// Ownership: pointers handed in are read or written during the call only. Pointers handed out are
@@ -33,48 +38,48 @@ pub struct IsophoteApi {
     /// Version of the library, such as "0.1.0".
     pub version: *const c_char,
 
-    /// [any thread] Name of a status in lower case, such as "out of range"; never null.
+    /// [any-thread] Name of a status in lower case, such as "out of range"; never null.
     pub status_name: unsafe extern "C" fn(status: IsophoteStatus) -> *const c_char,
-    /// [any thread] Ends the library's worker threads that are idle and gives back memory kept for
+    /// [any-thread] Ends the library's worker threads that are idle and gives back memory kept for
     /// later calls. Both return by themselves when they are needed.
     pub trim: unsafe extern "C" fn() -> IsophoteStatus,
 
-    /// [any thread] All nodes.
+    /// [any-thread] All nodes.
     pub catalogue: unsafe extern "C" fn(catalogue: *mut IsophoteCatalogue) -> IsophoteStatus,
-    /// [any thread] The node of an id; the message of a failure names the nearest.
+    /// [any-thread] The node of an id; the message of a failure names the nearest.
     pub find_node: unsafe extern "C" fn(
         id: *const c_char,
         error: *mut IsophoteText,
         node: *mut *const IsophoteNode,
     ) -> IsophoteStatus,
 
-    /// [any thread] Makes a graph without nodes. The caller owns it and destroys it.
+    /// [any-thread] Makes a graph without nodes. The caller owns it and destroys it.
     pub graph_create:
         unsafe extern "C" fn(error: *mut IsophoteText, graph: *mut IsophoteGraph) -> IsophoteStatus,
-    /// [any thread] Makes a graph of one node, index 0, named like its id: inputs that bear the name
-    /// of a picture that enters (`color`, `normal`, `depth`, `object_id`) are connected to it, and
+    /// [any-thread] Makes a graph of one node, index 0, named like its id: inputs that bear the name
+    /// of a picture that enters (`color`, `normal`, `depth`, `object_id`, `mask`, `flow`) are connected to it, and
     /// the node's output is the graph's. The caller owns it and destroys it.
     pub graph_create_single: unsafe extern "C" fn(
         node_id: *const c_char,
         error: *mut IsophoteText,
         graph: *mut IsophoteGraph,
     ) -> IsophoteStatus,
-    /// [any thread] Makes a graph from JSON (format `isophote-graph`, version 1). The caller owns it
+    /// [any-thread] Makes a graph from JSON (format `isophote-graph`, version 1). The caller owns it
     /// and destroys it.
     pub graph_create_from_json: unsafe extern "C" fn(
         json: *const c_char,
         error: *mut IsophoteText,
         graph: *mut IsophoteGraph,
     ) -> IsophoteStatus,
-    /// [any thread] Destroys a graph. Plans made from it live on.
+    /// [any-thread, also-while-processing] Destroys a graph. Plans made from it live on.
     pub graph_destroy: unsafe extern "C" fn(graph: IsophoteGraph) -> IsophoteStatus,
-    /// [one thread per object] Message of the last failed call on the graph; empty before the first.
+    /// [object-thread, not-while-processing] Message of the last failed call on the graph; empty before the first.
     pub graph_error: unsafe extern "C" fn(graph: IsophoteGraph, text: *mut IsophoteText) -> IsophoteStatus,
-    /// [one thread per object] Writes the graph as JSON, with the parameters that differ from their
+    /// [object-thread, not-while-processing] Writes the graph as JSON, with the parameters that differ from their
     /// defaults, into the caller's buffer.
     pub graph_to_json: unsafe extern "C" fn(graph: IsophoteGraph, json: *mut IsophoteText) -> IsophoteStatus,
 
-    /// [one thread per object] Adds the node `node_id` under a name of its own, and writes its index to
+    /// [object-thread, not-while-processing] Adds the node `node_id` under a name of its own, and writes its index to
     /// `node`.
     pub graph_add: unsafe extern "C" fn(
         graph: IsophoteGraph,
@@ -82,57 +87,57 @@ pub struct IsophoteApi {
         node_id: *const c_char,
         node: *mut u32,
     ) -> IsophoteStatus,
-    /// [one thread per object] Number of nodes; their indices count from 0 in the order of addition.
+    /// [object-thread, not-while-processing] Number of nodes; their indices count from 0 in the order of addition.
     pub graph_count: unsafe extern "C" fn(graph: IsophoteGraph, count: *mut u32) -> IsophoteStatus,
-    /// [one thread per object] Index of the node of a name.
+    /// [object-thread, not-while-processing] Index of the node of a name.
     pub graph_find:
         unsafe extern "C" fn(graph: IsophoteGraph, name: *const c_char, node: *mut u32) -> IsophoteStatus,
-    /// [one thread per object] Name of a node within the graph, into the caller's buffer.
+    /// [object-thread, not-while-processing] Name of a node within the graph, into the caller's buffer.
     pub graph_name:
         unsafe extern "C" fn(graph: IsophoteGraph, node: u32, name: *mut IsophoteText) -> IsophoteStatus,
-    /// [one thread per object] The declaration of a node.
+    /// [object-thread, not-while-processing] The declaration of a node.
     pub graph_spec: unsafe extern "C" fn(
         graph: IsophoteGraph,
         node: u32,
         spec: *mut *const IsophoteNode,
     ) -> IsophoteStatus,
 
-    /// [one thread per object] Sets a parameter that is a number.
+    /// [object-thread, not-while-processing] Sets a parameter that is a number.
     pub graph_set_float: unsafe extern "C" fn(
         graph: IsophoteGraph,
         node: u32,
         param: *const c_char,
         value: f64,
     ) -> IsophoteStatus,
-    /// [one thread per object] Sets a parameter that is a whole number, or a number.
+    /// [object-thread, not-while-processing] Sets a parameter that is a whole number, or a number.
     pub graph_set_int: unsafe extern "C" fn(
         graph: IsophoteGraph,
         node: u32,
         param: *const c_char,
         value: i32,
     ) -> IsophoteStatus,
-    /// [one thread per object] Sets a switch: 0 is off, any other value on.
+    /// [object-thread, not-while-processing] Sets a switch: 0 is off, any other value on.
     pub graph_set_bool: unsafe extern "C" fn(
         graph: IsophoteGraph,
         node: u32,
         param: *const c_char,
         value: u32,
     ) -> IsophoteStatus,
-    /// [one thread per object] Sets a choice by the id of the option.
+    /// [object-thread, not-while-processing] Sets a choice by the id of the option.
     pub graph_set_choice: unsafe extern "C" fn(
         graph: IsophoteGraph,
         node: u32,
         param: *const c_char,
         option: *const c_char,
     ) -> IsophoteStatus,
-    /// [one thread per object] Sets a colour: four numbers R, G, B, A, gamma-encoded sRGB, 0..=1.
+    /// [object-thread, not-while-processing] Sets a colour: four numbers R, G, B, A, gamma-encoded sRGB, 0 to 1.
     pub graph_set_color: unsafe extern "C" fn(
         graph: IsophoteGraph,
         node: u32,
         param: *const c_char,
         rgba: *const f32,
     ) -> IsophoteStatus,
-    /// [one thread per object] Sets a parameter of any type from text as a person writes it: `2.5`,
+    /// [object-thread, not-while-processing] Sets a parameter of any type from text as a person writes it: `2.5`,
     /// `true`, `scharr3`, `#12407b`, `0.1,0.2,0.5`.
     pub graph_set_text: unsafe extern "C" fn(
         graph: IsophoteGraph,
@@ -140,7 +145,7 @@ pub struct IsophoteApi {
         param: *const c_char,
         text: *const c_char,
     ) -> IsophoteStatus,
-    /// [one thread per object] Value of a parameter.
+    /// [object-thread, not-while-processing] Value of a parameter.
     pub graph_get: unsafe extern "C" fn(
         graph: IsophoteGraph,
         node: u32,
@@ -148,11 +153,11 @@ pub struct IsophoteApi {
         value: *mut IsophoteValue,
     ) -> IsophoteStatus,
 
-    /// [one thread per object] Connects the output of node `from` to an input of node `to`, instead of
+    /// [object-thread, not-while-processing] Connects the output of node `from` to an input of node `to`, instead of
     /// what was there. On failure the graph is as before.
     pub graph_connect:
         unsafe extern "C" fn(graph: IsophoteGraph, from: u32, to: u32, port: *const c_char) -> IsophoteStatus,
-    /// [one thread per object] Connects a picture that enters the graph (`color`, `normal`, `depth`,
+    /// [object-thread, not-while-processing] Connects a picture that enters the graph (`color`, `normal`, `depth`,
     /// `object_id`) to an input of node `to`.
     pub graph_connect_input: unsafe extern "C" fn(
         graph: IsophoteGraph,
@@ -160,19 +165,19 @@ pub struct IsophoteApi {
         to: u32,
         port: *const c_char,
     ) -> IsophoteStatus,
-    /// [one thread per object] Opens an input of node `to`.
+    /// [object-thread, not-while-processing] Opens an input of node `to`.
     pub graph_disconnect:
         unsafe extern "C" fn(graph: IsophoteGraph, to: u32, port: *const c_char) -> IsophoteStatus,
-    /// [one thread per object] Makes the output of a node the graph's.
+    /// [object-thread, not-while-processing] Makes the output of a node the graph's.
     pub graph_set_output: unsafe extern "C" fn(graph: IsophoteGraph, node: u32) -> IsophoteStatus,
-    /// [one thread per object] What leaves the graph.
+    /// [object-thread, not-while-processing, needs-output] What leaves the graph.
     pub graph_output_kind:
         unsafe extern "C" fn(graph: IsophoteGraph, kind: *mut IsophoteKind) -> IsophoteStatus,
 
-    /// [any thread] Fills a request for a whole picture: full scale, sRGB, premultiplied, no guides.
+    /// [any-thread] Fills a request for a whole picture: full scale, sRGB, premultiplied, no guides.
     pub request_init:
         unsafe extern "C" fn(width: u32, height: u32, request: *mut IsophoteRequest) -> IsophoteStatus,
-    /// [one thread per object] What `region` of the result (null: the whole picture) reads of the input
+    /// [object-thread, not-while-processing, needs-output] What `region` of the result (null: the whole picture) reads of the input
     /// `input`, or of all inputs together when that is null.
     pub graph_support: unsafe extern "C" fn(
         graph: IsophoteGraph,
@@ -181,7 +186,7 @@ pub struct IsophoteApi {
         input: *const c_char,
         support: *mut IsophoteSupport,
     ) -> IsophoteStatus,
-    /// [one thread per object] Computes `region` of the result (null: the whole picture) and writes it
+    /// [object-thread, needs-output] Computes `region` of the result (null: the whole picture) and writes it
     /// to `target`, which must hold it; other pixels stay as they are, and on any failure all do.
     ///
     /// `inputs` are `input_count` images that must each hold what `graph_support` names. Guides that
@@ -200,7 +205,7 @@ pub struct IsophoteApi {
         report: *mut IsophoteReport,
     ) -> IsophoteStatus,
 
-    /// [any thread] Makes a plan that computes `region` (null: the whole picture) of what `graph` gives
+    /// [any-thread, also-while-processing, needs-output] Makes a plan that computes `region` (null: the whole picture) of what `graph` gives
     /// now, as data for the host's own graphics device. The caller owns it and destroys it.
     pub plan_create: unsafe extern "C" fn(
         graph: IsophoteGraph,
@@ -209,11 +214,11 @@ pub struct IsophoteApi {
         error: *mut IsophoteText,
         plan: *mut IsophotePlan,
     ) -> IsophoteStatus,
-    /// [any thread] Destroys a plan and with it every texture and pass that it handed out.
+    /// [any-thread] Destroys a plan and with it every texture and pass that it handed out.
     pub plan_destroy: unsafe extern "C" fn(plan: IsophotePlan) -> IsophoteStatus,
-    /// [one thread per object] Message of the last failed call on the plan; empty before the first.
+    /// [object-thread] Message of the last failed call on the plan; empty before the first.
     pub plan_error: unsafe extern "C" fn(plan: IsophotePlan, text: *mut IsophoteText) -> IsophoteStatus,
-    /// [one thread per object] Takes over the parameters and connections that `graph` has now, and
+    /// [object-thread] Takes over the parameters and connections that `graph` has now, and
     /// reports what changed. When only uniforms changed, the bytes that `IsophotePass` points to were
     /// rewritten in place; when the structure changed, textures and passes must be asked for again
     /// and earlier pointers are void. After a failure the plan is as before.
@@ -222,21 +227,21 @@ pub struct IsophoteApi {
         graph: IsophoteGraph,
         change: *mut IsophoteChange,
     ) -> IsophoteStatus,
-    /// [one thread per object] All textures: inputs, outputs, then transients. The array is the plan's,
+    /// [object-thread] All textures: inputs, outputs, then transients. The array is the plan's,
     /// until it is destroyed or its structure changes.
     pub plan_textures: unsafe extern "C" fn(
         plan: IsophotePlan,
         textures: *mut *const IsophoteTexture,
         count: *mut u32,
     ) -> IsophoteStatus,
-    /// [one thread per object] All passes in the order of execution. The array and what it points to are
+    /// [object-thread] All passes in the order of execution. The array and what it points to are
     /// the plan's, until it is destroyed or its structure changes.
     pub plan_passes: unsafe extern "C" fn(
         plan: IsophotePlan,
         passes: *mut *const IsophotePass,
         count: *mut u32,
     ) -> IsophoteStatus,
-    /// [one thread per object] The shader of pass `pass` in a language, translated when it is first asked
+    /// [object-thread] The shader of pass `pass` in a language, translated when it is first asked
     /// for. It is valid for the life of the process.
     pub plan_shader: unsafe extern "C" fn(
         plan: IsophotePlan,
@@ -245,7 +250,7 @@ pub struct IsophoteApi {
         shader: *mut *const IsophoteShader,
     ) -> IsophoteStatus,
 
-    /// [any thread] Opens a graphics device of the library's own. `adapter` is `gpu` for hardware only,
+    /// [any-thread] Opens a graphics device of the library's own. `adapter` is `gpu` for hardware only,
     /// `software` for a driver on the CPU, or a part of the adapter's name; null takes the best there
     /// is. Graphics drivers are loaded now and not before. The caller owns it and destroys it.
     pub device_create: unsafe extern "C" fn(
@@ -253,15 +258,19 @@ pub struct IsophoteApi {
         error: *mut IsophoteText,
         device: *mut IsophoteDevice,
     ) -> IsophoteStatus,
-    /// [any thread] Destroys a device, once the calls that use it have ended.
+    /// [any-thread] Destroys a device, once the calls that use it have ended.
     pub device_destroy: unsafe extern "C" fn(device: IsophoteDevice) -> IsophoteStatus,
-    /// [one thread per object] Message of the last failed call on the device; empty before the first.
+    /// [object-thread] Message of the last failed call on the device; empty before the first.
     pub device_error: unsafe extern "C" fn(device: IsophoteDevice, text: *mut IsophoteText) -> IsophoteStatus,
-    /// [one thread per object] Name of the device's adapter, into the caller's buffer, and whether it
+    /// [object-thread] Name of the device's adapter, into the caller's buffer, and whether it
     /// computes on the CPU (1). Each may be null.
     pub device_name: unsafe extern "C" fn(
         device: IsophoteDevice,
         name: *mut IsophoteText,
         software: *mut u32,
     ) -> IsophoteStatus,
+
+    /// [any-thread] What an extension of this table offers, by its name: a struct that the extension's own header declares,
+    /// valid for the life of the process. Null for names that this library does not know, an empty one and null.
+    pub extension: unsafe extern "C" fn(id: *const c_char) -> *const c_void,
 }

@@ -3,14 +3,29 @@
 use super::constants::*;
 use core::ffi::{c_char, c_void};
 
-/// A graph of nodes. Never 0; of one library in one process.
-pub type IsophoteGraph = u64;
+/// A graph of nodes; of one library in one process. Its number is never 0.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct IsophoteGraph {
+    /// The handle.
+    pub id: u64,
+}
 
-/// A plan of passes as data. Never 0.
-pub type IsophotePlan = u64;
+/// A plan of passes as data. Its number is never 0.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct IsophotePlan {
+    /// The handle.
+    pub id: u64,
+}
 
-/// A graphics device of the library's own. Never 0.
-pub type IsophoteDevice = u64;
+/// A graphics device of the library's own. Its number is 0 for none, which is the CPU.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct IsophoteDevice {
+    /// The handle.
+    pub id: u64,
+}
 
 /// The caller's buffer for a text that the library writes.
 ///
@@ -154,9 +169,9 @@ pub struct IsophoteValue {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IsophoteRequest {
-    /// Width of the whole rendered picture in pixels, 1..=65536.
+    /// Width of the whole rendered picture in pixels, 1 to 65536.
     pub width: u32,
-    /// Height of the whole rendered picture in pixels, 1..=65536.
+    /// Height of the whole rendered picture in pixels, 1 to 65536.
     pub height: u32,
     /// Rendered size over full size, above 0 and at most 64: 0.5 for a half-size proxy. Scales every
     /// parameter in pixels.
@@ -226,7 +241,7 @@ pub struct IsophoteTarget {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct IsophoteInput {
-    /// `color`, `normal`, `depth` or `object_id`.
+    /// `color`, `normal`, `depth`, `object_id`, `mask` or `flow`.
     pub name: *const c_char,
     /// The pixels.
     pub image: IsophoteImage,
@@ -254,7 +269,7 @@ pub type IsophoteJob = Option<unsafe extern "C" fn(batch: u64, index: u32)>;
 pub type IsophoteRun =
     Option<unsafe extern "C" fn(user: *mut c_void, jobs: u32, job: IsophoteJob, batch: u64)>;
 
-/// Receives the share of the work done, 0..=1, on the thread that called the library.
+/// Receives the share of the work done, 0 to 1, on the thread that called the library.
 pub type IsophoteProgress = Option<unsafe extern "C" fn(user: *mut c_void, done: f32)>;
 
 /// Asked often, on any thread; another value than 0 stops the work.

@@ -18,7 +18,8 @@ int main(int argc, char **argv)
     IsophoteTarget target = {0};
     IsophoteGraph graph;
     IsophotePlan plan;
-    IsophoteDevice device = 0;
+    const IsophoteDevice cpu = {0};
+    IsophoteDevice device;
 
     if (argc != 4) {
         fprintf(stderr, "usage: leave LIBRARY stay|unload cpu|gpu\n");
@@ -41,7 +42,7 @@ int main(int argc, char **argv)
     input.image.height = target.height;
     api->request_init(64, 48, &request);
     check(api, graph, "process",
-          api->process(graph, 0, &request, &input, 1, NULL, &target, NULL, NULL));
+          api->process(graph, cpu, &request, &input, 1, NULL, &target, NULL, NULL));
     if (api->plan_create(graph, &request, NULL, &error, &plan) != ISOPHOTE_OK)
         fail("plan_create", message);
     if (strcmp(argv[3], "gpu") == 0 && api->device_create(NULL, &error, &device) == ISOPHOTE_OK) {

@@ -20,6 +20,7 @@ int main(int argc, char **argv)
     IsophoteInput input = {0};
     IsophoteTarget target = {0};
     IsophoteGraph graph;
+    const IsophoteDevice cpu = {0};
     Picture picture;
     float done = 0.0f;
     uint32_t i, j;
@@ -61,7 +62,7 @@ int main(int argc, char **argv)
     control.progress = progress;
     api->request_init(picture.width, picture.height, &request);
     check(api, graph, argv[4],
-          api->process(graph, 0, &request, &input, 1, NULL, &target, &control, &report));
+          api->process(graph, cpu, &request, &input, 1, NULL, &target, &control, &report));
     write_ppm(argv[3], picture);
     printf("%ux%u pixels, %.0f %% done, %llu samples replaced\n", picture.width, picture.height, done * 100.0,
            (unsigned long long)report.replaced);

@@ -78,7 +78,7 @@ fn a_run_reports_progress_and_stops_when_asked() {
         run.control = Some(IsophoteControl { threads: 1, ..control(&watch) });
         let out = vec![-7.0_f32; data.len()];
         let (status, said, _) = run.run(&color(floats(&data)), &target(floats(&out)));
-        if status == ISOPHOTE_CANCELLED {
+        if status == ISOPHOTE_ERROR_CANCELLED {
             assert_eq!(said, "cancelled");
             assert!(out.iter().all(|v| *v == -7.0), "stopped at question {stop_after}");
         } else {
@@ -107,7 +107,7 @@ fn the_number_and_the_owner_of_threads_change_nothing() {
     run.control = Some(IsophoteControl { threads: 1025, ..control(&watch) });
     let out = vec![-7.0_f32; data.len()];
     let (status, said, _) = run.run(&color(floats(&data)), &target(floats(&out)));
-    assert_eq!(status, ISOPHOTE_OUT_OF_RANGE, "{said}");
+    assert_eq!(status, ISOPHOTE_ERROR_OUT_OF_RANGE, "{said}");
 }
 
 #[test]
@@ -170,7 +170,7 @@ fn a_graph_may_be_destroyed_while_it_runs() {
     let status = unsafe {
         (run.api.process)(
             run.graph,
-            0,
+            IsophoteDevice::default(),
             &raw const run.request,
             color(floats(&data)).as_ptr(),
             1,
@@ -182,7 +182,7 @@ fn a_graph_may_be_destroyed_while_it_runs() {
     };
     assert_eq!((status, out), (ISOPHOTE_OK, expected));
     // SAFETY: it takes any handle.
-    assert_eq!(unsafe { (run.api.graph_destroy)(run.graph) }, ISOPHOTE_INVALID_HANDLE);
+    assert_eq!(unsafe { (run.api.graph_destroy)(run.graph) }, ISOPHOTE_ERROR_INVALID_HANDLE);
 }
 
 #[test]
@@ -211,10 +211,10 @@ fn a_device_of_the_librarys_own_gives_the_same_picture() {
         let said = text(|t| {
             status = (run.api.device_create)(c"no such adapter".as_ptr(), t, &raw mut run.device);
         });
-        assert_eq!((status, run.device), (ISOPHOTE_NO_DEVICE, 0));
+        assert_eq!((status, run.device.id), (ISOPHOTE_ERROR_NO_DEVICE, 0));
         assert!(said.contains("adapter") && said.lines().count() == 1, "{said}");
         let said = text(|t| status = (run.api.device_create)(null(), t, &raw mut run.device));
-        if status == ISOPHOTE_NO_DEVICE && std::env::var("CI").is_err() {
+        if status == ISOPHOTE_ERROR_NO_DEVICE && std::env::var("CI").is_err() {
             eprintln!("\n*** SKIPPED: no graphics device: {said} ***\n");
             return;
         }
@@ -233,12 +233,12 @@ fn a_device_of_the_librarys_own_gives_the_same_picture() {
     // SAFETY: these take any handle.
     unsafe {
         assert_eq!((run.api.device_destroy)(run.device), ISOPHOTE_OK);
-        assert_eq!((run.api.device_destroy)(run.device), ISOPHOTE_INVALID_HANDLE);
+        assert_eq!((run.api.device_destroy)(run.device), ISOPHOTE_ERROR_INVALID_HANDLE);
     }
     let out = vec![-7.0_f32; data.len()];
     let (status, said, _) = run.run(&color(floats(&data)), &target(floats(&out)));
-    assert_eq!(status, ISOPHOTE_INVALID_HANDLE);
+    assert_eq!(status, ISOPHOTE_ERROR_INVALID_HANDLE);
     assert!(said.contains("device"), "{said}");
-    run.device = 0;
+    run.device = IsophoteDevice::default();
     assert_eq!(run.result(&color(floats(&data))), expected);
 }

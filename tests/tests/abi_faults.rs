@@ -12,7 +12,7 @@ fn c(text: &str) -> CString {
 
 /// A graph of one node, by handle.
 fn single(api: &IsophoteApi, node: &str) -> IsophoteGraph {
-    let mut graph = 0;
+    let mut graph = IsophoteGraph::default();
     // SAFETY: the pointers lead to what the table asks for.
     let status = unsafe { (api.graph_create_single)(c(node).as_ptr(), null_mut(), &raw mut graph) };
     assert_eq!(status, ISOPHOTE_OK);
@@ -28,8 +28,9 @@ type Call = (&'static str, fn(&IsophoteApi, u64) -> IsophoteStatus);
 
 /// Calls of functions of the table on a handle.
 macro_rules! calls {
-    ($handle:ident: $($name:ident($($argument:expr),*))*) => {
-        [$((stringify!($name), |api, $handle| {
+    ($type:ident $handle:ident: $($name:ident($($argument:expr),*))*) => {
+        [$((stringify!($name), |api, id| {
+            let $handle = $type { id };
             let _ = $handle;
             // SAFETY: that handles are wrong and pointers null is what must not matter.
             unsafe { (api.$name)($($argument),*) }
@@ -38,7 +39,7 @@ macro_rules! calls {
 }
 
 /// Functions that are not called on a graph, a plan or a device: everything null.
-const FREE: [Call; 8] = calls! { h:
+const FREE: [Call; 8] = calls! { IsophoteGraph h:
     catalogue(null_mut())
     find_node(null(), null_mut(), null_mut())
     graph_create(null_mut(), null_mut())
@@ -50,7 +51,7 @@ const FREE: [Call; 8] = calls! { h:
 };
 
 /// Functions on a graph, every pointer null. The last two have no pointer, and succeed.
-const GRAPH: [Call; 22] = calls! { h:
+const GRAPH: [Call; 22] = calls! { IsophoteGraph h:
     graph_error(h, null_mut())
     graph_to_json(h, null_mut())
     graph_add(h, null(), null(), null_mut())
@@ -70,15 +71,15 @@ const GRAPH: [Call; 22] = calls! { h:
     graph_disconnect(h, 0, null())
     graph_output_kind(h, null_mut())
     graph_support(h, null(), null(), null(), null_mut())
-    process(h, 0, null(), null(), 0, null(), null(), null(), null_mut())
+    process(h, IsophoteDevice::default(), null(), null(), 0, null(), null(), null(), null_mut())
     graph_set_output(h, 0)
     graph_destroy(h)
 };
 
 /// Functions on a plan, every pointer null.
-const PLAN: [Call; 6] = calls! { h:
+const PLAN: [Call; 6] = calls! { IsophotePlan h:
     plan_error(h, null_mut())
-    plan_update(h, 0, null_mut())
+    plan_update(h, IsophoteGraph::default(), null_mut())
     plan_textures(h, null_mut(), null_mut())
     plan_passes(h, null_mut(), null_mut())
     plan_shader(h, 0, 0, null_mut())
@@ -86,7 +87,7 @@ const PLAN: [Call; 6] = calls! { h:
 };
 
 /// Functions on a device, every pointer null.
-const DEVICE: [Call; 3] = calls! { h:
+const DEVICE: [Call; 3] = calls! { IsophoteDevice h:
     device_error(h, null_mut())
     device_name(h, null_mut(), null_mut())
     device_destroy(h)
@@ -110,44 +111,53 @@ fn every_function_is_in_these_lists() {
 }
 
 #[test]
+fn unknown_extensions_are_null() {
+    let library = Loaded::new();
+    for id in [null(), c"".as_ptr(), c"isophote.none".as_ptr(), c"\xff".as_ptr()] {
+        // SAFETY: text with a closing zero, or null.
+        assert!(unsafe { (library.api.extension)(id) }.is_null());
+    }
+}
+
+#[test]
 fn stale_foreign_and_invented_handles_are_noticed() {
     let library = Loaded::new();
     let api = library.api;
     let graph = single(api, "gaussian");
     let stale = single(api, "gaussian");
     let request = request(api, 8, 8);
-    let mut plan = 0;
+    let mut plan = IsophotePlan::default();
     // SAFETY: the pointers lead to what the table asks for.
     unsafe {
         assert_eq!((api.graph_destroy)(stale), ISOPHOTE_OK);
         let status = (api.plan_create)(graph, &raw const request, null(), null_mut(), &raw mut plan);
         assert_eq!(status, ISOPHOTE_OK);
     }
-    let invented = [0, 1, 0xdead_beef, u64::MAX, stale, graph ^ (1 << 24), graph + 1000];
+    let invented = [0, 1, 0xdead_beef, u64::MAX, stale.id, graph.id ^ (1 << 24), graph.id + 1000];
     for (calls, foreign) in
-        [(&GRAPH[..], &[plan][..]), (&PLAN[..], &[graph][..]), (&DEVICE[..], &[graph, plan][..])]
+        [(&GRAPH[..], &[plan.id][..]), (&PLAN[..], &[graph.id][..]), (&DEVICE[..], &[graph.id, plan.id][..])]
     {
         for handle in invented.iter().chain(foreign) {
             for (name, call) in calls {
-                assert_eq!(call(api, *handle), ISOPHOTE_INVALID_HANDLE, "{name}({handle:#x})");
+                assert_eq!(call(api, *handle), ISOPHOTE_ERROR_INVALID_HANDLE, "{name}({handle:#x})");
             }
         }
     }
     // SAFETY: as before; here the place for the handle is there, and must become 0.
     unsafe {
-        for handle in invented {
-            let mut made = 77;
+        for handle in invented.map(|id| IsophoteGraph { id }) {
+            let mut made = IsophotePlan { id: 77 };
             let mut status = 0;
             let said = text(|t| {
                 status = (api.plan_create)(handle, &raw const request, null(), t, &raw mut made);
             });
-            assert_eq!((status, made), (ISOPHOTE_INVALID_HANDLE, 0));
+            assert_eq!((status, made.id), (ISOPHOTE_ERROR_INVALID_HANDLE, 0));
             assert!(said.contains("graph"), "{said}");
             status = (api.plan_update)(plan, handle, &raw mut status);
-            assert_eq!(status, ISOPHOTE_INVALID_HANDLE);
+            assert_eq!(status, ISOPHOTE_ERROR_INVALID_HANDLE);
         }
         assert_eq!((api.plan_destroy)(plan), ISOPHOTE_OK);
-        assert_eq!((api.plan_destroy)(plan), ISOPHOTE_INVALID_HANDLE);
+        assert_eq!((api.plan_destroy)(plan), ISOPHOTE_ERROR_INVALID_HANDLE);
         assert_eq!((api.graph_destroy)(graph), ISOPHOTE_OK);
     }
 }
@@ -157,26 +167,26 @@ fn null_pointers_are_named() {
     let library = Loaded::new();
     let api = library.api;
     for (name, call) in FREE {
-        assert_eq!(call(api, single(api, "gaussian")), ISOPHOTE_INVALID_ARGUMENT, "{name}");
+        assert_eq!(call(api, single(api, "gaussian").id), ISOPHOTE_ERROR_INVALID_ARGUMENT, "{name}");
     }
     let graph = single(api, "gaussian");
     for (name, call) in &GRAPH[..GRAPH.len() - 2] {
-        assert_eq!(call(api, graph), ISOPHOTE_INVALID_ARGUMENT, "{name}");
+        assert_eq!(call(api, graph.id), ISOPHOTE_ERROR_INVALID_ARGUMENT, "{name}");
         if *name != "graph_error" {
             assert!(message(api, graph).ends_with(" is null"), "{name}: {}", message(api, graph));
         }
     }
     let request = request(api, 8, 8);
-    let mut plan = 0;
+    let mut plan = IsophotePlan::default();
     // SAFETY: the pointers lead to what the table asks for.
     unsafe {
         (api.plan_create)(graph, &raw const request, null(), null_mut(), &raw mut plan);
         for (name, call) in &PLAN[..PLAN.len() - 1] {
-            assert_eq!(call(api, plan), ISOPHOTE_INVALID_ARGUMENT, "{name}");
+            assert_eq!(call(api, plan.id), ISOPHOTE_ERROR_INVALID_ARGUMENT, "{name}");
         }
         let mut shader = null();
-        assert_eq!((api.plan_shader)(plan, 99, 0, &raw mut shader), ISOPHOTE_UNKNOWN);
-        assert_eq!((api.plan_shader)(plan, 0, 99, &raw mut shader), ISOPHOTE_INVALID_ARGUMENT);
+        assert_eq!((api.plan_shader)(plan, 99, 0, &raw mut shader), ISOPHOTE_ERROR_UNKNOWN);
+        assert_eq!((api.plan_shader)(plan, 0, 99, &raw mut shader), ISOPHOTE_ERROR_INVALID_ARGUMENT);
         let said = text(|t| assert_eq!((api.plan_error)(plan, t), ISOPHOTE_OK));
         assert_eq!(said, "99 is no shader language");
         assert_eq!((api.plan_destroy)(plan), ISOPHOTE_OK);
@@ -211,26 +221,30 @@ impl Called<'_> {
         // SAFETY: the texts end with zeros.
         unsafe {
             for value in [f64::NAN, f64::INFINITY, -1.0, 1e300, -1e-300 - 1.0] {
-                check((api.graph_set_float)(graph, 0, rho, value), ISOPHOTE_OUT_OF_RANGE, "'rho'");
+                check((api.graph_set_float)(graph, 0, rho, value), ISOPHOTE_ERROR_OUT_OF_RANGE, "'rho'");
             }
             let (misspelt, sobal) = (c("rhoo"), c("sobal"));
             let unknown = (api.graph_set_float)(graph, 0, misspelt.as_ptr(), 1.0);
-            check(unknown, ISOPHOTE_UNKNOWN, "did you mean 'rho'?");
-            check((api.graph_set_float)(graph, 7, rho, 1.0), ISOPHOTE_UNKNOWN, "no node 7");
+            check(unknown, ISOPHOTE_ERROR_UNKNOWN, "did you mean 'rho'?");
+            check((api.graph_set_float)(graph, 7, rho, 1.0), ISOPHOTE_ERROR_UNKNOWN, "no node 7");
             let last = (api.graph_set_float)(graph, u32::MAX, rho, 1.0);
-            check(last, ISOPHOTE_UNKNOWN, "no node 4294967295");
-            check((api.graph_set_bool)(graph, 0, rho, 1), ISOPHOTE_WRONG_TYPE, "graph_set_float");
+            check(last, ISOPHOTE_ERROR_UNKNOWN, "no node 4294967295");
+            check((api.graph_set_bool)(graph, 0, rho, 1), ISOPHOTE_ERROR_WRONG_TYPE, "graph_set_float");
             let color = [0.5_f32; 4];
-            check((api.graph_set_color)(graph, 0, rho, color.as_ptr()), ISOPHOTE_WRONG_TYPE, "is a number");
+            check(
+                (api.graph_set_color)(graph, 0, rho, color.as_ptr()),
+                ISOPHOTE_ERROR_WRONG_TYPE,
+                "is a number",
+            );
             let number = (api.graph_set_float)(graph, 0, derivative, 1.0);
-            check(number, ISOPHOTE_WRONG_TYPE, "graph_set_choice");
+            check(number, ISOPHOTE_ERROR_WRONG_TYPE, "graph_set_choice");
             let choice = (api.graph_set_choice)(graph, 0, derivative, sobal.as_ptr());
-            check(choice, ISOPHOTE_UNKNOWN, "did you mean 'sobel'?");
+            check(choice, ISOPHOTE_ERROR_UNKNOWN, "did you mean 'sobel'?");
             let wide = c("wide");
             let worded = (api.graph_set_text)(graph, 0, rho, wide.as_ptr());
-            check(worded, ISOPHOTE_OUT_OF_RANGE, "not 'wide'");
+            check(worded, ISOPHOTE_ERROR_OUT_OF_RANGE, "not 'wide'");
             let bytes = (api.graph_set_float)(graph, 0, c"\xff\xfe".as_ptr(), 1.0);
-            check(bytes, ISOPHOTE_INVALID_ARGUMENT, "not UTF-8");
+            check(bytes, ISOPHOTE_ERROR_INVALID_ARGUMENT, "not UTF-8");
         }
     }
 
@@ -241,11 +255,11 @@ impl Called<'_> {
         let check = |status, expected, part| self.check(status, expected, part);
         // SAFETY: the texts end with zeros.
         unsafe {
-            check((api.graph_connect)(graph, 0, 0, color), ISOPHOTE_CONNECTION, "takes color");
-            check((api.graph_connect)(graph, 0, 0, colour), ISOPHOTE_UNKNOWN, "'color'");
-            check((api.graph_connect_input)(graph, depth, 0, color), ISOPHOTE_CONNECTION, "not depth");
-            check((api.graph_connect_input)(graph, dept, 0, depth), ISOPHOTE_UNKNOWN, "object_id");
-            check((api.graph_set_output)(graph, 1), ISOPHOTE_UNKNOWN, "no node 1");
+            check((api.graph_connect)(graph, 0, 0, color), ISOPHOTE_ERROR_CONNECTION, "takes color");
+            check((api.graph_connect)(graph, 0, 0, colour), ISOPHOTE_ERROR_UNKNOWN, "'color'");
+            check((api.graph_connect_input)(graph, depth, 0, color), ISOPHOTE_ERROR_CONNECTION, "not depth");
+            check((api.graph_connect_input)(graph, dept, 0, depth), ISOPHOTE_ERROR_UNKNOWN, "object_id");
+            check((api.graph_set_output)(graph, 1), ISOPHOTE_ERROR_UNKNOWN, "no node 1");
         }
     }
 
@@ -258,9 +272,9 @@ impl Called<'_> {
                 unsafe { (self.api.graph_add)(self.graph, name.as_ptr(), node.as_ptr(), &raw mut index) };
             self.check(status, expected, part);
         };
-        check("structure_tensor", "gaussian", ISOPHOTE_INVALID_ARGUMENT, "two nodes");
-        check("", "gaussian", ISOPHOTE_INVALID_ARGUMENT, "cannot name");
-        check("new", "gausian", ISOPHOTE_UNKNOWN, "did you mean 'gaussian'?");
+        check("structure_tensor", "gaussian", ISOPHOTE_ERROR_INVALID_ARGUMENT, "two nodes");
+        check("", "gaussian", ISOPHOTE_ERROR_INVALID_ARGUMENT, "cannot name");
+        check("new", "gausian", ISOPHOTE_ERROR_UNKNOWN, "did you mean 'gaussian'?");
     }
 
     /// What is right still works, and can be read back.
@@ -302,34 +316,34 @@ fn broken_graph_files_are_refused_with_a_reason() {
     let api = Loaded::new();
     let api = api.api;
     let cases = [
-        ("", ISOPHOTE_MALFORMED, "not a graph file"),
-        ("{", ISOPHOTE_MALFORMED, "line 1"),
-        ("[]", ISOPHOTE_MALFORMED, "not a graph file"),
-        (r#"{"format":"x","version":1,"nodes":[],"output":"a"}"#, ISOPHOTE_MALFORMED, "'x'"),
-        (r#"{"format":"isophote-graph","version":1,"nodes":[],"output":"a"}"#, ISOPHOTE_UNKNOWN, "'a'"),
+        ("", ISOPHOTE_ERROR_MALFORMED, "not a graph file"),
+        ("{", ISOPHOTE_ERROR_MALFORMED, "line 1"),
+        ("[]", ISOPHOTE_ERROR_MALFORMED, "not a graph file"),
+        (r#"{"format":"x","version":1,"nodes":[],"output":"a"}"#, ISOPHOTE_ERROR_MALFORMED, "'x'"),
+        (r#"{"format":"isophote-graph","version":1,"nodes":[],"output":"a"}"#, ISOPHOTE_ERROR_UNKNOWN, "'a'"),
         (
             r#"{"format":"isophote-graph","version":1,"nodes":[{"name":"a","node":"blur"}],"output":"a"}"#,
-            ISOPHOTE_UNKNOWN,
+            ISOPHOTE_ERROR_UNKNOWN,
             "'blur'",
         ),
         (
             r#"{"format":"isophote-graph","version":1,"nodes":[{"name":"a","node":"gaussian","params":{"sigma":-3}}],"output":"a"}"#,
-            ISOPHOTE_OUT_OF_RANGE,
+            ISOPHOTE_ERROR_OUT_OF_RANGE,
             "'sigma'",
         ),
         (
             r#"{"format":"isophote-graph","version":1,"nodes":[{"name":"a","node":"gaussian","inputs":{"color":"a"}}],"output":"a"}"#,
-            ISOPHOTE_CONNECTION,
+            ISOPHOTE_ERROR_CONNECTION,
             "cycle",
         ),
     ];
     for (json, expected, part) in cases {
-        let (mut graph, mut status) = (77, 0);
+        let (mut graph, mut status) = (IsophoteGraph { id: 77 }, 0);
         // SAFETY: the text ends with a zero, the places are writable.
         let said = text(|t| unsafe {
             status = (api.graph_create_from_json)(c(json).as_ptr(), t, &raw mut graph);
         });
-        assert_eq!((status, graph), (expected, 0), "{json}: {said}");
+        assert_eq!((status, graph.id), (expected, 0), "{json}: {said}");
         assert!(said.contains(part) && said.lines().count() == 1, "{json}: {said}");
     }
     // And a good one comes back as it went in.
@@ -338,20 +352,20 @@ fn broken_graph_files_are_refused_with_a_reason() {
     unsafe {
         (api.graph_set_float)(graph, 0, c("sigma").as_ptr(), 3.25);
         let json = text(|t| assert_eq!((api.graph_to_json)(graph, t), ISOPHOTE_OK));
-        let mut again = 0;
+        let mut again = IsophoteGraph::default();
         let status = (api.graph_create_from_json)(c(&json).as_ptr(), null_mut(), &raw mut again);
         assert_eq!(status, ISOPHOTE_OK);
         assert_eq!(text(|t| assert_eq!((api.graph_to_json)(again, t), ISOPHOTE_OK)), json);
         // Too small a buffer says how much is needed.
         let mut bytes = [1 as c_char; 8];
         let mut small = IsophoteText { data: bytes.as_mut_ptr(), capacity: 8, length: 0 };
-        assert_eq!((api.graph_to_json)(graph, &raw mut small), ISOPHOTE_TRUNCATED);
+        assert_eq!((api.graph_to_json)(graph, &raw mut small), ISOPHOTE_ERROR_TRUNCATED);
         assert_eq!((small.length, bytes[7]), (json.len(), 0));
         small = IsophoteText { data: null_mut(), capacity: 0, length: 0 };
         assert_eq!((api.graph_to_json)(graph, &raw mut small), ISOPHOTE_OK);
         assert_eq!(small.length, json.len());
         small.capacity = 8;
-        assert_eq!((api.graph_to_json)(graph, &raw mut small), ISOPHOTE_INVALID_ARGUMENT);
+        assert_eq!((api.graph_to_json)(graph, &raw mut small), ISOPHOTE_ERROR_INVALID_ARGUMENT);
     }
 }
 
@@ -369,7 +383,7 @@ fn impossible_requests_are_refused() {
     let graph = single(api, "gaussian");
     let good = request(api, 64, 48);
     let make = |request: IsophoteRequest, region: Option<IsophoteRect>| {
-        let (mut plan, mut status) = (0, 0);
+        let (mut plan, mut status) = (IsophotePlan::default(), 0);
         let region = region.as_ref().map_or(null(), |r| &raw const *r);
         // SAFETY: the pointers lead to what the table asks for.
         let said = text(|t| unsafe {
@@ -382,11 +396,11 @@ fn impossible_requests_are_refused() {
     assert_eq!(make(good, None).0, ISOPHOTE_OK);
     for (width, height) in [(0, 48), (64, 0), (0, 0), (65537, 1), (u32::MAX, u32::MAX), (1 << 31, 1 << 31)] {
         let (status, said) = make(IsophoteRequest { width, height, ..good }, None);
-        assert_eq!(status, ISOPHOTE_GEOMETRY, "{width}x{height}: {said}");
+        assert_eq!(status, ISOPHOTE_ERROR_GEOMETRY, "{width}x{height}: {said}");
     }
     for scale in [0.0, -1.0, f32::NAN, f32::INFINITY, 65.0] {
         let (status, said) = make(IsophoteRequest { scale, ..good }, None);
-        assert_eq!(status, ISOPHOTE_OUT_OF_RANGE, "{scale}: {said}");
+        assert_eq!(status, ISOPHOTE_ERROR_OUT_OF_RANGE, "{scale}: {said}");
     }
     let bad = [
         IsophoteRequest { space: 3, ..good },
@@ -394,7 +408,7 @@ fn impossible_requests_are_refused() {
         IsophoteRequest { guides: 32, ..good },
     ];
     for request in bad {
-        assert_eq!(make(request, None).0, ISOPHOTE_INVALID_ARGUMENT, "{request:?}");
+        assert_eq!(make(request, None).0, ISOPHOTE_ERROR_INVALID_ARGUMENT, "{request:?}");
     }
     let rect = |x0, y0, x1, y1| IsophoteRect { x0, y0, x1, y1 };
     let (least, most) = (i32::MIN, i32::MAX);
@@ -410,7 +424,7 @@ fn impossible_requests_are_refused() {
         rect(64, 48, 65, 49),
     ] {
         let (status, said) = make(good, Some(region));
-        assert_eq!(status, ISOPHOTE_GEOMETRY, "{region:?}");
+        assert_eq!(status, ISOPHOTE_ERROR_GEOMETRY, "{region:?}");
         assert!(said.contains("64x48"), "{said}");
     }
     assert_eq!(make(good, Some(rect(63, 47, 64, 48))).0, ISOPHOTE_OK);
@@ -418,7 +432,7 @@ fn impossible_requests_are_refused() {
     // SAFETY: the texts end with zeros.
     unsafe { assert_eq!((api.graph_disconnect)(graph, 0, c("color").as_ptr()), ISOPHOTE_OK) };
     let (status, said) = make(good, None);
-    assert_eq!(status, ISOPHOTE_CONNECTION);
+    assert_eq!(status, ISOPHOTE_ERROR_CONNECTION);
     assert!(said.contains("'color'") && said.contains("not connected"), "{said}");
 }
 
@@ -428,7 +442,7 @@ fn a_failed_update_leaves_the_plan_as_it_was() {
     let api = library.api;
     let graph = single(api, "gaussian");
     let request = request(api, 64, 48);
-    let (mut plan, mut change) = (0, 9);
+    let (mut plan, mut change) = (IsophotePlan::default(), 9);
     // SAFETY: the pointers lead to what the table asks for; plan data is read while it is valid.
     unsafe {
         (api.plan_create)(graph, &raw const request, null(), null_mut(), &raw mut plan);
@@ -453,7 +467,7 @@ fn a_failed_update_leaves_the_plan_as_it_was() {
 
         let other = single(api, "gaussian");
         assert_eq!((api.graph_disconnect)(other, 0, c("color").as_ptr()), ISOPHOTE_OK);
-        assert_eq!((api.plan_update)(plan, other, &raw mut change), ISOPHOTE_CONNECTION);
+        assert_eq!((api.plan_update)(plan, other, &raw mut change), ISOPHOTE_ERROR_CONNECTION);
         assert_eq!(bytes(passes()), edited);
 
         assert_eq!((api.graph_set_float)(graph, 0, c("mix").as_ptr(), 0.5), ISOPHOTE_OK);

@@ -151,13 +151,13 @@ fn a_region_is_the_same_part_of_the_whole_and_leaves_the_rest() {
     let narrow = IsophoteImage { width: part.width - 1, ..part };
     let out = vec![-7.0_f32; data.len()];
     let (status, said, _) = run.run(&color(narrow), &target(floats(&out)));
-    assert_eq!(status, ISOPHOTE_GEOMETRY);
+    assert_eq!(status, ISOPHOTE_ERROR_GEOMETRY);
     assert!(
         said.contains(&format!("{}x{} pixels at ({}, {}) is needed", part.width, part.height, w.x0, w.y0))
     );
     // A target that does not hold the region is refused.
     let (status, said, _) = run.run(&color(part), &target(IsophoteImage { x: 14, ..floats(&out) }));
-    assert_eq!(status, ISOPHOTE_GEOMETRY, "{said}");
+    assert_eq!(status, ISOPHOTE_ERROR_GEOMETRY, "{said}");
     assert!(out.iter().all(|v| *v == -7.0));
 }
 
@@ -169,26 +169,26 @@ fn impossible_images_are_refused_and_nothing_is_written() {
     let good = floats(&data);
     let row = WIDTH as isize * 16;
     let bad = [
-        (IsophoteImage { data: null(), ..good }, ISOPHOTE_INVALID_ARGUMENT),
-        (IsophoteImage { sample: 4, ..good }, ISOPHOTE_INVALID_ARGUMENT),
-        (IsophoteImage { sample: u32::MAX, ..good }, ISOPHOTE_INVALID_ARGUMENT),
-        (IsophoteImage { channels: 0, ..good }, ISOPHOTE_INVALID_ARGUMENT),
-        (IsophoteImage { channels: 2, ..good }, ISOPHOTE_INVALID_ARGUMENT),
-        (IsophoteImage { channels: u32::MAX, ..good }, ISOPHOTE_INVALID_ARGUMENT),
-        (IsophoteImage { width: 0, ..good }, ISOPHOTE_GEOMETRY),
-        (IsophoteImage { height: 0, ..good }, ISOPHOTE_GEOMETRY),
-        (IsophoteImage { width: u32::MAX, ..good }, ISOPHOTE_GEOMETRY),
-        (IsophoteImage { height: u32::MAX, ..good }, ISOPHOTE_GEOMETRY),
-        (IsophoteImage { row_stride: 0, ..good }, ISOPHOTE_GEOMETRY),
-        (IsophoteImage { row_stride: row - 1, ..good }, ISOPHOTE_GEOMETRY),
-        (IsophoteImage { row_stride: 1 - row, ..good }, ISOPHOTE_GEOMETRY),
-        (IsophoteImage { row_stride: isize::MAX, ..good }, ISOPHOTE_GEOMETRY),
-        (IsophoteImage { row_stride: isize::MIN, ..good }, ISOPHOTE_GEOMETRY),
-        (IsophoteImage { x: i32::MAX, ..good }, ISOPHOTE_GEOMETRY),
-        (IsophoteImage { y: i32::MAX - 3, ..good }, ISOPHOTE_GEOMETRY),
-        (IsophoteImage { x: 1, ..good }, ISOPHOTE_GEOMETRY),
-        (IsophoteImage { y: -1, ..good }, ISOPHOTE_GEOMETRY),
-        (IsophoteImage { x: i32::MIN, y: i32::MIN, ..good }, ISOPHOTE_GEOMETRY),
+        (IsophoteImage { data: null(), ..good }, ISOPHOTE_ERROR_INVALID_ARGUMENT),
+        (IsophoteImage { sample: 4, ..good }, ISOPHOTE_ERROR_INVALID_ARGUMENT),
+        (IsophoteImage { sample: u32::MAX, ..good }, ISOPHOTE_ERROR_INVALID_ARGUMENT),
+        (IsophoteImage { channels: 0, ..good }, ISOPHOTE_ERROR_INVALID_ARGUMENT),
+        (IsophoteImage { channels: 2, ..good }, ISOPHOTE_ERROR_INVALID_ARGUMENT),
+        (IsophoteImage { channels: u32::MAX, ..good }, ISOPHOTE_ERROR_INVALID_ARGUMENT),
+        (IsophoteImage { width: 0, ..good }, ISOPHOTE_ERROR_GEOMETRY),
+        (IsophoteImage { height: 0, ..good }, ISOPHOTE_ERROR_GEOMETRY),
+        (IsophoteImage { width: u32::MAX, ..good }, ISOPHOTE_ERROR_GEOMETRY),
+        (IsophoteImage { height: u32::MAX, ..good }, ISOPHOTE_ERROR_GEOMETRY),
+        (IsophoteImage { row_stride: 0, ..good }, ISOPHOTE_ERROR_GEOMETRY),
+        (IsophoteImage { row_stride: row - 1, ..good }, ISOPHOTE_ERROR_GEOMETRY),
+        (IsophoteImage { row_stride: 1 - row, ..good }, ISOPHOTE_ERROR_GEOMETRY),
+        (IsophoteImage { row_stride: isize::MAX, ..good }, ISOPHOTE_ERROR_GEOMETRY),
+        (IsophoteImage { row_stride: isize::MIN, ..good }, ISOPHOTE_ERROR_GEOMETRY),
+        (IsophoteImage { x: i32::MAX, ..good }, ISOPHOTE_ERROR_GEOMETRY),
+        (IsophoteImage { y: i32::MAX - 3, ..good }, ISOPHOTE_ERROR_GEOMETRY),
+        (IsophoteImage { x: 1, ..good }, ISOPHOTE_ERROR_GEOMETRY),
+        (IsophoteImage { y: -1, ..good }, ISOPHOTE_ERROR_GEOMETRY),
+        (IsophoteImage { x: i32::MIN, y: i32::MIN, ..good }, ISOPHOTE_ERROR_GEOMETRY),
     ];
     let out = vec![-7.0_f32; data.len()];
     for (image, expected) in bad {
@@ -215,14 +215,14 @@ fn missing_unknown_and_doubled_inputs_are_refused() {
     let good = floats(&data);
     let out = vec![-7.0_f32; data.len()];
     let missing = run.run(&[], &target(floats(&out)));
-    assert_eq!(missing.0, ISOPHOTE_INPUT);
+    assert_eq!(missing.0, ISOPHOTE_ERROR_INPUT);
     assert!(missing.1.contains("'color' is missing; 45x31 pixels"), "{}", missing.1);
     let named = |name: &'static std::ffi::CStr| IsophoteInput { name: name.as_ptr(), image: good };
-    assert_eq!(run.run(&[named(c"colour")], &target(floats(&out))).0, ISOPHOTE_UNKNOWN);
+    assert_eq!(run.run(&[named(c"colour")], &target(floats(&out))).0, ISOPHOTE_ERROR_UNKNOWN);
     let twice = run.run(&[named(c"color"), named(c"color")], &target(floats(&out)));
-    assert_eq!(twice.0, ISOPHOTE_INVALID_ARGUMENT);
+    assert_eq!(twice.0, ISOPHOTE_ERROR_INVALID_ARGUMENT);
     let nameless = IsophoteInput { name: null(), image: good };
-    assert_eq!(run.run(&[nameless], &target(floats(&out))).0, ISOPHOTE_INVALID_ARGUMENT);
+    assert_eq!(run.run(&[nameless], &target(floats(&out))).0, ISOPHOTE_ERROR_INVALID_ARGUMENT);
     assert!(out.iter().all(|v| *v == -7.0));
     // Unread guides are ignored, bad ones are not.
     run.result(&[named(c"color"), named(c"depth"), named(c"normal"), named(c"object_id")]);
@@ -231,7 +231,7 @@ fn missing_unknown_and_doubled_inputs_are_refused() {
     let normal = image(bytes.as_ptr().cast(), ISOPHOTE_SAMPLE_U8, 3, WIDTH as isize * 3);
     let inputs = [named(c"color"), IsophoteInput { name: c"normal".as_ptr(), image: normal }];
     let (status, said, _) = tensor.run(&inputs, &target(floats(&out)));
-    assert_eq!(status, ISOPHOTE_INPUT);
+    assert_eq!(status, ISOPHOTE_ERROR_INPUT);
     assert!(said.contains("f16 or f32"), "{said}");
 }
 
@@ -248,7 +248,7 @@ fn more_memory_than_there_is_is_a_status() {
     // The sizes fit together; that so much memory is not there must be noticed before it is read.
     let huge = IsophoteImage { width: 65536, height: 65536, row_stride: 65536 * 16, ..floats(&data) };
     let (status, said, _) = run.run(&color(huge), &target(huge));
-    assert_eq!(status, ISOPHOTE_OUT_OF_MEMORY, "{said}");
+    assert_eq!(status, ISOPHOTE_ERROR_OUT_OF_MEMORY, "{said}");
     assert!(said.contains("MiB"), "{said}");
 }
 

@@ -91,8 +91,7 @@ fn node_on_threads(
     in_a_process(name, || {
         let library = Loaded::new();
         let api = library.api;
-        // SAFETY: a handle, which is a number or a pointer, that the next call overwrites.
-        let mut graph: IsophoteGraph = unsafe { std::mem::zeroed() };
+        let mut graph = IsophoteGraph::default();
         // SAFETY: the pointers lead to what the table asks for.
         let made = unsafe { (api.graph_create_single)(node.as_ptr(), null_mut(), &raw mut graph) };
         assert_eq!(made, ISOPHOTE_OK);
@@ -103,7 +102,7 @@ fn node_on_threads(
 }
 
 fn node_answers(name: &str, node: &CStr, threads: u32) {
-    node_on_threads(name, node, threads, |call| statuses(ISOPHOTE_OK, ISOPHOTE_OUT_OF_MEMORY, call));
+    node_on_threads(name, node, threads, |call| statuses(ISOPHOTE_OK, ISOPHOTE_ERROR_OUT_OF_MEMORY, call));
 }
 
 #[test]

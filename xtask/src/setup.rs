@@ -48,6 +48,10 @@ pub const VALGRIND: Need = Need {
     packages: &["valgrind", "libc6-dbg"],
 };
 
+/// A second compiler of C and C++, which the header is tried by.
+pub const CLANG: Need =
+    Need { what: "clang", present: || program("clang") && program("clang++"), packages: &["clang"] };
+
 /// A browser without a window, whose compiler is the second one that shaders are tried by.
 pub const BROWSER: Need = Need {
     what: "Chromium without a window",

@@ -2,7 +2,7 @@
 
 use crate::error::{Context, Failure, Result};
 use crate::setup::{
-    self, BINUTILS, BROWSER, C_COMPILER, CPP_COMPILER, VALGRIND, VULKAN, VULKAN_HEADERS, XVFB,
+    self, BINUTILS, BROWSER, C_COMPILER, CLANG, CPP_COMPILER, VALGRIND, VULKAN, VULKAN_HEADERS, XVFB,
 };
 use crate::tools::{cargo, cargo_command, heading, root, target_dir};
 use std::path::{Path, PathBuf};
@@ -39,6 +39,7 @@ pub fn run(options: &Options) -> Result<()> {
         &VALGRIND,
         &XVFB,
         &BROWSER,
+        &CLANG,
     ])?;
     let is_everything = options.filter.is_none() && !options.list;
     if is_everything && !options.tests_only {

@@ -128,6 +128,11 @@ pub struct Param {
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum ParamKind {
+    /// One that this program does not know, of a later library; it keeps its default.
+    Unknown {
+        /// Its number in the contract.
+        number: u32,
+    },
     /// A number.
     Float {
         /// Default.
@@ -287,10 +292,43 @@ unsafe fn param_kind(param: &IsophoteParam) -> ParamKind {
             ParamKind::Choice { default, options }
         }
         c::ISOPHOTE_PARAM_COLOR => ParamKind::Color { default: param.default_value.map(|v| v as f32) },
-        _ => ParamKind::Float {
+        c::ISOPHOTE_PARAM_FLOAT => ParamKind::Float {
             default: first as f32,
             range: range.map(|v| v as f32),
             slider: slider.map(|v| v as f32),
         },
+        number => ParamKind::Unknown { number },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ptr::null;
+
+    use super::*;
+
+    #[test]
+    fn a_kind_of_parameter_that_nobody_knows_is_called_unknown() {
+        let text = c"later".as_ptr();
+        let later = IsophoteParam {
+            id: text,
+            label: text,
+            doc: text,
+            group: text,
+            kind: 99,
+            unit: 99,
+            structural: 0,
+            choice_count: 0,
+            choices: null(),
+            default_value: [1.0; 4],
+            minimum: 0.0,
+            maximum: 2.0,
+            slider_minimum: 0.0,
+            slider_maximum: 2.0,
+        };
+        // SAFETY: the texts end with a zero and live for ever, and there is no list of options.
+        let param = unsafe { param(&later) };
+        assert!(matches!(param.kind, ParamKind::Unknown { number: 99 }), "{:?}", param.kind);
+        assert!(Kind::new(99) == Kind::Other && Kind::Other.name() == "something unknown");
     }
 }

@@ -24,7 +24,7 @@ impl Library {
     /// [`super::Refusal`] when there is none.
     pub fn device(&self, adapter: Option<&str>) -> Answer<Device> {
         let adapter = adapter.map(text::argument).transpose()?;
-        let mut handle = 0;
+        let mut handle = Default::default();
         let (status, message) = text::message(|error| {
             let adapter = adapter.as_ref().map_or(std::ptr::null(), |a| a.as_ptr());
             // SAFETY: the name is null or ends with a zero; the other two may be written during the call.

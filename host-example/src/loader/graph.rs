@@ -48,7 +48,7 @@ impl Library {
         &self,
         create: impl FnOnce(*mut IsophoteText, *mut IsophoteGraph) -> IsophoteStatus,
     ) -> Answer<Graph> {
-        let mut handle = 0;
+        let mut handle = Default::default();
         let (status, message) = text::message(|error| create(error, &raw mut handle));
         check(status, || message)?;
         Ok(Graph { api: self.api, handle, one_thread: PhantomData })

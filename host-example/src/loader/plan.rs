@@ -104,7 +104,7 @@ impl Graph {
     /// # Errors
     /// [`Refusal`] when an input that is needed is open, or the size is impossible.
     pub fn plan(&self, request: &IsophoteRequest) -> Answer<Plan> {
-        let mut handle = 0;
+        let mut handle = Default::default();
         let (status, message) = text::message(|error| {
             // SAFETY: the handle is the graph's; the request is read and the others written during the call.
             unsafe { (self.api.plan_create)(self.handle, request, std::ptr::null(), error, &raw mut handle) }
@@ -229,5 +229,8 @@ unsafe fn pass<'a>(pass: &IsophotePass) -> Pass<'a> {
 
 /// A plan that the library should not have given.
 fn malformed(message: String) -> Refusal {
-    Refusal { status: c::ISOPHOTE_INTERNAL, message: format!("the library's plan cannot be run: {message}") }
+    Refusal {
+        status: c::ISOPHOTE_ERROR_INTERNAL,
+        message: format!("the library's plan cannot be run: {message}"),
+    }
 }

@@ -3,8 +3,8 @@
 use std::ffi::c_void;
 
 use super::contract::{
-    self as c, IsophoteControl, IsophoteImage, IsophoteInput, IsophotePassTime, IsophoteReport,
-    IsophoteRequest, IsophoteSample, IsophoteTarget,
+    self as c, IsophoteControl, IsophoteDevice, IsophoteImage, IsophoteInput, IsophotePassTime,
+    IsophoteReport, IsophoteRequest, IsophoteSample, IsophoteTarget,
 };
 use super::device::Device;
 use super::graph::Graph;
@@ -96,7 +96,7 @@ impl Graph {
         let status = unsafe {
             (self.api.process)(
                 self.handle,
-                device.map_or(0, |d| d.handle),
+                device.map_or_else(IsophoteDevice::default, |d| d.handle),
                 request,
                 images.as_ptr(),
                 images.len() as u32,

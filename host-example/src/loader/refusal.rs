@@ -1,8 +1,8 @@
 //! What the library refuses, and why.
 
 use super::contract::{
-    ISOPHOTE_CANCELLED, ISOPHOTE_DEVICE, ISOPHOTE_INTERNAL, ISOPHOTE_INVALID_HANDLE, ISOPHOTE_NO_DEVICE,
-    ISOPHOTE_OK, ISOPHOTE_OUT_OF_MEMORY, IsophoteStatus,
+    ISOPHOTE_ERROR_CANCELLED, ISOPHOTE_ERROR_DEVICE, ISOPHOTE_ERROR_INTERNAL, ISOPHOTE_ERROR_INVALID_HANDLE,
+    ISOPHOTE_ERROR_NO_DEVICE, ISOPHOTE_ERROR_OUT_OF_MEMORY, ISOPHOTE_OK, IsophoteStatus,
 };
 use crate::error::Error;
 
@@ -23,16 +23,16 @@ impl Refusal {
     /// fault of the input at `place`, which `fix` puts right.
     pub fn at(self, place: impl std::fmt::Display, fix: impl std::fmt::Display) -> Error {
         match self.status {
-            ISOPHOTE_NO_DEVICE => Error::failure(
+            ISOPHOTE_ERROR_NO_DEVICE => Error::failure(
                 self.message,
                 "use --backend cpu, or install a graphics driver; a software one will do (on Debian: apt install \
                  mesa-vulkan-drivers libvulkan1)",
             ),
-            ISOPHOTE_DEVICE | ISOPHOTE_OUT_OF_MEMORY => {
+            ISOPHOTE_ERROR_DEVICE | ISOPHOTE_ERROR_OUT_OF_MEMORY => {
                 Error::failure(self.message, "use a smaller picture or --backend cpu")
             }
-            ISOPHOTE_CANCELLED => Error::failure(self.message, "start again"),
-            ISOPHOTE_INVALID_HANDLE | ISOPHOTE_INTERNAL => {
+            ISOPHOTE_ERROR_CANCELLED => Error::failure(self.message, "start again"),
+            ISOPHOTE_ERROR_INVALID_HANDLE | ISOPHOTE_ERROR_INTERNAL => {
                 Error::failure(self.message, "this is a mistake in the program; please report it")
             }
             _ => Error::input(place, self.message, fix),

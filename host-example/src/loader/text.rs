@@ -3,7 +3,7 @@
 use std::ffi::{CStr, CString, c_char};
 
 use super::contract::{
-    ISOPHOTE_INVALID_ARGUMENT, ISOPHOTE_OK, ISOPHOTE_TRUNCATED, IsophoteStatus, IsophoteText,
+    ISOPHOTE_ERROR_INVALID_ARGUMENT, ISOPHOTE_ERROR_TRUNCATED, ISOPHOTE_OK, IsophoteStatus, IsophoteText,
 };
 use super::refusal::{Answer, Refusal};
 
@@ -51,7 +51,7 @@ pub fn whole(mut write: impl FnMut(*mut IsophoteText) -> IsophoteStatus) -> (Iso
         }
         let status = write(&raw mut text);
         let fits = text.length < bytes.len();
-        if fits || !matches!(status, ISOPHOTE_OK | ISOPHOTE_TRUNCATED) {
+        if fits || !matches!(status, ISOPHOTE_OK | ISOPHOTE_ERROR_TRUNCATED) {
             bytes.truncate(if fits { text.length } else { 0 });
             return (status, String::from_utf8_lossy(&bytes).into_owned());
         }
@@ -65,7 +65,7 @@ pub fn whole(mut write: impl FnMut(*mut IsophoteText) -> IsophoteStatus) -> (Iso
 /// [`Refusal`] when the text holds a zero, which would end it early.
 pub fn argument(text: &str) -> Answer<CString> {
     CString::new(text).map_err(|_| Refusal {
-        status: ISOPHOTE_INVALID_ARGUMENT,
+        status: ISOPHOTE_ERROR_INVALID_ARGUMENT,
         message: format!("'{}' holds a zero character", text.replace('\0', "\\0")),
     })
 }

@@ -100,6 +100,7 @@ fn port_line(port: &Port) -> String {
 fn values(param: &Param) -> String {
     let unit = if param.unit.is_empty() { String::new() } else { format!(" {}", param.unit) };
     match &param.kind {
+        ParamKind::Unknown { number } => format!("unknown  (of kind {number}, of a later library)"),
         ParamKind::Float { default, range, .. } => format!("{default}  ({} to {}{unit})", range[0], range[1]),
         ParamKind::Int { default, range, .. } => {
             format!("{default}  ({} to {}{unit}, whole)", range[0], range[1])

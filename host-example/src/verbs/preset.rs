@@ -111,7 +111,9 @@ fn save(library: &Library, base: &Path, file: &Path, settings: &[Setting], all: 
         let spec = style.graph.spec(0).map_err(|e| e.at(&style.name, "choose another style"))?;
         for param in &spec.params {
             if !preset.params.iter().any(|(name, _)| name == param.id) {
-                preset.params.push((param.id.to_owned(), Track::Still(default(&param.kind))));
+                // What has a kind that this program does not know keeps its default.
+                let value = default(&param.kind);
+                preset.params.extend(value.map(|value| (param.id.to_owned(), Track::Still(value))));
             }
         }
     }
@@ -230,13 +232,14 @@ fn text(file: &Path) -> Result<String> {
     Ok(text)
 }
 
-/// The default of a parameter as `--set` takes it.
-fn default(kind: &ParamKind) -> String {
-    match kind {
+/// The default of a parameter as `--set` takes it; nothing of a kind that this program does not know.
+fn default(kind: &ParamKind) -> Option<String> {
+    Some(match kind {
+        ParamKind::Unknown { .. } => return None,
         ParamKind::Float { default, .. } => default.to_string(),
         ParamKind::Int { default, .. } => default.to_string(),
         ParamKind::Bool { default } => default.to_string(),
         ParamKind::Choice { default, .. } => (*default).to_owned(),
         ParamKind::Color { default } => default.map(|v| v.to_string()).join(","),
-    }
+    })
 }

@@ -24,7 +24,7 @@ pub mod threads;
 pub mod warm;
 
 use contract::{ISOPHOTE_ABI_VERSION, IsophoteApi, IsophoteStatus};
-use std::ffi::{CStr, c_char};
+use std::ffi::{CStr, c_char, c_void};
 
 /// The table of version 1, which may be read from any thread.
 #[derive(Debug)]
@@ -80,6 +80,7 @@ pub static API: Table = Table(IsophoteApi {
     device_destroy: device::destroy,
     device_error: device::error,
     device_name: device::name,
+    extension,
 });
 
 unsafe extern "C" fn status_name(status: IsophoteStatus) -> *const c_char {
@@ -103,6 +104,11 @@ unsafe extern "C" fn status_name(status: IsophoteStatus) -> *const c_char {
         c"internal error",
     ];
     NAMES.get(status as usize).map_or(c"unknown status", |n| n).as_ptr()
+}
+
+/// None yet.
+unsafe extern "C" fn extension(_id: *const c_char) -> *const c_void {
+    std::ptr::null()
 }
 
 unsafe extern "C" fn trim() -> IsophoteStatus {

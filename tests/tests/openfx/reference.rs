@@ -151,7 +151,7 @@ impl Through<'_> {
     fn process(&self, images: &[IsophoteInput], target: &IsophoteTarget) {
         let api = table().api;
         let json = CString::new(self.graph.to_json().unwrap()).unwrap();
-        let mut graph = 0;
+        let mut graph = Default::default();
         let request = IsophoteRequest {
             width: self.size[0] as u32,
             height: self.size[1] as u32,
@@ -165,7 +165,7 @@ impl Through<'_> {
             assert_eq!((api.graph_create_from_json)(json.as_ptr(), null_mut(), &raw mut graph), ISOPHOTE_OK);
             let status = (api.process)(
                 graph,
-                0,
+                IsophoteDevice::default(),
                 &raw const request,
                 images.as_ptr(),
                 images.len() as u32,

@@ -46,7 +46,7 @@ pub struct Run<'a> {
 impl<'a> Run<'a> {
     pub fn new(library: &'a Loaded, node: &str) -> Self {
         let api = library.api;
-        let mut graph = 0;
+        let mut graph = IsophoteGraph::default();
         let mut request = IsophoteRequest { width: 0, height: 0, scale: 0.0, space: 0, alpha: 0, guides: 0 };
         let id = CString::new(node).unwrap();
         // SAFETY: the text ends with a zero, the places are writable.
@@ -54,7 +54,7 @@ impl<'a> Run<'a> {
             assert_eq!((api.graph_create_single)(id.as_ptr(), null_mut(), &raw mut graph), ISOPHOTE_OK);
             assert_eq!((api.request_init)(WIDTH, HEIGHT, &raw mut request), ISOPHOTE_OK);
         }
-        Self { api, graph, device: 0, request, region: None, control: None }
+        Self { api, graph, device: IsophoteDevice::default(), request, region: None, control: None }
     }
 
     /// Status, message and report of a run.

@@ -20,11 +20,73 @@ const SOURCES: [&str; 4] = [
 const PREAMBLE: &str = "\
 /* Isophote: structure-adaptive stylization filters.
  *
- * The library exports one symbol, isophote_api; look it up with dlsym or GetProcAddress, ask it for
+ * The library exports one symbol, isophote_api. Look it up with dlsym or GetProcAddress, or link against it; ask it for
  * ISOPHOTE_ABI_VERSION, and call everything else through the table that it returns.
+ *
+ * Objects
+ *
+ *   IsophoteGraph   nodes, their parameters and connections
+ *   IsophotePlan    what a graph comes to for one size: textures and passes, for a graphics device of the host's own
+ *   IsophoteDevice  a graphics device of the library's own; {0} is the CPU
+ *
+ * Order of calls
+ *
+ *   api = isophote_api(ISOPHOTE_ABI_VERSION);
+ *   api->graph_create_single(\"cartoon\", &error, &graph);
+ *   api->graph_set_float(graph, 0, \"detail\", 0.4);             as often as wanted
+ *   api->request_init(width, height, &request);
+ *   api->process(graph, cpu, &request, inputs, 1, NULL, &target, NULL, NULL);   for images in memory
+ *   api->graph_destroy(graph);
+ *
+ * A host that renders runs the plan instead:
+ *
+ *   api->plan_create(graph, &request, NULL, &error, &plan);
+ *   api->plan_textures(plan, &textures, &texture_count);         make those that are transient or an output
+ *   api->plan_passes(plan, &passes, &pass_count);
+ *   for (i = 0; i < pass_count; i++)
+ *       api->plan_shader(plan, i, ISOPHOTE_LANGUAGE_SPIRV, &shader);   make a pipeline of each kernel
+ *   each frame:
+ *       api->graph_set_float(...), api->plan_update(plan, graph, &change);
+ *       for (i = 0; i < pass_count; i++)
+ *           bind passes[i].grid and passes[i].params as uniforms, the textures passes[i].inputs and passes[i].outputs,
+ *           dispatch passes[i].workgroups, and let the next pass wait for what it reads
  *
  * SPDX-License-Identifier: MIT OR Apache-2.0
  */";
+
+/// Calling convention and import, and what begins C linkage.
+const OPENING: &str = "
+/* The calling convention of every function here. */
+#ifndef ISOPHOTE_ABI
+#ifdef _WIN32
+#define ISOPHOTE_ABI __cdecl
+#else
+#define ISOPHOTE_ABI
+#endif
+#endif
+
+/* How isophote_api is declared to hosts that link against the library. Define it as nothing before this header for
+ * a static library. */
+#ifndef ISOPHOTE_IMPORT
+#ifdef _WIN32
+#define ISOPHOTE_IMPORT __declspec(dllimport)
+#else
+#define ISOPHOTE_IMPORT
+#endif
+#endif
+
+#ifdef __cplusplus
+extern \"C\" {
+#endif
+";
+
+const CLOSING: &str = "\
+#ifdef __cplusplus
+} /* extern \"C\" */
+#endif";
+
+/// The one function that is declared and not in the table.
+const ENTRY: &str = "const struct IsophoteApi *isophote_api(uint32_t abi_version);";
 
 const WARNING: &str = "/* Generated from include/rust by `cargo xtask header`. Do not edit. */";
 
@@ -37,6 +99,8 @@ enum Error {
     Text(#[from] std::string::FromUtf8Error),
     #[error("cannot read or write {}: {source}", path.display())]
     File { path: PathBuf, source: std::io::Error },
+    #[error("the entry point is not declared as expected")]
+    Entry,
     #[error(
         "include/isophote.h is not what include/rust declares, from line {0} on: run `cargo xtask header`"
     )]
@@ -86,7 +150,7 @@ fn run(check: bool) -> Result<(), Error> {
 fn generate(root: &Path) -> Result<String, Error> {
     let mut config = Config {
         language: Language::C,
-        cpp_compat: true,
+        after_includes: Some(OPENING.into()),
         header: Some(PREAMBLE.into()),
         autogen_warning: Some(WARNING.into()),
         include_guard: Some("ISOPHOTE_H".into()),
@@ -106,5 +170,14 @@ fn generate(root: &Path) -> Result<String, Error> {
     let bindings = builder.generate()?;
     let mut text = Vec::new();
     bindings.write(&mut text);
-    Ok(String::from_utf8(text)?)
+    // cbindgen knows no calling conventions.
+    let text = String::from_utf8(text)?.replace("(*", "(ISOPHOTE_ABI *");
+    let imported =
+        "ISOPHOTE_IMPORT const struct IsophoteApi *ISOPHOTE_ABI isophote_api(uint32_t abi_version);";
+    if !text.contains(ENTRY) {
+        return Err(Error::Entry);
+    }
+    let text = text.replace(ENTRY, imported).replace("\n\n\n", "\n\n");
+    // Before the end of the guard, or a second inclusion would close what it did not open.
+    Ok(text.replace("#endif  /* ISOPHOTE_H */", &format!("{CLOSING}\n\n#endif  /* ISOPHOTE_H */")))
 }

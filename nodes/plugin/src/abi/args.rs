@@ -1,6 +1,6 @@
 //! Arguments: text, structs and places to write, behind pointers that may be null or unaligned.
 
-use super::contract::{ISOPHOTE_TRUNCATED, IsophoteText};
+use super::contract::{ISOPHOTE_ERROR_TRUNCATED, IsophoteText};
 use super::failure::{Failure, Outcome};
 use std::ffi::{CStr, c_char};
 
@@ -96,7 +96,7 @@ pub unsafe fn fill(target: *mut IsophoteText, value: &str) -> Outcome<()> {
     unsafe { target.write_unaligned(buffer) };
     if end < value.len() && buffer.capacity > 0 {
         return Err(Failure::new(
-            ISOPHOTE_TRUNCATED,
+            ISOPHOTE_ERROR_TRUNCATED,
             format!("{} bytes are needed, there is room for {}", value.len() + 1, buffer.capacity),
         ));
     }
@@ -133,7 +133,7 @@ mod tests {
         assert!(outcome.is_ok());
         assert_eq!((bytes.as_slice(), length), (b"sch\xc3\xb6n\0#".as_slice(), 6));
         let (outcome, bytes, length) = filled("schön", 5);
-        assert_eq!(outcome.unwrap_err().status, ISOPHOTE_TRUNCATED);
+        assert_eq!(outcome.unwrap_err().status, ISOPHOTE_ERROR_TRUNCATED);
         assert_eq!((bytes.as_slice(), length), (b"sch\0##".as_slice(), 6));
         let (outcome, bytes, length) = filled("schön", 0);
         assert!(outcome.is_ok());

@@ -42,16 +42,15 @@ fn all() -> &'static Catalogue {
 /// Unknown when the registry has no such node.
 pub fn entry(spec: &NodeSpec) -> Outcome<&'static IsophoteNode> {
     let all = all();
-    all.index
-        .get(spec.id)
-        .and_then(|i| all.nodes.get(*i))
-        .ok_or_else(|| Failure::new(ISOPHOTE_UNKNOWN, format!("node '{}' is not in the catalogue", spec.id)))
+    all.index.get(spec.id).and_then(|i| all.nodes.get(*i)).ok_or_else(|| {
+        Failure::new(ISOPHOTE_ERROR_UNKNOWN, format!("node '{}' is not in the catalogue", spec.id))
+    })
 }
 
 /// Id of an option of a choice, for the process's life.
 pub fn option_id(spec: &NodeSpec, param: usize, option: usize) -> Outcome<*const c_char> {
     let entry = entry(spec)?;
-    let missing = || Failure::new(ISOPHOTE_UNKNOWN, format!("node '{}' has no such option", spec.id));
+    let missing = || Failure::new(ISOPHOTE_ERROR_UNKNOWN, format!("node '{}' has no such option", spec.id));
     // SAFETY: the catalogue's arrays have the lengths beside them, and live for ever.
     let params = unsafe { std::slice::from_raw_parts(entry.params, entry.param_count as usize) };
     let param = params.get(param).filter(|p| !p.choices.is_null()).ok_or_else(missing)?;

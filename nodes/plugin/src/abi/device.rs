@@ -30,7 +30,7 @@ pub(super) unsafe extern "C" fn create(
 pub(super) unsafe extern "C" fn destroy(device: IsophoteDevice) -> IsophoteStatus {
     guard::call(
         || {
-            let device = DeviceObject::slots().remove(device)?;
+            let device = DeviceObject::slots().remove(device.id)?;
             objects::forget_device(&device);
             Ok(())
         },

@@ -2,7 +2,7 @@
 
 use super::contract::{ISOPHOTE_ABI_VERSION, IsophoteApi};
 
-/// [any thread] Returns the table of ABI version `abi_version`, or null when this library has none of
+/// [any-thread] Returns the table of ABI version `abi_version`, or null when this library has none of
 /// that number. The table is the library's and valid for the life of the process.
 // SAFETY: the name is claimed by nothing else, as every name that begins with `isophote_`.
 #[unsafe(no_mangle)]

@@ -24,12 +24,12 @@ impl Failure {
 
     /// An argument that is null, not text, or none of the listed numbers.
     pub fn argument(message: impl Into<String>) -> Self {
-        Self::new(ISOPHOTE_INVALID_ARGUMENT, message)
+        Self::new(ISOPHOTE_ERROR_INVALID_ARGUMENT, message)
     }
 
     /// A size, stride or region that does not fit.
     pub fn geometry(message: impl Into<String>) -> Self {
-        Self::new(ISOPHOTE_GEOMETRY, message)
+        Self::new(ISOPHOTE_ERROR_GEOMETRY, message)
     }
 
     pub(super) fn panicked(payload: &(dyn Any + Send)) -> Self {
@@ -38,7 +38,7 @@ impl Failure {
             .map(|s| (*s).to_owned())
             .or_else(|| payload.downcast_ref::<String>().cloned())
             .unwrap_or_else(|| "no message".into());
-        Self::new(ISOPHOTE_INTERNAL, format!("a mistake inside Isophote: {what}"))
+        Self::new(ISOPHOTE_ERROR_INTERNAL, format!("a mistake inside Isophote: {what}"))
     }
 }
 
@@ -46,13 +46,13 @@ impl From<engine::Error> for Failure {
     fn from(error: engine::Error) -> Self {
         use engine::Error as E;
         let status = match &error {
-            E::Geometry(_) => ISOPHOTE_GEOMETRY,
-            E::Input(_) => ISOPHOTE_INPUT,
-            E::Cancelled => ISOPHOTE_CANCELLED,
-            E::NoDevice(_) => ISOPHOTE_NO_DEVICE,
-            E::Device(_) => ISOPHOTE_DEVICE,
-            E::Memory(_) => ISOPHOTE_OUT_OF_MEMORY,
-            _ => ISOPHOTE_INTERNAL,
+            E::Geometry(_) => ISOPHOTE_ERROR_GEOMETRY,
+            E::Input(_) => ISOPHOTE_ERROR_INPUT,
+            E::Cancelled => ISOPHOTE_ERROR_CANCELLED,
+            E::NoDevice(_) => ISOPHOTE_ERROR_NO_DEVICE,
+            E::Device(_) => ISOPHOTE_ERROR_DEVICE,
+            E::Memory(_) => ISOPHOTE_ERROR_OUT_OF_MEMORY,
+            _ => ISOPHOTE_ERROR_INTERNAL,
         };
         Self::new(status, error.to_string())
     }
@@ -63,11 +63,11 @@ impl From<isophote::Error> for Failure {
         use isophote::Error as E;
         let status = match error {
             E::Engine(inner) => return inner.into(),
-            E::Unknown(_) => ISOPHOTE_UNKNOWN,
-            E::Value(_) => ISOPHOTE_OUT_OF_RANGE,
-            E::Connection(_) => ISOPHOTE_CONNECTION,
-            E::Format(_) => ISOPHOTE_MALFORMED,
-            _ => ISOPHOTE_INTERNAL,
+            E::Unknown(_) => ISOPHOTE_ERROR_UNKNOWN,
+            E::Value(_) => ISOPHOTE_ERROR_OUT_OF_RANGE,
+            E::Connection(_) => ISOPHOTE_ERROR_CONNECTION,
+            E::Format(_) => ISOPHOTE_ERROR_MALFORMED,
+            _ => ISOPHOTE_ERROR_INTERNAL,
         };
         Self::new(status, error.to_string())
     }

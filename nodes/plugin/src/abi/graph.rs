@@ -24,7 +24,7 @@ fn on_graph(graph: IsophoteGraph, body: impl FnOnce(&mut Graph) -> Outcome<()>) 
 fn graph_input(name: &str) -> Outcome<GraphInput> {
     GraphInput::from_id(name).ok_or_else(|| {
         let known = GraphInput::ALL.map(GraphInput::id).join(", ");
-        Failure::new(ISOPHOTE_UNKNOWN, format!("a graph has the inputs {known}, not '{name}'"))
+        Failure::new(ISOPHOTE_ERROR_UNKNOWN, format!("a graph has the inputs {known}, not '{name}'"))
     })
 }
 
@@ -191,7 +191,10 @@ pub(super) unsafe extern "C" fn set_output(graph: IsophoteGraph, index: u32) -> 
 pub(super) unsafe extern "C" fn output_kind(graph: IsophoteGraph, kind: *mut IsophoteKind) -> IsophoteStatus {
     on_graph(graph, |graph| {
         let found = graph.output_kind().ok_or_else(|| {
-            Failure::new(ISOPHOTE_CONNECTION, "the graph has no output; name the node whose result leaves it")
+            Failure::new(
+                ISOPHOTE_ERROR_CONNECTION,
+                "the graph has no output; name the node whose result leaves it",
+            )
         })?;
         // SAFETY: the host promised that the place may be written.
         unsafe { args::put(kind, catalogue::kind(found), "the place for the kind") }

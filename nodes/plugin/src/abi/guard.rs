@@ -3,7 +3,7 @@
 use super::args;
 use super::contract::*;
 use super::failure::{Failure, Outcome};
-use super::handles::Object;
+use super::handles::{Handle, Object};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -22,10 +22,10 @@ pub fn call(body: impl FnOnce() -> Outcome<()>, report: impl FnOnce(&str)) -> Is
 }
 
 /// A call on an object, which keeps the message of a failure.
-pub fn on<T: Object>(handle: u64, body: impl FnOnce(&Arc<T>) -> Outcome<()>) -> IsophoteStatus {
+pub fn on<T: Object>(handle: T::Handle, body: impl FnOnce(&Arc<T>) -> Outcome<()>) -> IsophoteStatus {
     let mut object = None;
     let inside = || {
-        let found = T::slots().get(handle)?;
+        let found = T::slots().get(handle.id())?;
         body(object.insert(found))
     };
     // The object is looked up inside the guard and wanted again after it.
@@ -44,14 +44,14 @@ pub fn on<T: Object>(handle: u64, body: impl FnOnce(&Arc<T>) -> Outcome<()>) -> 
 /// `error` is null or points to an `IsophoteText` that may be written, `out` is null or points to a
 /// handle that may be written.
 pub unsafe fn create<T: Object>(
-    out: *mut u64,
+    out: *mut T::Handle,
     error: *mut IsophoteText,
     body: impl FnOnce() -> Outcome<T>,
 ) -> IsophoteStatus {
     let inside = || {
         // SAFETY: as this function's caller promised.
-        unsafe { args::put(out, 0, "the place for the handle")? };
-        let handle = T::slots().insert(body()?)?;
+        unsafe { args::put(out, T::Handle::new(0), "the place for the handle")? };
+        let handle = T::Handle::new(T::slots().insert(body()?)?);
         // SAFETY: as before.
         unsafe { args::put(out, handle, "the place for the handle") }
     };
@@ -60,11 +60,11 @@ pub unsafe fn create<T: Object>(
 }
 
 /// Drops the handle's object once no call uses it.
-pub fn destroy<T: Object>(handle: u64) -> IsophoteStatus {
+pub fn destroy<T: Object>(handle: T::Handle) -> IsophoteStatus {
     call(
         || {
             // Dropped here, where a panic of a destructor is caught and no lock is held.
-            drop(T::slots().remove(handle)?);
+            drop(T::slots().remove(handle.id())?);
             Ok(())
         },
         |_| {},
@@ -75,10 +75,10 @@ pub fn destroy<T: Object>(handle: u64) -> IsophoteStatus {
 ///
 /// # Safety
 /// `text` is null or points to an `IsophoteText` that may be written.
-pub unsafe fn last_message<T: Object>(handle: u64, text: *mut IsophoteText) -> IsophoteStatus {
+pub unsafe fn last_message<T: Object>(handle: T::Handle, text: *mut IsophoteText) -> IsophoteStatus {
     call(
         || {
-            let object = T::slots().get(handle)?;
+            let object = T::slots().get(handle.id())?;
             let message = lock(object.message()).clone();
             // SAFETY: as this function's caller promised.
             unsafe { args::fill(text, &message) }
@@ -102,12 +102,12 @@ mod tests {
 
     #[test]
     fn a_panic_becomes_a_status_and_a_message() {
-        let mut handle = 0;
+        let mut handle = IsophoteGraph::default();
         // SAFETY: both pointers may be written, or are null.
         assert_eq!(unsafe { graph::create(null_mut(), &raw mut handle) }, ISOPHOTE_OK);
         let status = on::<GraphObject>(handle, |_| panic!("the {} broke", "filter"));
-        assert_eq!(status, ISOPHOTE_INTERNAL);
-        let object = GraphObject::slots().get(handle).unwrap();
+        assert_eq!(status, ISOPHOTE_ERROR_INTERNAL);
+        let object = GraphObject::slots().get(handle.id).unwrap();
         assert_eq!(*lock(object.message()), "a mistake inside Isophote: the filter broke");
         // The object goes on working.
         let mut count = 9;
@@ -115,7 +115,7 @@ mod tests {
         assert_eq!(unsafe { graph::count(handle, &raw mut count) }, ISOPHOTE_OK);
         assert_eq!(count, 0);
         assert_eq!(destroy::<GraphObject>(handle), ISOPHOTE_OK);
-        assert_eq!(destroy::<GraphObject>(handle), ISOPHOTE_INVALID_HANDLE);
+        assert_eq!(destroy::<GraphObject>(handle), ISOPHOTE_ERROR_INVALID_HANDLE);
     }
 
     #[test]
@@ -128,6 +128,6 @@ mod tests {
             },
             |message| assert!(message.ends_with("job 3 broke"), "{message}"),
         );
-        assert_eq!(status, ISOPHOTE_INTERNAL);
+        assert_eq!(status, ISOPHOTE_ERROR_INTERNAL);
     }
 }

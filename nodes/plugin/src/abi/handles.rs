@@ -4,12 +4,40 @@
 //! bits). A slot's generation grows with every object that leaves it, so that no handle is ever
 //! given out twice.
 
-use super::contract::{ISOPHOTE_INVALID_HANDLE, ISOPHOTE_OUT_OF_MEMORY};
+use super::contract::{
+    ISOPHOTE_ERROR_INVALID_HANDLE, ISOPHOTE_ERROR_OUT_OF_MEMORY, IsophoteDevice, IsophoteGraph, IsophotePlan,
+};
 use super::failure::{Failure, Outcome};
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
+/// A handle as hosts hold it, of a type of its own.
+pub trait Handle: Copy {
+    /// Of a number.
+    fn new(id: u64) -> Self;
+    /// The number.
+    fn id(self) -> u64;
+}
+
+macro_rules! handles {
+    ($($handle:ident),*) => {
+        $(impl Handle for $handle {
+            fn new(id: u64) -> Self {
+                Self { id }
+            }
+
+            fn id(self) -> u64 {
+                self.id
+            }
+        })*
+    };
+}
+
+handles!(IsophoteGraph, IsophotePlan, IsophoteDevice);
+
 /// What hosts hold handles of.
 pub trait Object: Send + Sync + Sized + 'static {
+    /// Its handles.
+    type Handle: Handle;
     /// All objects of the kind.
     fn slots() -> &'static Slots<Self>;
     /// Message of the last failure.
@@ -57,7 +85,7 @@ impl<T> Slots<T> {
             Some(index) => index as usize,
             None if entries.slots.len() == MOST => {
                 return Err(Failure::new(
-                    ISOPHOTE_OUT_OF_MEMORY,
+                    ISOPHOTE_ERROR_OUT_OF_MEMORY,
                     format!("there are {MOST} {}s already; destroy some", self.name),
                 ));
             }
@@ -114,18 +142,18 @@ impl<T> Slots<T> {
 
     fn parts(&self, handle: u64) -> Outcome<(usize, u32)> {
         if handle == 0 {
-            return Err(Failure::new(ISOPHOTE_INVALID_HANDLE, format!("the {} is 0", self.name)));
+            return Err(Failure::new(ISOPHOTE_ERROR_INVALID_HANDLE, format!("the {} is 0", self.name)));
         }
         if (handle >> 56) as u8 != self.kind {
             let message = format!("{handle:#x} is no handle of a {}", self.name);
-            return Err(Failure::new(ISOPHOTE_INVALID_HANDLE, message));
+            return Err(Failure::new(ISOPHOTE_ERROR_INVALID_HANDLE, message));
         }
         Ok((handle as usize & (MOST - 1), (handle >> INDEX_BITS) as u32))
     }
 
     fn stale(&self, handle: u64) -> Failure {
         Failure::new(
-            ISOPHOTE_INVALID_HANDLE,
+            ISOPHOTE_ERROR_INVALID_HANDLE,
             format!("there is no {0} {handle:#x}; was it destroyed?", self.name),
         )
     }
@@ -144,7 +172,7 @@ mod tests {
         assert_ne!(a, b);
         assert_eq!(*words.get(a).unwrap(), "a");
         for wrong in [0, 1, b, a + 1, a + (1 << INDEX_BITS), u64::MAX] {
-            assert_eq!(words.get(wrong).unwrap_err().status, ISOPHOTE_INVALID_HANDLE, "{wrong:#x}");
+            assert_eq!(words.get(wrong).unwrap_err().status, ISOPHOTE_ERROR_INVALID_HANDLE, "{wrong:#x}");
             assert!(words.remove(wrong).is_err());
         }
         words.remove(a).unwrap();

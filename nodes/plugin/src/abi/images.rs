@@ -127,7 +127,7 @@ impl Checked {
             && (self.channels < 3 || matches!(self.sample, Sample::U8 | Sample::U16))
         {
             return Err(Failure::new(
-                ISOPHOTE_INPUT,
+                ISOPHOTE_ERROR_INPUT,
                 "input image 'normal' must have 3 or 4 channels of f16 or f32",
             ));
         }
@@ -159,7 +159,7 @@ impl Checked {
         let len = window.width() as usize * self.channels * self.sample.size();
         let mut bytes = Vec::new();
         bytes.try_reserve_exact(len).map_err(|_| {
-            Failure::new(ISOPHOTE_OUT_OF_MEMORY, format!("there is no memory for a row of {len} bytes"))
+            Failure::new(ISOPHOTE_ERROR_OUT_OF_MEMORY, format!("there is no memory for a row of {len} bytes"))
         })?;
         bytes.resize(len, 0);
         Ok(bytes)

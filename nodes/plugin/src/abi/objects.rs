@@ -1,5 +1,6 @@
 //! The objects that hosts hold handles of, but for plans: graphs and devices.
 
+use super::contract::{IsophoteDevice, IsophoteGraph};
 use super::failure::Outcome;
 use super::guard::lock;
 use super::handles::{Object, Slots};
@@ -18,6 +19,8 @@ pub struct GraphObject {
 }
 
 impl Object for GraphObject {
+    type Handle = IsophoteGraph;
+
     fn slots() -> &'static Slots<Self> {
         static SLOTS: Slots<GraphObject> = Slots::new(1, "graph");
         &SLOTS
@@ -70,6 +73,8 @@ pub struct DeviceObject {
 }
 
 impl Object for DeviceObject {
+    type Handle = IsophoteDevice;
+
     fn slots() -> &'static Slots<Self> {
         static SLOTS: Slots<DeviceObject> = Slots::new(3, "device");
         &SLOTS

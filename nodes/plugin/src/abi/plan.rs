@@ -26,6 +26,8 @@ pub struct PlanObject {
 }
 
 impl Object for PlanObject {
+    type Handle = IsophotePlan;
+
     fn slots() -> &'static Slots<Self> {
         static SLOTS: Slots<PlanObject> = Slots::new(2, "plan");
         &SLOTS
@@ -153,7 +155,7 @@ pub(super) unsafe extern "C" fn create(
     plan: *mut IsophotePlan,
 ) -> IsophoteStatus {
     let make = || {
-        let graph = GraphObject::slots().get(from)?.snapshot();
+        let graph = GraphObject::slots().get(from.id)?.snapshot();
         // SAFETY: the host promised a request behind the pointer, and a rectangle or null.
         let (request, region) = unsafe {
             let request = request::request(&args::get(host_request, "the request")?)?;
@@ -185,7 +187,7 @@ pub(super) unsafe extern "C" fn update(
         if change.is_null() {
             return Err(Failure::argument("the place for the change is null"));
         }
-        let graph = GraphObject::slots().get(graph)?.snapshot();
+        let graph = GraphObject::slots().get(graph.id)?.snapshot();
         let found = lock(&object.state).update(graph)?;
         // SAFETY: the host promised that the place may be written.
         unsafe { args::put(change, found, "the place for the change") }
@@ -235,7 +237,7 @@ pub(super) unsafe extern "C" fn shader(
         let Some(dispatch) = state.program.dispatches.get(pass as usize) else {
             let count = state.program.dispatches.len();
             let message = format!("the plan has {count} passes, counted from 0, and no pass {pass}");
-            return Err(Failure::new(ISOPHOTE_UNKNOWN, message));
+            return Err(Failure::new(ISOPHOTE_ERROR_UNKNOWN, message));
         };
         let kernel = Arc::clone(&dispatch.shader);
         drop(state);

@@ -86,9 +86,9 @@ pub(super) unsafe extern "C" fn process(
         // SAFETY: the host promised a rectangle behind the pointer, or null.
         let region = unsafe { region(host_region, &request)? };
         target.must_hold(&region, "the target image")?;
-        let device = match device {
+        let device = match device.id {
             0 => None,
-            handle => Some(DeviceObject::slots().get(handle)?),
+            id => Some(DeviceObject::slots().get(id)?),
         };
         let threads = CallThreads::new(&control)?;
         let mut warm = object.warm(&request)?;
@@ -168,7 +168,7 @@ impl Job<'_> {
             }
             let Some((input, image)) = self.inputs.iter().find(|(i, _)| i.id() == port.name) else {
                 return Err(Failure::new(
-                    ISOPHOTE_INPUT,
+                    ISOPHOTE_ERROR_INPUT,
                     format!("input image '{}' is missing; {} of it is needed", port.name, shown(&window)),
                 ));
             };
@@ -193,7 +193,7 @@ impl Job<'_> {
         let result = self.execute(warm, device, &images)?;
         if result.window() != self.region {
             return Err(Failure::new(
-                ISOPHOTE_UNSUPPORTED,
+                ISOPHOTE_ERROR_UNSUPPORTED,
                 "the graph's output is of another size than the picture",
             ));
         }
@@ -248,7 +248,10 @@ impl Job<'_> {
             None => self.on_cpu(warm, images, control)?,
             Some(device) => self.on_device(warm, device, images, control)?,
         };
-        results.into_iter().next().ok_or_else(|| Failure::new(ISOPHOTE_INTERNAL, "the plan gave no image"))
+        results
+            .into_iter()
+            .next()
+            .ok_or_else(|| Failure::new(ISOPHOTE_ERROR_INTERNAL, "the plan gave no image"))
     }
 
     fn on_cpu(
@@ -324,7 +327,7 @@ fn must_fit(plan: &Plan, windows: &[Rect], on_device: bool) -> Outcome<()> {
     };
     memory::must_have(most).map_err(|_| {
         Failure::new(
-            ISOPHOTE_OUT_OF_MEMORY,
+            ISOPHOTE_ERROR_OUT_OF_MEMORY,
             format!("{} MiB are needed at once, more than there is; compute smaller regions", most >> 20),
         )
     })

@@ -80,7 +80,7 @@ impl Bound {
 
 fn translate(kernel: &Shader, language: IsophoteLanguage) -> Outcome<Made> {
     let fail = |what: &str| {
-        Failure::new(ISOPHOTE_UNSUPPORTED, format!("the shader of kernel '{}': {what}", kernel.name))
+        Failure::new(ISOPHOTE_ERROR_UNSUPPORTED, format!("the shader of kernel '{}': {what}", kernel.name))
     };
     let module = naga::front::wgsl::parse_str(&kernel.source).map_err(|e| fail(&e.to_string()))?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::empty())

@@ -73,7 +73,7 @@ impl CallThreads {
     pub fn new(control: &IsophoteControl) -> Outcome<Self> {
         if control.threads > MOST {
             return Err(Failure::new(
-                ISOPHOTE_OUT_OF_RANGE,
+                ISOPHOTE_ERROR_OUT_OF_RANGE,
                 format!("{} threads are more than the {MOST} that are allowed", control.threads),
             ));
         }

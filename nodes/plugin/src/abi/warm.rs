@@ -1,6 +1,6 @@
 //! What one call on a graph leaves for the next.
 
-use super::contract::ISOPHOTE_INTERNAL;
+use super::contract::ISOPHOTE_ERROR_INTERNAL;
 use super::failure::{Failure, Outcome};
 use isophote::engine::cpu::CpuExecutor;
 use isophote::engine::gpu::{Device, Executor};
@@ -72,5 +72,5 @@ impl Warm {
 }
 
 fn no_plan() -> Failure {
-    Failure::new(ISOPHOTE_INTERNAL, "the graph has no plan")
+    Failure::new(ISOPHOTE_ERROR_INTERNAL, "the graph has no plan")
 }

@@ -25,12 +25,12 @@ fn set(
         let Some((_, declared)) = spec.param(id) else {
             // Fails with the nearest name.
             graph.value(node, id)?;
-            return Err(Failure::new(ISOPHOTE_UNKNOWN, format!("there is no parameter '{id}'")));
+            return Err(Failure::new(ISOPHOTE_ERROR_UNKNOWN, format!("there is no parameter '{id}'")));
         };
         let own = param_type(declared.default);
         if !kinds.contains(&own.kind) {
             return Err(Failure::new(
-                ISOPHOTE_WRONG_TYPE,
+                ISOPHOTE_ERROR_WRONG_TYPE,
                 format!("parameter '{id}' of '{}' is {}", spec.id, own.name),
             ));
         }
