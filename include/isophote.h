@@ -26,7 +26,7 @@
  *   for (i = 0; i < pass_count; i++)
  *       api->plan_shader(plan, i, ISOPHOTE_LANGUAGE_SPIRV, &shader);   make a pipeline of each kernel
  *   each frame:
- *       api->graph_set_float(...), api->plan_update(plan, graph, &change);
+ *       api->graph_set_float(...), api->plan_update(plan, graph, &request, &change);
  *       for (i = 0; i < pass_count; i++)
  *           bind passes[i].grid and passes[i].params as uniforms, the textures passes[i].inputs and passes[i].outputs,
  *           dispatch passes[i].workgroups, and let the next pass wait for what it reads
@@ -417,6 +417,14 @@ typedef struct IsophoteRequest {
   // Which guides the host has, a sum of `ISOPHOTE_GUIDE_...`; connections to others count as open.
   // `process` goes by the images that it is given instead.
   uint32_t guides;
+  // Column of the canonical picture, in full-size pixels, at which the left border of this one stands: 0 unless it is a
+  // bounding box, or a data window within a display window. Noise, paper, hatching and grids are anchored to the
+  // canonical picture. From -1000000 to 1000000.
+  double origin_x;
+  // Row of the canonical picture at which the top border stands.
+  double origin_y;
+  // Number of the frame; noise that the parameter `hold` lets last for so many frames is drawn anew by it.
+  int64_t frame;
 } IsophoteRequest;
 
 // A half-open rectangle of pixels, x0 <= x < x1 and y0 <= y < y1, y down.
@@ -826,11 +834,13 @@ typedef struct IsophoteApi {
   // [object-thread] Message of the last failed call on the plan; empty before the first.
   IsophoteStatus (ISOPHOTE_ABI *plan_error)(struct IsophotePlan plan, struct IsophoteText *text);
   // [object-thread] Takes over the parameters and connections that `graph` has now, and
-  // reports what changed. When only uniforms changed, the bytes that `IsophotePass` points to were
+  // reports what changed. `request` is null for the plan's own, or another of the same size: its frame and origin
+  // change uniforms only. When only uniforms changed, the bytes that `IsophotePass` points to were
   // rewritten in place; when the structure changed, textures and passes must be asked for again
   // and earlier pointers are void. After a failure the plan is as before.
   IsophoteStatus (ISOPHOTE_ABI *plan_update)(struct IsophotePlan plan,
                                 struct IsophoteGraph graph,
+                                const struct IsophoteRequest *request,
                                 IsophoteChange *change);
   // [object-thread] All textures: inputs, outputs, then transients. The array is the plan's,
   // until it is destroyed or its structure changes.

@@ -219,12 +219,14 @@ pub struct IsophoteApi {
     /// [object-thread] Message of the last failed call on the plan; empty before the first.
     pub plan_error: unsafe extern "C" fn(plan: IsophotePlan, text: *mut IsophoteText) -> IsophoteStatus,
     /// [object-thread] Takes over the parameters and connections that `graph` has now, and
-    /// reports what changed. When only uniforms changed, the bytes that `IsophotePass` points to were
+    /// reports what changed. `request` is null for the plan's own, or another of the same size: its frame and origin
+    /// change uniforms only. When only uniforms changed, the bytes that `IsophotePass` points to were
     /// rewritten in place; when the structure changed, textures and passes must be asked for again
     /// and earlier pointers are void. After a failure the plan is as before.
     pub plan_update: unsafe extern "C" fn(
         plan: IsophotePlan,
         graph: IsophoteGraph,
+        request: *const IsophoteRequest,
         change: *mut IsophoteChange,
     ) -> IsophoteStatus,
     /// [object-thread] All textures: inputs, outputs, then transients. The array is the plan's,

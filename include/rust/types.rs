@@ -183,6 +183,14 @@ pub struct IsophoteRequest {
     /// Which guides the host has, a sum of `ISOPHOTE_GUIDE_...`; connections to others count as open.
     /// `process` goes by the images that it is given instead.
     pub guides: u32,
+    /// Column of the canonical picture, in full-size pixels, at which the left border of this one stands: 0 unless it is a
+    /// bounding box, or a data window within a display window. Noise, paper, hatching and grids are anchored to the
+    /// canonical picture. From -1000000 to 1000000.
+    pub origin_x: f64,
+    /// Row of the canonical picture at which the top border stands.
+    pub origin_y: f64,
+    /// Number of the frame; noise that the parameter `hold` lets last for so many frames is drawn anew by it.
+    pub frame: i64,
 }
 
 /// Pixels of the host's, to be read. The library never keeps the pointer.

@@ -22,6 +22,8 @@ struct Params {
     fill: f32,
     /// Nonzero: the sheet is opaque also where the picture is not.
     cover: u32,
+    /// Where the picture stands in the canonical one, pixels.
+    origin: vec2f,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;
@@ -41,7 +43,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
     }
-    let x = centre(id);
+    let x = centre(id) + params.origin;
     let q = x * params.inverse_scale;
     let grain = 0.45 * value_noise(q * 0.4, 0u) + 0.3 * value_noise(q * 0.13, 1013u) + 0.25 * value_noise(q * 0.037, 2027u);
     let v = fetch(lightness, 0u, pixel(id)).xy;

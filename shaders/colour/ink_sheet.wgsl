@@ -34,6 +34,8 @@ struct Params {
     cover: u32,
     /// How much of the grain follows the strokes instead of the paper, 0..=1.
     follow: f32,
+    /// Where the picture stands in the canonical one, pixels.
+    origin: vec2f,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;
@@ -64,7 +66,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
     }
-    let q = centre(id) * params.inverse_scale;
+    let q = (centre(id) + params.origin) * params.inverse_scale;
     let g = q * params.grain_frequency;
     let tooth = even(0.45 * value_noise(g, 11u) + 0.25 * value_noise(g * 2.13, 1013u)
         + 0.3 * value_noise(g * 0.31, 2027u));

@@ -18,6 +18,8 @@ struct Params {
     grain: f32,
     /// Cells of the grain per pixel of the full-size picture.
     grain_frequency: f32,
+    /// Where the picture stands in the canonical one, pixels.
+    origin: vec2f,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;
@@ -36,7 +38,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let v = fetch(source, 0u, pixel(id));
-    let q = centre(id) * params.inverse_scale;
+    let q = (centre(id) + params.origin) * params.inverse_scale;
     let cloud = 0.6 * value_noise(q * 0.017, 11u) + 0.4 * value_noise(q * 0.043, 503u);
     let g = q * params.grain_frequency;
     let grain = 0.6 * value_noise(g, 1013u) + 0.4 * value_noise(g * 2.3, 2027u);

@@ -11,6 +11,8 @@ struct Params {
     amount: f32,
     /// Waves per pixel of the full-size picture.
     frequency: f32,
+    /// Where the picture stands in the canonical one, pixels.
+    origin: vec2f,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;
@@ -26,7 +28,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
     }
-    let q = centre(id) * params.inverse_scale * params.frequency;
+    let q = (centre(id) + params.origin) * params.inverse_scale * params.frequency;
     let place = centre(id) + vec2f(offset(q, 3001u), offset(q, 5003u));
     let v = sample_covered(source, 0u, place);
     textureStore(target_image, vec2i(id.xy), unpremultiply(v));

@@ -12,6 +12,8 @@ struct Params {
     count: i32,
     /// Another number gives another noise.
     seed: u32,
+    /// Where the picture stands in the canonical one, pixels.
+    origin: vec2f,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;
@@ -29,8 +31,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
     }
-    let low = vec2f(pixel(id)) * params.pixel_size;
-    let high = vec2f(pixel(id) + 1) * params.pixel_size;
+    let corner = vec2f(pixel(id)) + params.origin;
+    let low = corner * params.pixel_size;
+    let high = (corner + 1.0) * params.pixel_size;
     let first = floor(low);
     var sum = 0.0;
     for (var j = 0; j < params.count; j++) {

@@ -29,7 +29,7 @@ IsophoteStatus try_objects(const IsophoteApi *api, IsophoteText *error)
     request.alpha = ISOPHOTE_ALPHA_EMISSIVE;
     request.guides = ISOPHOTE_GUIDE_MASK | ISOPHOTE_GUIDE_FLOW;
     if (api->plan_create(graph, &request, NULL, error, &plan) != ISOPHOTE_OK ||
-        api->plan_update(plan, graph, &change) != ISOPHOTE_OK)
+        api->plan_update(plan, graph, &request, &change) != ISOPHOTE_OK)
         return ISOPHOTE_ERROR_CONNECTION;
     if (api->plan_shader(plan, 0, ISOPHOTE_LANGUAGE_SPIRV, &shader) != ISOPHOTE_OK)
         return ISOPHOTE_ERROR_UNKNOWN;

@@ -58,7 +58,7 @@ int main(int argc, char **argv)
     if (api->plan_create(graph, &request, NULL, &error, &plan) != ISOPHOTE_OK)
         fail("plan_create", message);
     /* The plan needs its graph for updates only; this one changes nothing. */
-    if (api->plan_update(plan, graph, &change) != ISOPHOTE_OK || change != ISOPHOTE_CHANGE_UNIFORMS)
+    if (api->plan_update(plan, graph, NULL, &change) != ISOPHOTE_OK || change != ISOPHOTE_CHANGE_UNIFORMS)
         fail("plan_update", "an unchanged graph changed the plan");
     api->graph_destroy(graph);
 

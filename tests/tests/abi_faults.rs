@@ -79,7 +79,7 @@ const GRAPH: [Call; 22] = calls! { IsophoteGraph h:
 /// Functions on a plan, every pointer null.
 const PLAN: [Call; 6] = calls! { IsophotePlan h:
     plan_error(h, null_mut())
-    plan_update(h, IsophoteGraph::default(), null_mut())
+    plan_update(h, IsophoteGraph::default(), null(), null_mut())
     plan_textures(h, null_mut(), null_mut())
     plan_passes(h, null_mut(), null_mut())
     plan_shader(h, 0, 0, null_mut())
@@ -153,7 +153,7 @@ fn stale_foreign_and_invented_handles_are_noticed() {
             });
             assert_eq!((status, made.id), (ISOPHOTE_ERROR_INVALID_HANDLE, 0));
             assert!(said.contains("graph"), "{said}");
-            status = (api.plan_update)(plan, handle, &raw mut status);
+            status = (api.plan_update)(plan, handle, null(), &raw mut status);
             assert_eq!(status, ISOPHOTE_ERROR_INVALID_HANDLE);
         }
         assert_eq!((api.plan_destroy)(plan), ISOPHOTE_OK);
@@ -370,7 +370,17 @@ fn broken_graph_files_are_refused_with_a_reason() {
 }
 
 fn request(api: &IsophoteApi, width: u32, height: u32) -> IsophoteRequest {
-    let mut request = IsophoteRequest { width: 0, height: 0, scale: 0.0, space: 9, alpha: 9, guides: 9 };
+    let mut request = IsophoteRequest {
+        width: 0,
+        height: 0,
+        scale: 0.0,
+        space: 9,
+        alpha: 9,
+        guides: 9,
+        origin_x: 0.0,
+        origin_y: 0.0,
+        frame: 0,
+    };
     // SAFETY: the place is writable.
     assert_eq!(unsafe { (api.request_init)(width, height, &raw mut request) }, ISOPHOTE_OK);
     request
@@ -459,7 +469,7 @@ fn a_failed_update_leaves_the_plan_as_it_was() {
         let before = bytes(shown);
         let sigma = c("sigma");
         assert_eq!((api.graph_set_float)(graph, 0, sigma.as_ptr(), 5.5), ISOPHOTE_OK);
-        assert_eq!((api.plan_update)(plan, graph, &raw mut change), ISOPHOTE_OK);
+        assert_eq!((api.plan_update)(plan, graph, null(), &raw mut change), ISOPHOTE_OK);
         assert_eq!(change, ISOPHOTE_CHANGE_UNIFORMS);
         assert_eq!(passes().as_ptr(), shown.as_ptr(), "a slider moved the passes");
         let edited = bytes(shown);
@@ -467,11 +477,11 @@ fn a_failed_update_leaves_the_plan_as_it_was() {
 
         let other = single(api, "gaussian");
         assert_eq!((api.graph_disconnect)(other, 0, c("color").as_ptr()), ISOPHOTE_OK);
-        assert_eq!((api.plan_update)(plan, other, &raw mut change), ISOPHOTE_ERROR_CONNECTION);
+        assert_eq!((api.plan_update)(plan, other, null(), &raw mut change), ISOPHOTE_ERROR_CONNECTION);
         assert_eq!(bytes(passes()), edited);
 
         assert_eq!((api.graph_set_float)(graph, 0, c("mix").as_ptr(), 0.5), ISOPHOTE_OK);
-        assert_eq!((api.plan_update)(plan, graph, &raw mut change), ISOPHOTE_OK);
+        assert_eq!((api.plan_update)(plan, graph, null(), &raw mut change), ISOPHOTE_OK);
         assert_eq!(change, ISOPHOTE_CHANGE_STRUCTURE);
         assert_eq!(passes().len(), before.len() + 1);
         // The plan does not need its graph.

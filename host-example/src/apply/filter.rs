@@ -32,6 +32,9 @@ pub struct Filter {
     threads: u32,
 }
 
+/// Farthest from 0 that a picture may begin, pixels, as the contract has it.
+const MOST_ORIGIN: i32 = 1_000_000;
+
 /// Results of one frame.
 #[derive(Debug)]
 pub struct Filtered {
@@ -104,7 +107,12 @@ impl Filter {
             filtered.replaced += bad;
             let precision = if to == source.state { color.precision() } else { Precision::F32 };
             let mut result = Pixels::zeroed(color.width(), color.height(), channels, precision);
-            let request = self.request(name, color, source.state, working.space)?;
+            let mut request = self.request(name, color, source.state, working.space)?;
+            // Windows farther out than marks can be told apart are windows of their own.
+            if picture.origin.iter().all(|o| o.abs() <= MOST_ORIGIN) {
+                [request.origin_x, request.origin_y] = picture.origin.map(f64::from);
+            }
+            request.frame = frame.unwrap_or_default();
             let mut inputs = vec![Input { name: "color", pixels: color }];
             inputs.extend(picture.guides.iter().map(|(name, pixels)| Input { name, pixels }));
             let share = 1.0 / pictures.len() as f32;

@@ -115,14 +115,14 @@ impl Graph {
 }
 
 impl Plan {
-    /// Takes over the parameters that `graph` has now.
+    /// Takes over the parameters that `graph` has now, and what `request` of the same size asks for.
     ///
     /// # Errors
     /// [`Refusal`] as [`Graph::plan`]; the plan is then as before.
-    pub fn update(&mut self, graph: &Graph) -> Answer<Change> {
+    pub fn update(&mut self, graph: &Graph, request: &IsophoteRequest) -> Answer<Change> {
         let mut change = 0;
-        // SAFETY: both handles are their objects'; `change` may be written during the call.
-        let status = unsafe { (self.api.plan_update)(self.handle, graph.handle, &raw mut change) };
+        // SAFETY: both handles are their objects'; the request may be read and `change` written during the call.
+        let status = unsafe { (self.api.plan_update)(self.handle, graph.handle, request, &raw mut change) };
         self.check(status)?;
         Ok(if change == c::ISOPHOTE_CHANGE_UNIFORMS { Change::Uniforms } else { Change::Structure })
     }

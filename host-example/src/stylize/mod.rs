@@ -69,13 +69,14 @@ impl Stylizer {
         Ok(())
     }
 
-    /// Gives animated parameters their values at a frame; they take effect with the next
+    /// Gives animated parameters their values at a frame, and noise that is held its look; both take effect with the next
     /// [`Stylizer::update`].
     ///
     /// # Errors
     /// As [`Style::at_frame`].
     pub fn at_frame(&mut self, frame: i64) -> Result<()> {
-        self.edited |= self.style.at_frame(frame)?;
+        self.edited |= self.style.at_frame(frame)? || self.request.frame != frame;
+        self.request.frame = frame;
         Ok(())
     }
 
@@ -89,7 +90,7 @@ impl Stylizer {
             return Ok(false);
         }
         let refused = |e: crate::loader::Refusal| e.at(&self.style.name, "choose another value");
-        if self.plan.update(&self.style.graph).map_err(refused)? == Change::Uniforms {
+        if self.plan.update(&self.style.graph, &self.request).map_err(refused)? == Change::Uniforms {
             self.runner.repack(&self.plan)?;
             return Ok(false);
         }

@@ -19,6 +19,11 @@ pub struct Request {
     pub height: u32,
     /// Rendered size over full size: 0.5 for a half-size proxy. Scales every parameter in pixels.
     pub scale: f32,
+    /// Where the left top corner of the picture stands in the canonical one, in full-size pixels: noise, paper, hatching
+    /// and grids are anchored there, so that a bounding box that moves shows the same marks.
+    pub origin: [f64; 2],
+    /// Number of the frame, which renews what `hold` lets last.
+    pub frame: i64,
     /// Space of the colour that enters and leaves.
     pub space: ColourSpace,
     /// True when colour enters, and is to leave, multiplied by alpha.
@@ -66,6 +71,8 @@ impl Request {
             width,
             height,
             scale: 1.0,
+            origin: [0.0; 2],
+            frame: 0,
             space: ColourSpace::Srgb,
             premultiplied: true,
             emission: false,
@@ -118,6 +125,21 @@ impl Planned {
         Ok(Self { plan, request, scratch })
     }
 
+    /// Changes the request for the next [`Planned::update`]: frame and origin then change uniforms only.
+    ///
+    /// # Errors
+    /// [`Error::Value`] for another size, which needs another plan.
+    pub fn set_request(&mut self, request: Request) -> Result<()> {
+        if [request.width, request.height] != [self.request.width, self.request.height] {
+            return Err(Error::Value(format!(
+                "the plan is for {}x{} pixels, not {}x{}; make another",
+                self.request.width, self.request.height, request.width, request.height
+            )));
+        }
+        self.request = request;
+        Ok(())
+    }
+
     /// Takes over the current parameter values and connections of `graph`.
     ///
     /// # Errors
@@ -144,7 +166,10 @@ impl Planned {
     }
 }
 
-/// Fails when `request` cannot be planned: no output, a scale out of range, or a required input open.
+/// Farther from 0, places of pixels are not exact in single precision.
+const MOST_ORIGIN: f64 = 1_000_000.0;
+
+/// Fails when `request` cannot be planned: no output, a scale or an origin out of range, or a required input open.
 fn check(graph: &Graph, request: &Request) -> Result<()> {
     if graph.output_node().is_none() {
         return Err(Error::Connection(
@@ -155,6 +180,12 @@ fn check(graph: &Graph, request: &Request) -> Result<()> {
         return Err(Error::Value(format!(
             "the render scale must be above 0 and at most 64, not {}",
             request.scale
+        )));
+    }
+    if !request.origin.iter().all(|o| o.abs() <= MOST_ORIGIN) {
+        return Err(Error::Value(format!(
+            "the origin must be within {MOST_ORIGIN} pixels of 0, not {:?}",
+            request.origin
         )));
     }
     for node in graph.nodes() {
@@ -232,8 +263,15 @@ fn describe(
 
 /// The passes of one node, its mix and mask included.
 fn result(builder: &mut PlanBuilder, node: &Node, inputs: &[Option<ImageId>], request: &Request) -> ImageId {
-    let mut scope =
-        Scope { plan: builder, spec: node.spec, values: &node.values, inputs, scale: request.scale };
+    let mut scope = Scope {
+        plan: builder,
+        spec: node.spec,
+        values: &node.values,
+        inputs,
+        scale: request.scale,
+        origin: request.origin.map(|o| (o * f64::from(request.scale)) as f32),
+        frame: request.frame,
+    };
     let result = (node.spec.build)(&mut scope);
     let Some(original) = picture(node).and_then(|color| inputs[color]) else { return result };
     let (amount, mask) = (scope.float(MIX.id), scope.input(MASK.id));

@@ -97,6 +97,12 @@ pub const MIX: Param = Param::float("mix", "Mix", 1.0, [0.0, 1.0])
     .structural()
     .neutral_at_zero();
 
+/// `hold` of nodes that draw by noise.
+pub(crate) const HOLD: Param = Param::int("hold", "Hold", 0, [0, 1000])
+    .slider(0.0, 24.0)
+    .group("time")
+    .doc("Frames that hand-drawn noise lasts: 1 draws it anew in each frame, 0 keeps it for ever.");
+
 /// How much of a node's result is used; every node from colour to colour has it.
 pub const MASK: Port = Port {
     id: "mask",
@@ -168,6 +174,8 @@ pub struct Scope<'a> {
     pub(crate) values: &'a [Value],
     pub(crate) inputs: &'a [Option<ImageId>],
     pub(crate) scale: f32,
+    pub(crate) origin: [f32; 2],
+    pub(crate) frame: i64,
 }
 
 impl Scope<'_> {
@@ -220,6 +228,21 @@ impl Scope<'_> {
     /// How large the rendered picture is against the full-size one.
     pub fn scale(&self) -> f32 {
         self.scale
+    }
+
+    /// Where the picture stands in the canonical one, in pixels of the rendered size: what marks are anchored to.
+    pub fn origin(&self) -> [f32; 2] {
+        self.origin
+    }
+
+    /// `seed` for the frame that is rendered: renewed every `hold` frames, the same for ever for 0.
+    pub fn renewed(&self, seed: u32) -> u32 {
+        match self.int(HOLD.id) {
+            0 => seed,
+            hold => {
+                seed.wrapping_add((self.frame.div_euclid(i64::from(hold)) as u32).wrapping_mul(0x9e37_79b9))
+            }
+        }
     }
 
     /// An optional input, when connected.

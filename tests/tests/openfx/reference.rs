@@ -159,6 +159,9 @@ impl Through<'_> {
             space: self.space as u32,
             alpha: if self.premultiplied { ISOPHOTE_ALPHA_PREMULTIPLIED } else { ISOPHOTE_ALPHA_STRAIGHT },
             guides: 0,
+            origin_x: 0.0,
+            origin_y: 0.0,
+            frame: 0,
         };
         // SAFETY: text with a closing zero, images of the sizes they name, and places for the answers.
         unsafe {

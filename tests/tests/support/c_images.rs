@@ -47,7 +47,17 @@ impl<'a> Run<'a> {
     pub fn new(library: &'a Loaded, node: &str) -> Self {
         let api = library.api;
         let mut graph = IsophoteGraph::default();
-        let mut request = IsophoteRequest { width: 0, height: 0, scale: 0.0, space: 0, alpha: 0, guides: 0 };
+        let mut request = IsophoteRequest {
+            width: 0,
+            height: 0,
+            scale: 0.0,
+            space: 0,
+            alpha: 0,
+            guides: 0,
+            origin_x: 0.0,
+            origin_y: 0.0,
+            frame: 0,
+        };
         let id = CString::new(node).unwrap();
         // SAFETY: the text ends with a zero, the places are writable.
         unsafe {

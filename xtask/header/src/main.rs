@@ -46,7 +46,7 @@ const PREAMBLE: &str = "\
  *   for (i = 0; i < pass_count; i++)
  *       api->plan_shader(plan, i, ISOPHOTE_LANGUAGE_SPIRV, &shader);   make a pipeline of each kernel
  *   each frame:
- *       api->graph_set_float(...), api->plan_update(plan, graph, &change);
+ *       api->graph_set_float(...), api->plan_update(plan, graph, &request, &change);
  *       for (i = 0; i < pass_count; i++)
  *           bind passes[i].grid and passes[i].params as uniforms, the textures passes[i].inputs and passes[i].outputs,
  *           dispatch passes[i].workgroups, and let the next pass wait for what it reads

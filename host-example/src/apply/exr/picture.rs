@@ -20,6 +20,8 @@ pub struct Picture {
     pub guides: Vec<(&'static str, Pixels)>,
     /// Red, green, blue, white: x and y of each.
     pub chromaticities: Option<[f32; 8]>,
+    /// Where its first pixel stands in the display window's coordinates.
+    pub origin: [i32; 2],
 }
 
 /// Reads a picture.
@@ -50,7 +52,12 @@ pub fn read(exr: &File, decoded: &[Option<Decoded>], chosen: &Chosen) -> Result<
         }
     }
     let pixels = interleaved(part.window, &planes).ok_or_else(unequal)?;
-    Ok(Picture { pixels, guides, chromaticities: part.chromaticities })
+    Ok(Picture {
+        pixels,
+        guides,
+        chromaticities: part.chromaticities,
+        origin: [part.window.x, part.window.y],
+    })
 }
 
 /// Samples a pixel that a result must have to go into the file.

@@ -12,7 +12,7 @@ use isophote::engine::kernel::WORKGROUP;
 use isophote::engine::program::{Dispatch, Program, Role, Texture};
 use isophote::engine::{Class, Rect};
 use isophote::request::Change;
-use isophote::{Graph, Planned};
+use isophote::{Graph, Planned, Request};
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
 use std::ptr::null;
@@ -55,11 +55,15 @@ impl State {
         Ok(Self { graph, planned, region, program, shown })
     }
 
-    fn update(&mut self, graph: Graph) -> Outcome<IsophoteChange> {
+    fn update(&mut self, graph: Graph, request: Option<Request>) -> Outcome<IsophoteChange> {
+        let before = *self.planned.request();
+        if let Some(request) = request {
+            self.planned.set_request(request)?;
+        }
         let change = match self.planned.update(&graph) {
             Ok(change) => change,
             Err(e) => {
-                self.planned = Planned::new(&self.graph, *self.planned.request())?;
+                self.planned = Planned::new(&self.graph, before)?;
                 return Err(e.into());
             }
         };
@@ -75,7 +79,7 @@ impl State {
                 Ok(ISOPHOTE_CHANGE_STRUCTURE)
             }
             Err(e) => {
-                self.planned = Planned::new(&self.graph, *self.planned.request())?;
+                self.planned = Planned::new(&self.graph, before)?;
                 Err(e.into())
             }
         }
@@ -181,6 +185,7 @@ pub(super) unsafe extern "C" fn error(plan: IsophotePlan, text: *mut IsophoteTex
 pub(super) unsafe extern "C" fn update(
     plan: IsophotePlan,
     graph: IsophoteGraph,
+    host_request: *const IsophoteRequest,
     change: *mut IsophoteChange,
 ) -> IsophoteStatus {
     guard::on::<PlanObject>(plan, |object| {
@@ -188,7 +193,13 @@ pub(super) unsafe extern "C" fn update(
             return Err(Failure::argument("the place for the change is null"));
         }
         let graph = GraphObject::slots().get(graph.id)?.snapshot();
-        let found = lock(&object.state).update(graph)?;
+        let request = if host_request.is_null() {
+            None
+        } else {
+            // SAFETY: the host promised a request behind the pointer.
+            Some(request::request(&unsafe { args::get(host_request, "the request")? })?)
+        };
+        let found = lock(&object.state).update(graph, request)?;
         // SAFETY: the host promised that the place may be written.
         unsafe { args::put(change, found, "the place for the change") }
     })

@@ -47,6 +47,8 @@ pub fn request(host: &IsophoteRequest) -> Outcome<Request> {
         emission,
         guides,
         scale: host.scale,
+        origin: [host.origin_x, host.origin_y],
+        frame: host.frame,
         ..Request::new(host.width, host.height)
     })
 }
@@ -89,6 +91,9 @@ pub(super) unsafe extern "C" fn init(
         space: ISOPHOTE_SPACE_SRGB,
         alpha: ISOPHOTE_ALPHA_PREMULTIPLIED,
         guides: 0,
+        origin_x: 0.0,
+        origin_y: 0.0,
+        frame: 0,
     };
     // SAFETY: the host promised that the place may be written.
     guard::call(|| unsafe { args::put(request, value, "the place for the request") }, |_| {})

@@ -18,6 +18,10 @@ pub struct Frame {
     pub ratio: [f64; 2],
     /// Pixels per canonical unit where they are square; of others, along the finer side.
     pub scale: f32,
+    /// Top of the project (canonical), where the host tells.
+    pub top: Option<f64>,
+    /// Number of the frame.
+    pub number: i64,
 }
 
 /// What is less than this share of a pixel is rounding.
@@ -92,7 +96,23 @@ impl Frame {
             picture,
             ratio,
             scale: scale.clamp(1.0 / 1024.0, 64.0) as f32,
+            top: None,
+            number: 0,
         })
+    }
+
+    /// The same at a time of a project that ends at `top` (canonical).
+    pub fn in_project(self, top: Option<f64>, time: f64) -> Self {
+        Self { top, number: time.floor() as i64, ..self }
+    }
+
+    /// Where its left top corner stands in the project, in canonical units downwards from the project's; marks are anchored
+    /// to that. Without a project's size rows are counted from the picture's own top.
+    pub fn origin(&self) -> [f64; 2] {
+        let [x, _, _, y] = self.canonical(self.picture);
+        let origin = [x, self.top.map_or(0.0, |top| top - y)];
+        // Pictures without a bound begin farther out than marks can be told apart.
+        origin.map(|o| if o.abs() < ENDLESS { o } else { 0.0 })
     }
 
     /// Whether its pixels are square, as far as anyone can see.
@@ -186,7 +206,8 @@ mod tests {
 
     #[test]
     fn pixels_survive_the_way_to_canonical_units_and_back() {
-        let frame = Frame { picture: [-3, 5, 61, 45], ratio: [0.5 / 1.0667, 0.5], scale: 0.5 };
+        let frame =
+            Frame { picture: [-3, 5, 61, 45], ratio: [0.5 / 1.0667, 0.5], scale: 0.5, top: None, number: 0 };
         for bounds in [[-3, 5, 61, 45], [0, 6, 1, 7], [-2, 30, 17, 44]] {
             let [x1, y1, x2, y2] = frame.canonical(bounds);
             assert_eq!(frame.pixels(&OfxRectD { x1, y1, x2, y2 }), Some(bounds));

@@ -66,7 +66,15 @@ impl Prepared {
         let plan = |[width, height]: [u32; 2], scale, premultiplied| {
             Planned::new(
                 graph,
-                Request { scale, space, premultiplied, guides, ..Request::new(width, height) },
+                Request {
+                    scale,
+                    space,
+                    premultiplied,
+                    guides,
+                    origin: frame.origin(),
+                    frame: frame.number,
+                    ..Request::new(width, height)
+                },
             )
         };
         let Some(mut square) = SquarePixels::of(frame) else {
@@ -141,9 +149,13 @@ pub fn defined(
     if !is_endless(&region) || settings.is_local()? {
         return Ok(Some(region));
     }
-    let extent = host.effect(instance).doubles::<2>(kOfxImageEffectPropProjectExtent);
-    let project = extent.map(|[x2, y2]| OfxRectD { x1: 0.0, y1: 0.0, x2, y2 });
+    let project = extent(host, instance).map(|[x2, y2]| OfxRectD { x1: 0.0, y1: 0.0, x2, y2 });
     Ok(project.map(|project| bounded(&region, &project)))
+}
+
+/// Where the project ends at the right and at the top (canonical); it begins at 0.
+pub fn extent(host: &Host, instance: Handle) -> Option<[f64; 2]> {
+    host.effect(instance).doubles::<2>(kOfxImageEffectPropProjectExtent)
 }
 
 /// The region of definition: the source's, whatever else is connected.
@@ -187,7 +199,8 @@ pub fn regions_of_interest(
     let Some(source) = Clip::of(host, instance, SOURCE) else { return Ok(kOfxStatReplyDefault) };
     let settings = Settings::read(effect, host, instance, moment.time)?;
     let defined = defined(host, instance, &source, moment.time, &settings)?;
-    let frame = Frame::new(host, defined, moment.scale, source.aspect(), None);
+    let frame = Frame::new(host, defined, moment.scale, source.aspect(), None)
+        .map(|frame| frame.in_project(extent(host, instance).map(|[_, top]| top), moment.time));
     let wanted = args.doubles::<4>(kOfxImageEffectPropRegionOfInterest).map(|[x1, y1, x2, y2]| OfxRectD {
         x1,
         y1,
@@ -330,7 +343,13 @@ mod tests {
         let guides = Guides { normal: true, depth: true, ..Guides::default() };
         for par in [0.5, 1.0667, 2.0, 20.0] {
             let picture = [0, 0, 7680, 4320];
-            let frame = Frame { picture, ratio: [1.0 / par, 1.0], scale: 1.0 / par.min(1.0) as f32 };
+            let frame = Frame {
+                picture,
+                ratio: [1.0 / par, 1.0],
+                scale: 1.0 / par.min(1.0) as f32,
+                top: None,
+                number: 0,
+            };
             let whole = Rect::of_size(7680, 4320);
             let bytes = |window: Rect| window.area() * 16;
             for effect in EFFECTS.iter() {

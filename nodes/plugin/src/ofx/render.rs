@@ -64,7 +64,9 @@ pub fn render(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -
     let aspect = source.aspect.unwrap_or_else(|| clip.aspect());
     let mut settings = Settings::read(effect, host, instance, moment.time)?;
     let defined = instance::defined(host, instance, &clip, moment.time, &settings)?;
-    let frame = Frame::new(host, defined, moment.scale, aspect, Some(source.bounds)).ok_or(kOfxStatFailed)?;
+    let frame = Frame::new(host, defined, moment.scale, aspect, Some(source.bounds))
+        .ok_or(kOfxStatFailed)?
+        .in_project(instance::extent(host, instance).map(|[_, top]| top), moment.time);
     if let Some(name) = clip.properties.string(kOfxImageClipPropColourspace, 0) {
         settings.space = settings.space_of(&name);
     }

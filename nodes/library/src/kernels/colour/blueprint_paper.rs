@@ -38,6 +38,8 @@ pub struct Sheet {
     pub fill: f32,
     /// Opaque also where the picture is not.
     pub cover: bool,
+    /// Where the picture stands in the canonical one, pixels.
+    pub origin: [f32; 2],
 }
 
 /// Draws `edges` (1 = paper, 0 = line) on a sheet shaded after (L alpha, alpha).
@@ -51,7 +53,7 @@ pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, edges: ImageId, sheet: &
         texture_amount: sheet.texture,
         fill: sheet.fill,
         cover: sheet.cover.into(),
-        padding: Default::default(),
+        origin: sheet.origin,
     };
     plan.pass(&KERNEL, &[lightness, edges], &params, Class::Colour, Support::Pixels(0))
 }
@@ -70,7 +72,8 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
         #[inline(always)]
         |block, target| {
             let columns: f32x8<S> = block.columns(simd).to_float();
-            let (x, y) = (columns + 0.5, f32x8::splat(simd, block.y as f32 + 0.5));
+            let x = columns + 0.5 + params.origin[0];
+            let y = f32x8::splat(simd, block.y as f32 + 0.5 + params.origin[1]);
             let (qx, qy) = (x * params.inverse_scale, y * params.inverse_scale);
             let grain = noise(simd, qx * 0.4, qy * 0.4, 0) * 0.45
                 + noise(simd, qx * 0.13, qy * 0.13, 1013) * 0.3

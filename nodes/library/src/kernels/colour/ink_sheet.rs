@@ -55,6 +55,8 @@ pub struct Sheet {
     pub follow: f32,
     /// Opaque also where the picture is not.
     pub cover: bool,
+    /// Where the picture stands in the canonical one, pixels.
+    pub origin: [f32; 2],
 }
 
 /// Draws a `response` (units of L) on a sheet, shaded and tinted after `color`; the first channel of
@@ -81,6 +83,8 @@ pub fn pass(
         texture_amount: sheet.texture,
         cover: sheet.cover.into(),
         follow: sheet.follow,
+        origin: sheet.origin,
+        padding: Default::default(),
     };
     plan.pass(&KERNEL, &[response, color, strokes], &params, Class::Colour, Support::Pixels(0))
 }
@@ -100,8 +104,8 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
         #[inline(always)]
         |block, target| {
             let columns: f32x8<S> = block.columns(simd).to_float();
-            let x = (columns + 0.5) * params.inverse_scale;
-            let y = f32x8::splat(simd, (block.y as f32 + 0.5) * params.inverse_scale);
+            let x = (columns + 0.5 + params.origin[0]) * params.inverse_scale;
+            let y = f32x8::splat(simd, (block.y as f32 + 0.5 + params.origin[1]) * params.inverse_scale);
             let (gx, gy) = (x * params.grain_frequency, y * params.grain_frequency);
             let tooth = even(
                 noise(simd, gx, gy, 11) * 0.45

@@ -37,6 +37,8 @@ pub struct Wash {
     pub grain: f32,
     /// Size of the grain in pixels of the full-size picture.
     pub grain_size: f32,
+    /// Where the picture stands in the canonical one, pixels.
+    pub origin: [f32; 2],
 }
 
 /// Paints `color`; `blurred` is the same, smoothed by the width of the dark borders.
@@ -48,6 +50,7 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, blurred: ImageId, wash: &Was
         clouds: wash.clouds,
         grain: wash.grain,
         grain_frequency: 1.0 / wash.grain_size.max(0.5),
+        origin: wash.origin,
     };
     plan.pass(&KERNEL, &[color, blurred], &params, Class::Colour, Support::Pixels(0))
 }
@@ -65,8 +68,8 @@ fn washed<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
         #[inline(always)]
         |block, target| {
             let columns: f32x8<S> = block.columns(simd).to_float();
-            let x = (columns + 0.5) * params.inverse_scale;
-            let y = f32x8::splat(simd, (block.y as f32 + 0.5) * params.inverse_scale);
+            let x = (columns + 0.5 + params.origin[0]) * params.inverse_scale;
+            let y = f32x8::splat(simd, (block.y as f32 + 0.5 + params.origin[1]) * params.inverse_scale);
             let cloud =
                 noise(simd, x * 0.017, y * 0.017, 11) * 0.6 + noise(simd, x * 0.043, y * 0.043, 503) * 0.4;
             let (gx, gy) = (x * params.grain_frequency, y * params.grain_frequency);

@@ -31,13 +31,21 @@ pub struct Options {
     pub wavelength: f32,
     /// Rendered size over full size.
     pub scale: f32,
+    /// Where the picture stands in the canonical one, pixels.
+    pub origin: [f32; 2],
 }
 
 /// Fetches pixels from up to `amount` pixels away; `wavelength` is in pixels of the full-size picture,
 /// of which this one is rendered at `scale`.
 pub fn pass(plan: &mut PlanBuilder, color: ImageId, options: &Options) -> ImageId {
-    let Options { amount, wavelength, scale } = *options;
-    let params = Params { inverse_scale: 1.0 / scale, amount, frequency: 1.0 / wavelength.max(1.0) };
+    let Options { amount, wavelength, scale, origin } = *options;
+    let params = Params {
+        inverse_scale: 1.0 / scale,
+        amount,
+        frequency: 1.0 / wavelength.max(1.0),
+        origin,
+        padding: Default::default(),
+    };
     plan.pass(&KERNEL, &[color], &params, Class::Colour, Support::Pixels(reach(&params) as u32))
 }
 
@@ -61,7 +69,7 @@ fn wavering<S: Simd>(simd: S, params: &Params, source: &View<'_>, band: &mut Ban
         |block, target| {
             let [cx, cy] = block.centres(simd);
             let q =
-                [cx * params.inverse_scale * params.frequency, cy * params.inverse_scale * params.frequency];
+                [cx + params.origin[0], cy + params.origin[1]].map(|v| v * params.inverse_scale * params.frequency);
             let (dx, dy) = (offset(simd, q, 3001, params.amount), offset(simd, q, 5003, params.amount));
             write(unpremultiply(sample_linear4(simd, source, cx + dx, cy + dy)), target);
         },

@@ -26,18 +26,20 @@ crate::kernel!(noise {
 /// Most grains along a side of a pixel.
 const MOST: f32 = 8.0;
 
-/// Adds the pass: noise for a picture rendered at `scale` of its full size.
-pub fn pass(plan: &mut PlanBuilder, scale: f32, seed: u32) -> ImageId {
-    pass_at(plan, scale, seed, 0)
+/// Adds the pass: noise for a picture rendered at `scale` of its full size, which stands at `origin`, pixels of that
+/// size, in the canonical one.
+pub fn pass(plan: &mut PlanBuilder, scale: f32, origin: [f32; 2], seed: u32) -> ImageId {
+    pass_at(plan, scale, origin, seed, 0)
 }
 
-/// The same at a level of the pyramid; `scale` is the size of a picture at that level over the full size.
-pub fn pass_at(plan: &mut PlanBuilder, scale: f32, seed: u32, level: i8) -> ImageId {
+/// The same at a level of the pyramid; `scale` is the size of a picture at that level over the full size, and `origin` is
+/// in pixels of that level.
+pub fn pass_at(plan: &mut PlanBuilder, scale: f32, origin: [f32; 2], seed: u32, level: i8) -> ImageId {
     let grain = (1.0 / (scale * MOST)).max(1.0);
     let pixel_size = (1.0 / scale).min(MOST);
     // A whole number of grains fits; any other number touches one more at each end.
     let count = if pixel_size.fract() == 0.0 { pixel_size } else { pixel_size.ceil() + 1.0 } as i32;
-    let params = Params { pixel_size, grain, count, seed };
+    let params = Params { pixel_size, grain, count, seed, origin };
     plan.pass_at(&KERNEL, &[], &params, &[Class::Colour], Support::Pixels(0), level)
 }
 
@@ -67,10 +69,11 @@ fn rows<S: Simd>(simd: S, params: &Params, band: &mut Band<'_>) {
     let window = band.window;
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     for y in window.y0..window.y1 {
-        let (low_y, high_y) = (y as f32 * params.pixel_size, (y + 1) as f32 * params.pixel_size);
+        let place = y as f32 + params.origin[1];
+        let (low_y, high_y) = (place * params.pixel_size, (place + 1.0) * params.pixel_size);
         for (i, pixels) in band.row_mut(0, y).chunks_mut(32).enumerate() {
             let x = window.x0 + 8 * i as i32;
-            let x = f32x8::from_slice(simd, &LANES) + x as f32;
+            let x = f32x8::from_slice(simd, &LANES) + x as f32 + params.origin[0];
             let (low_x, high_x) = (x * params.pixel_size, (x + 1.0) * params.pixel_size);
             let mut sum = zero;
             for j in 0..params.count {
@@ -99,7 +102,7 @@ mod tests {
 
     fn noise(width: u32, height: u32, scale: f32, seed: u32) -> Image {
         let mut plan = PlanBuilder::new(width, height).unwrap();
-        let image = pass(&mut plan, scale, seed);
+        let image = pass(&mut plan, scale, [0.0; 2], seed);
         plan.output("noise", image);
         let region = Rect::of_size(width, height);
         CpuExecutor::new()

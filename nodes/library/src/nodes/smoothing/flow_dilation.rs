@@ -4,7 +4,7 @@ use crate::kernels::smoothing::{flow_dilation, gaussian_blur};
 use crate::kernels::structure::noise;
 use crate::nodes::structure::structure_tensor;
 use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::spec::{HOLD, NodeSpec, Param, Scope};
 use isophote_engine::{Class, ImageId};
 
 /// The node.
@@ -31,6 +31,7 @@ pub static NODE: NodeSpec = NodeSpec {
             .pixels()
             .doc("Standard deviation of the smoothing of the noise: strokes are about three times as wide."),
         Param::int("seed", "Seed", 1, [0, 9999]).slider(0.0, 100.0).doc("Another number, other strokes."),
+        HOLD,
     ],
     build,
 };
@@ -40,7 +41,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let tensors = structure_tensor::connected(scope, color);
     let (length, width, seed) = (scope.float("length"), scope.float("width"), scope.int("seed"));
     let scale = scope.scale();
-    let white = noise::pass(scope.plan, scale, seed as u32);
+    let (origin, seed) = (scope.origin(), scope.renewed(seed as u32));
+    let white = noise::pass(scope.plan, scale, origin, seed);
     let grains = gaussian_blur::pass(scope.plan, white, width, Class::Colour);
     flow_dilation::pass(scope.plan, color, tensors, grains, length, scope.bool("adapt"))
 }

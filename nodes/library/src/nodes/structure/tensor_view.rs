@@ -93,8 +93,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let tensor = scope.required("tensor");
     let show = match scope.option("show") {
         View::StreamLines => {
-            let (sigma, scale) = (scope.float("sigma"), scope.scale());
-            return stream_lines(scope.plan, tensor, sigma, scale);
+            let (sigma, scale, origin) = (scope.float("sigma"), scope.scale(), scope.origin());
+            return stream_lines(scope.plan, tensor, sigma, scale, origin);
         }
         View::Orientation => Show::Orientation,
         View::Anisotropy => Show::Anisotropy,
@@ -120,7 +120,13 @@ const MOST_FINER: u8 = 2;
 /// Noise along the stream lines of `tensor`, by a Gaussian of `sigma` pixels. Grains are as fine as pixels, so
 /// that proxies down to a quarter of the size trace them at full size and show the means. Where a strong edge
 /// ends and a weak one begins, lines turn: logarithms keep such places where they are between the tensors.
-fn stream_lines(plan: &mut PlanBuilder, mut tensor: ImageId, sigma: f32, scale: f32) -> ImageId {
+fn stream_lines(
+    plan: &mut PlanBuilder,
+    mut tensor: ImageId,
+    sigma: f32,
+    scale: f32,
+    origin: [f32; 2],
+) -> ImageId {
     let allowed = if plan.size().iter().all(|n| n << MOST_FINER <= MAX_SIDE) { MOST_FINER } else { 0 };
     let finer = (1..=allowed).rev().find(|level| scale * f32::from(1_u8 << level) <= 1.0).unwrap_or(0);
     let mut grains = None;
@@ -128,14 +134,20 @@ fn stream_lines(plan: &mut PlanBuilder, mut tensor: ImageId, sigma: f32, scale: 
         tensor = tensor_logarithm::pass(plan, tensor);
     }
     for level in 1..=finer {
-        let noise = noise::pass_at(plan, scale * f32::from(1_u8 << level), 0, -(level as i8));
+        let noise = noise::pass_at(
+            plan,
+            scale * f32::from(1_u8 << level),
+            origin.map(|o| o * f32::from(1_u8 << level)),
+            0,
+            -(level as i8),
+        );
         tensor = tensor_interpolate::pass_to(plan, noise, tensor);
         grains = Some(noise);
     }
     if finer > 0 {
         tensor = tensor_logarithm::pass_inverse(plan, tensor);
     }
-    let grains = grains.unwrap_or_else(|| noise::pass(plan, scale, 0));
+    let grains = grains.unwrap_or_else(|| noise::pass(plan, scale, origin, 0));
     // Who looks at a field looks at the lines themselves.
     let options = Options {
         sigma: sigma * f32::from(1_u8 << finer),

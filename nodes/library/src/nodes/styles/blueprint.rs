@@ -80,6 +80,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         paper: scope.color("paper_color"),
         spacing: scope.float("grid"),
         scale: scope.scale(),
+        origin: scope.origin(),
         texture: scope.float("paper_texture"),
         fill: scope.float("fill"),
         cover: scope.bool("cover"),

@@ -15,11 +15,11 @@ use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::nodes::structure::flow_map;
 use crate::nodes::structure::structure_tensor::{TensorOptions, of_color_and_guides};
 use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::spec::{HOLD, NodeSpec, Param, Scope};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::lines::{length_factor, width_factor};
 use crate::stages::{ADVANCED, LOOK, lines, tone};
-use isophote_engine::{Class, ImageId, PlanBuilder};
+use isophote_engine::{Class, ImageId};
 
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
@@ -78,6 +78,7 @@ pub static NODE: NodeSpec = NodeSpec {
         abstraction::SIGMA_D,
         abstraction::SIGMA_R,
         lines::GUIDE_WEIGHT,
+        HOLD,
     ],
     build,
 };
@@ -305,8 +306,10 @@ impl Preset {
 
 /// Strokes along the flow, 0..=1 about middle grey: noise, `width` pixels wide and smoothed along the stream
 /// lines by `length`, lengths in pixels of the full-size picture.
-fn strokes(plan: &mut PlanBuilder, tensor: ImageId, [width, length]: [f32; 2], scale: f32) -> ImageId {
-    let white = noise::pass(plan, scale, 19);
+fn strokes(scope: &mut Scope<'_>, tensor: ImageId, [width, length]: [f32; 2]) -> ImageId {
+    let (scale, origin, seed) = (scope.scale(), scope.origin(), scope.renewed(19));
+    let plan = &mut *scope.plan;
+    let white = noise::pass(plan, scale, origin, seed);
     let soft = gaussian_blur::pass(plan, white, width * scale, Class::Colour);
     // Noise is about as fine as pixels: none may be left out.
     let options = Lic { sigma: length * scale, adapt: Adapt::None, ..lic::options() };
@@ -348,7 +351,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let response = flow.edges(scope.plan, lightness, tensor, &guides);
     let tinted = lab_to_rgb::pass(scope.plan, smooth, scope.float("saturation"));
     // Which passes there are is a matter of the style alone: the trims only change numbers.
-    let carved = if own.stroke[1] > 0.0 { strokes(scope.plan, tensor, own.stroke, scale) } else { tinted };
+    let carved = if own.stroke[1] > 0.0 { strokes(scope, tensor, own.stroke) } else { tinted };
     let mut line = scope.color("line_color");
     line[3] *= drawing.opacity;
     let sheet = Sheet {
@@ -363,6 +366,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         grain: drawing.grain,
         grain_size: drawing.grain_size,
         scale,
+        origin: scope.origin(),
         colour: drawing.colour,
         texture: drawing.texture,
         cover: scope.bool("cover"),

@@ -10,7 +10,7 @@ use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::nodes::structure::flow_map;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::spec::{HOLD, NodeSpec, Param, Scope};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::{ADVANCED, LOOK, tone};
 use isophote_engine::{Class, ImageId};
@@ -84,6 +84,7 @@ pub static NODE: NodeSpec = NodeSpec {
             .slider(0.0, 100.0)
             .group(ADVANCED)
             .doc("Another number, other strokes."),
+        HOLD,
     ],
     build,
 };
@@ -117,8 +118,9 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let tensors = flow_map::bent(scope, tensors);
     let abstraction = Abstraction::of(scope);
     let n_a = scope.int("n_a");
-    let (scale, seed) = (scope.scale(), scope.int("seed") as u32);
-    let white = noise::pass(scope.plan, scale, seed);
+    let (scale, seed) = (scope.scale(), scope.renewed(scope.int("seed") as u32));
+    let origin = scope.origin();
+    let white = noise::pass(scope.plan, scale, origin, seed);
     let sigma_n = scope.float("sigma_n") * width;
     let grains = gaussian_blur::pass(scope.plan, white, sigma_n, Class::Colour);
 

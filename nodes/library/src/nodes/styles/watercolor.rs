@@ -112,7 +112,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let patches = line_integral_convolution::pass(scope.plan, patches, tensors, &smooth);
     let (amount, wavelength, scale) = (scope.float("wobble"), scope.float("wavelength"), scope.scale());
     let wavelength = wavelength.max(SHORTEST_WAVE * amount / scale);
-    let drawn = wobble::pass(scope.plan, patches, &Wobble { amount, wavelength, scale });
+    let origin = scope.origin();
+    let drawn = wobble::pass(scope.plan, patches, &Wobble { amount, wavelength, scale, origin });
 
     let edge_width = scope.float("edge_width");
     let blurred = gaussian_blur::pass_colour(scope.plan, drawn, edge_width);
@@ -123,6 +124,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         clouds: scope.float("clouds") * MOST_CLOUDS,
         grain: scope.float("granulation") * MOST_GRAIN,
         grain_size: scope.float("grain_size"),
+        origin,
     };
     watercolor_wash::pass(scope.plan, drawn, blurred, &wash)
 }
