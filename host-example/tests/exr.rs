@@ -379,3 +379,39 @@ fn real_files_keep_everything_else() {
         }
     }
 }
+
+/// A flat picture of this data window in a display window of 160x128.
+fn flat(path: &Path, position: Vec2<i32>, size: (usize, usize)) {
+    let attributes = LayerAttributes { layer_position: position, ..Default::default() };
+    let channels = SpecificChannels::rgba(|_: Vec2<usize>| (0.3_f32, 0.25_f32, 0.2_f32, 1.0_f32));
+    let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
+    let mut image = Image::from_layer(layer);
+    image.attributes.display_window = IntegerBounds::new((0, 0), (160, 128));
+    image.write().to_file(path).expect("the picture can be written");
+}
+
+#[test]
+fn a_data_window_shows_the_marks_of_the_display_window() {
+    let folder = folder();
+    let (position, size) = (Vec2(27, 13), (110, 100));
+    flat(&folder.path().join("whole.exr"), Vec2(0, 0), (160, 128));
+    flat(&folder.path().join("part.exr"), position, size);
+    for style in ["blueprint", "watercolor"] {
+        for name in ["whole", "part"] {
+            let (input, output) = (format!("{name}.exr"), format!("{name}-{style}.exr"));
+            apply(folder.path(), style, &input, &output, &[]);
+        }
+        let red = |name: &str| {
+            let (_, _, _, planes) = parts(&folder.path().join(format!("{name}-{style}.exr"))).remove(0);
+            bits(&planes.iter().find(|(name, _)| name == "R").expect("a red channel").1)
+        };
+        let (whole, part) = (red("whole"), red("part"));
+        for y in 36..size.1 - 36 {
+            for x in 36..size.0 - 36 {
+                let (i, j) = (y * size.0 + x, (y + position.y() as usize) * 160 + x + position.x() as usize);
+                assert_eq!(part[i], whole[j], "{style} at {x}, {y}");
+            }
+        }
+        assert!(part.iter().any(|v| *v != part[0]), "{style} has marks");
+    }
+}

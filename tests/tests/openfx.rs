@@ -43,6 +43,7 @@ type OfAnEffect = (&'static str, fn(&Binary, Expected));
 
 /// What holds for the binary, whatever its effects.
 const OF_THE_BINARY: &[OfTheBinary] = named! {
+    regions::a_bounding_box_shows_the_marks_of_the_project,
     controls::tiles_are_supported_as_saved_values_say,
     controls::another_time_is_no_edit,
     controls::hosts_without_a_window_are_not_told_of_controls,

@@ -146,6 +146,33 @@ pub fn a_source_without_bounds_has_no_seams(binary: &Binary, effect: Expected) {
     host.no_faults();
 }
 
+/// Grain and grid of a bounding box are those of the project, wherever the box stands.
+pub fn a_bounding_box_shows_the_marks_of_the_project(binary: &Binary) {
+    let host = Host::new(Behaviour::default());
+    let (project, [x1, y1, x2, y2]) = ([150, 120], [26, 14, 130, 106]);
+    let grey = |[x1, y1, x2, y2]: [i32; 4]| {
+        let layout = Layout { origin: [x1, y1], ..Layout::default() };
+        let pixels = (0..(x2 - x1) * (y2 - y1)).flat_map(|_| [0.5_f32, 0.45, 0.4, 1.0]);
+        let bytes: Vec<u8> = pixels.flat_map(f32::to_ne_bytes).collect();
+        (layout, Picture::packed_in(layout, x2 - x1, y2 - y1, &bytes))
+    };
+    for node in ["blueprint", "watercolor"] {
+        let plugin = binary.plugin(&format!("org.isophote.{node}"));
+        let instance = Described::new(&host, plugin).instance(kOfxImageEffectContextFilter);
+        let extent = project.map(|side| Value::from(f64::from(side)));
+        instance.effect.set.put(kOfxImageEffectPropProjectExtent, extent.to_vec());
+        let render = |bounds: [i32; 4]| {
+            let (layout, picture) = grey(bounds);
+            instance.connect("Source", picture);
+            instance.render(layout, [bounds[2] - bounds[0], bounds[3] - bounds[1]])
+        };
+        let (whole, part) = (render([0, 0, project[0], project[1]]), render([x1, y1, x2, y2]));
+        let inner = [x1 + 36, y1 + 36, x2 - 36, y2 - 36];
+        assert!(whole.crop(inner).packed() == part.crop(inner).packed(), "{node}");
+    }
+    host.no_faults();
+}
+
 /// What the plan says that a region needs, in rows from the top. Pixels that are wider than high are made
 /// square, each from those that it touches and one more on each side, before the plan and after it.
 fn needed(effect: &Expected, region: Rect, aspect: f64) -> Rect {
