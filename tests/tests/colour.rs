@@ -5,9 +5,11 @@ use isophote::colour_space::{ColourSpace, Encoding};
 use isophote::kernels::colour::{colour_export, colour_import, lightness};
 use isophote::spec::{ImageKind, NodeSpec};
 use isophote::{Graph, Request};
+use isophote_engine::cpu::Control;
 use isophote_engine::{Class, Image, PlanBuilder, Rect};
 use isophote_tests::cases;
 use isophote_tests::compare::distance;
+use isophote_tests::device;
 use isophote_tests::pictures::{self, Kind, from_fn};
 use isophote_tests::run;
 use isophote_tests::trials::Trials;
@@ -17,6 +19,7 @@ fn main() -> ExitCode {
     let mut trials = Trials::new();
     for spec in isophote::registry::nodes() {
         trials.add("colour::finite", spec.id, || the_node_keeps_every_kind_of_picture_finite(spec));
+        trials.add("colour::mixed_ends", spec.id, || shaders_bear_mixed_ends(spec));
         trials.add("colour::bad_pixel", spec.id, || a_bad_pixel_stays_where_it_is(spec));
         trials.add("colour::shape", spec.id, || fields_and_scalars_have_their_shape(spec));
         if spec.has_mix() {
@@ -62,6 +65,40 @@ fn the_node_keeps_every_kind_of_picture_finite(spec: &'static NodeSpec) -> Vec<S
         }
     }
     wrong
+}
+
+/// With some sliders at one end and the others at the other, shaders give numbers, and on the whole the picture that
+/// the CPU gives: what is no number may leave a clamp as black. (Single pixels may differ: long lines through fields
+/// that are hardly smoothed turn on the last bit.)
+fn shaders_bear_mixed_ends(spec: &'static NodeSpec) -> Option<Vec<String>> {
+    let mut gpu = device::executor(spec.id)?;
+    let [width, height] = SIZE;
+    let mut wrong = Vec::new();
+    for (setting, space) in cases::mixed_ends(spec).into_iter().zip(ColourSpace::ALL.into_iter().cycle()) {
+        let mut setup = cases::setup(spec, false);
+        setting.apply(&mut setup.graph, setup.node);
+        let picture = pictures::color(Kind::Steps, width, height);
+        let planned = run::planned(&setup.graph, Request { space, ..Request::new(width, height) });
+        let (plan, region) = (planned.plan(), Rect::of_size(width, height));
+        let here = run::whole(plan, &[("color", picture.clone())]);
+        let there = match gpu.run_images(plan, &[("color", &picture)], region, Control::default()) {
+            Ok(mut images) => images.swap_remove(0),
+            Err(e) => {
+                wrong.push(format!("({}) {space:?}: {e}", setting.label));
+                continue;
+            }
+        };
+        let scale = here.data().iter().fold(1e-3f32, |m, v| m.max(v.abs()));
+        let mean = |image: &Image| {
+            image.data().iter().map(|v| f64::from(*v)).sum::<f64>() / image.data().len() as f64
+        };
+        let apart = (mean(&here) - mean(&there)).abs() / f64::from(scale);
+        // Written so that what is no number is wrong.
+        if !(apart < 0.02 && there.data().iter().all(|v| v.is_finite())) {
+            wrong.push(format!("({}) {space:?}: means are {apart} of the range apart", setting.label));
+        }
+    }
+    Some(wrong)
 }
 
 fn a_bad_pixel_stays_where_it_is(spec: &'static NodeSpec) {
