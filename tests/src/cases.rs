@@ -2,6 +2,7 @@
 
 use crate::pictures::Kind;
 use crate::random::Random;
+use isophote::frames::Frames;
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
 use isophote::spec::{ImageKind, NodeSpec, Param, Port, Unit};
@@ -195,7 +196,7 @@ fn name_of(param: &Param, value: Value) -> String {
     }
 }
 
-/// The request that suits a kind of picture, with all guides and its light apart, or with neither.
+/// The request that suits a kind of picture, with all guides, neighbouring frames and its light apart, or with none.
 pub fn request(kind: Kind, width: u32, height: u32, guides: bool) -> Request {
     let space = match kind {
         Kind::Hdr if width < 10 => ColourSpace::AcesCg,
@@ -206,7 +207,10 @@ pub fn request(kind: Kind, width: u32, height: u32, guides: bool) -> Request {
         space,
         premultiplied: kind != Kind::Noise,
         emission: guides,
-        guides: Guides { normal: guides, depth: guides, object_id: guides, mask: guides, flow: guides },
+        guides: Guides::of(|_| guides),
+        frames: if guides { Frames::around(1, 1) } else { Frames::NONE },
+        // Shorter than some motion of the pictures, so that there is some of which nothing is known.
+        max_motion: 3.25,
         ..Request::new(width, height)
     }
 }

@@ -15,6 +15,7 @@ pub mod plans;
 pub mod png;
 pub mod random;
 pub mod run;
+pub mod sequences;
 pub mod shaders;
 pub mod sweep;
 pub mod table;

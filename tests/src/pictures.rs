@@ -130,6 +130,22 @@ pub fn field(kind: ImageKind, width: u32, height: u32) -> Image {
         ImageKind::ObjectId => {
             from_fn(width, height, |x, y| [if empty(x, y) { 0.0 } else { (1 + x / 13 + 7 * (y / 9)) as f32 }])
         }
+        // Things that move each their way, and some that nobody knows.
+        ImageKind::Motion => from_fn(width, height, |x, y| {
+            if empty(x, y) {
+                return [f32::NAN, f32::INFINITY];
+            }
+            let jitter: [f32; 2] = [random.range(-0.1, 0.1), random.range(-0.1, 0.1)];
+            let base = if x / 13 % 2 == 0 { [1.25, -0.5] } else { [-3.5, 2.0 + 0.02 * y as f32] };
+            [base[0] + jitter[0], base[1] + jitter[1]]
+        }),
+        ImageKind::Position => from_fn(width, height, |x, y| {
+            if empty(x, y) {
+                return [0.0; 4];
+            }
+            let wall = if x > 20 { 1.0 } else { 0.0 };
+            [0.02 * x as f32 - 3.0 * wall, 0.015 * y as f32, 0.3 * wall + 0.002 * (x + y) as f32, 1.0]
+        }),
     }
 }
 

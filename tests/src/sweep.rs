@@ -221,7 +221,7 @@ fn description(plan: &Plan, index: usize) -> u64 {
     let pass = &plan.passes()[index];
     let images = pass.inputs.iter().chain(&pass.outputs).map(|id| plan.desc(*id));
     // Passes that read nothing, those that make noise, know the picture by its size alone.
-    hash((pass.kernel.name, &pass.params, pass.support, plan.size(), images.collect::<Vec<_>>()))
+    hash((pass.kernel.name, &pass.params, pass.supports.clone(), plan.size(), images.collect::<Vec<_>>()))
 }
 
 fn hash(what: impl Hash) -> u64 {

@@ -36,7 +36,7 @@ fn same(a: &isophote_engine::Plan, b: &isophote_engine::Plan) -> bool {
                 && a.inputs == b.inputs
                 && a.outputs == b.outputs
                 && a.params == b.params
-                && a.support == b.support
+                && a.supports == b.supports
         })
 }
 

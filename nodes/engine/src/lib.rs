@@ -16,11 +16,12 @@ pub mod memory;
 pub mod pixels;
 pub mod plan;
 pub mod program;
+pub mod store;
 
 pub use error::{Error, Result};
 pub use image::{Image, Rect, View};
 pub use kernel::{Band, CpuPass, Kernel, Tolerance};
-pub use plan::{Class, ImageId, Plan, PlanBuilder, Support};
+pub use plan::{Class, ImageId, Kept, Plan, PlanBuilder, Support};
 
 /// The vectors that kernels compute with, and [`dispatch!`](crate::dispatch!) in place of its own.
 pub mod fearless_simd {

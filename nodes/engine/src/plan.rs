@@ -5,9 +5,10 @@
 //! both executors must agree on is decided here, once.
 
 mod builder;
+mod keys;
 mod memory;
 mod parts;
 mod regions;
 
 pub use builder::PlanBuilder;
-pub use parts::{Class, ImageDesc, ImageId, Lifetimes, Pass, Plan, Port, Support};
+pub use parts::{Class, ImageDesc, ImageId, Kept, Lifetimes, Pass, Plan, Port, Support};

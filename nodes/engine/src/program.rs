@@ -108,8 +108,8 @@ pub struct Program {
     /// All dispatches in order. Between two there must be a barrier wherever one reads what the
     /// other wrote (wgpu and WebGPU place it by themselves).
     pub dispatches: Vec<Dispatch>,
-    /// Which pass of the plan each dispatch came from, and its support where windows depend on it.
-    passes: Vec<(usize, Option<Support>)>,
+    /// Which pass of the plan each dispatch came from, and its supports where windows depend on them.
+    passes: Vec<(usize, Option<Vec<Support>>)>,
 }
 
 impl Program {
@@ -133,7 +133,7 @@ impl Program {
             }
             lowering.make_room(pass);
             dispatches.push(lowering.dispatch(pass));
-            passes.push((index, (!is_whole).then_some(pass.support)));
+            passes.push((index, (!is_whole).then(|| pass.supports.clone())));
             lowering.release(index);
         }
         Ok(Self { textures: lowering.textures, dispatches, passes })
@@ -144,11 +144,11 @@ impl Program {
     /// Returns false, with nothing changed, when the plan must be lowered again: its passes are
     /// others, or the program is for a part of the picture and a pass now reads less or farther.
     pub fn repack(&mut self, plan: &Plan) -> bool {
-        let fits = |dispatch: &Dispatch, (index, support): &(usize, Option<Support>)| {
+        let fits = |dispatch: &Dispatch, (index, supports): &(usize, Option<Vec<Support>>)| {
             plan.passes().get(*index).is_some_and(|pass| {
                 dispatch.shader.source == pass.kernel.shader
                     && pass.inputs.len() == dispatch.inputs.len()
-                    && support.is_none_or(|s| s == pass.support)
+                    && supports.as_ref().is_none_or(|s| *s == pass.supports)
             })
         };
         if !self.dispatches.iter().zip(&self.passes).all(|(d, p)| fits(d, p)) {

@@ -20,17 +20,33 @@ pub enum GraphInput {
     Mask,
     /// A painted flow map.
     Flow,
+    /// From where points are to where they were in the frame before.
+    Motion,
+    /// From where points are to where they will be in the next frame.
+    MotionForward,
+    /// Points of the undeformed object.
+    RestPosition,
 }
 
 impl GraphInput {
     /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::Color, Self::Normal, Self::Depth, Self::ObjectId, Self::Mask, Self::Flow];
+    pub const ALL: [Self; 9] = [
+        Self::Color,
+        Self::Normal,
+        Self::Depth,
+        Self::ObjectId,
+        Self::Mask,
+        Self::Flow,
+        Self::Motion,
+        Self::MotionForward,
+        Self::RestPosition,
+    ];
 
     /// Stable name, which is also the name of the plan's input.
     pub const fn id(self) -> &'static str {
         match self {
             Self::Mask => "mask",
+            Self::MotionForward => "motion_forward",
             other => other.kind().id(),
         }
     }
@@ -44,6 +60,8 @@ impl GraphInput {
             Self::ObjectId => ImageKind::ObjectId,
             Self::Mask => ImageKind::Scalar,
             Self::Flow => ImageKind::Flow,
+            Self::Motion | Self::MotionForward => ImageKind::Motion,
+            Self::RestPosition => ImageKind::Position,
         }
     }
 
@@ -80,6 +98,16 @@ pub(crate) struct Node {
     pub spec: &'static NodeSpec,
     pub values: Vec<Value>,
     pub inputs: Vec<Option<Source>>,
+}
+
+impl Node {
+    /// The nodes that it reads.
+    pub fn sources(&self) -> impl Iterator<Item = usize> {
+        self.inputs.iter().filter_map(|source| match source {
+            Some(Source::Node(node)) => Some(*node),
+            _ => None,
+        })
+    }
 }
 
 /// Nodes and their connections. Always free of cycles and of ports that do not fit.

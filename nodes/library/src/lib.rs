@@ -12,15 +12,19 @@
 
 pub mod choice;
 pub mod colour_space;
+mod describe;
 pub mod error;
+pub mod frames;
 pub mod graph;
 mod json;
 pub mod kernels;
 pub mod nodes;
 pub mod param;
+pub mod picture;
 mod ports;
 pub mod registry;
 pub mod request;
+pub mod sequence;
 pub mod spec;
 mod stages;
 pub mod tensor_options;
@@ -30,7 +34,8 @@ pub use colour_space::ColourSpace;
 pub use error::{Error, Result};
 pub use graph::{Graph, NodeId};
 pub use isophote_engine as engine;
-pub use request::{Planned, Request};
+pub use picture::Request;
+pub use request::Planned;
 pub use value::Value;
 
 /// The README's example, compiled with the documentation tests.

@@ -49,6 +49,9 @@ nodes! {
         shock,
         coherence_enhancing,
     }
+    time {
+        steady,
+    }
     smoothing {
         gaussian,
         bilateral,

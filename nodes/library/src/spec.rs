@@ -2,6 +2,7 @@
 //! this declaration.
 
 use crate::choice::Selectable;
+use crate::frames::Frames;
 pub use crate::param::{Param, Unit};
 use crate::value::Value;
 use isophote_engine::{Class, ImageId, PlanBuilder};
@@ -24,6 +25,11 @@ pub enum ImageKind {
     /// A painted direction, x and y in red and green, 0.5 for none, and its strength in alpha. Its values are data,
     /// which no colour space changes and nothing multiplies.
     Flow,
+    /// From where a point is to where it is in another frame, x right and y down, pixels of the picture; not finite
+    /// where that is unknown.
+    Motion,
+    /// Point x, y, z of the undeformed object, scene units, and validity.
+    Position,
 }
 
 impl ImageKind {
@@ -37,13 +43,16 @@ impl ImageKind {
             Self::Depth => "depth",
             Self::ObjectId => "object_id",
             Self::Flow => "flow",
+            Self::Motion => "motion",
+            Self::Position => "rest_position",
         }
     }
 
     /// Values a pixel.
     pub const fn channels(self) -> u32 {
         match self {
-            Self::Color | Self::Tensor | Self::Normal | Self::Flow => 4,
+            Self::Color | Self::Tensor | Self::Normal | Self::Flow | Self::Position => 4,
+            Self::Motion => 2,
             Self::Scalar | Self::Depth | Self::ObjectId => 1,
         }
     }
@@ -74,7 +83,7 @@ pub struct NodeSpec {
     pub id: &'static str,
     /// For people.
     pub label: &'static str,
-    /// `structure`, `smoothing`, `lines`, `painting`, `coherence`, `colour` or `styles`.
+    /// `structure`, `smoothing`, `lines`, `painting`, `coherence`, `colour`, `time` or `styles`.
     pub group: &'static str,
     /// One paragraph.
     pub doc: &'static str,
@@ -103,6 +112,21 @@ pub(crate) const HOLD: Param = Param::int("hold", "Hold", 0, [0, 1000])
     .group("time")
     .doc("Frames that hand-drawn noise lasts: 1 draws it anew in each frame, 0 keeps it for ever.");
 
+/// `steadiness` of nodes that carry what they have found from frame to frame.
+pub(crate) const STEADINESS: Param = Param::float("steadiness", "Steadiness", 0.0, [0.0, 1.0])
+    .structural()
+    .group("time")
+    .doc(
+        "How much neighbouring frames count, carried here along the motion of things: 0 leaves each frame alone, 0.5 is \
+         for sequences, 1 lets all frames of the window count alike.",
+    );
+
+/// `window` of the same nodes.
+pub(crate) const WINDOW: Param = Param::int("window", "Window", 2, [0, 8])
+    .structural()
+    .group("time")
+    .doc("Neighbouring frames that count, to each side as far as they and the motion from them are known.");
+
 /// How much of a node's result is used; every node from colour to colour has it.
 pub const MASK: Port = Port {
     id: "mask",
@@ -119,6 +143,36 @@ pub const FLOW: Port = Port {
     doc: "A flow map (see `flow_map`) that bends the orientation which the node follows, if it follows any.",
 };
 
+/// What a node that is steady over time knows of its frames.
+const TIME_PORTS: [Port; 4] = [
+    Port {
+        id: "motion",
+        kind: ImageKind::Motion,
+        optional: true,
+        doc: "Pixels from where a point is to where it was in the frame before; without it the frames before count for \
+              nothing.",
+    },
+    Port {
+        id: "motion_forward",
+        kind: ImageKind::Motion,
+        optional: true,
+        doc: "Pixels from where a point is to where it will be in the next frame; without it the frames that follow count \
+              for nothing.",
+    },
+    Port {
+        id: "depth",
+        kind: ImageKind::Depth,
+        optional: true,
+        doc: "Distance from the camera: neighbouring frames count where it agrees.",
+    },
+    Port {
+        id: "object_id",
+        kind: ImageKind::ObjectId,
+        optional: true,
+        doc: "Object numbers: neighbouring frames count where they agree.",
+    },
+];
+
 impl NodeSpec {
     /// All parameters in the order of panels: the node's own, then `mix` where it applies.
     pub fn params(&self) -> impl Iterator<Item = &'static Param> + use<> {
@@ -127,11 +181,29 @@ impl NodeSpec {
         self.own_params.iter().chain(common)
     }
 
-    /// All inputs: the node's own, then `mask` and `flow` where they apply.
+    /// All inputs: the node's own, then `mask` and `flow` and those of the group `time` where they apply.
     pub fn ports(&self) -> impl Iterator<Item = &'static Port> + use<> {
         static COMMON: [Port; 2] = [MASK, FLOW];
+        static TIME: [Port; 4] = TIME_PORTS;
         let common: &'static [Port] = if self.has_mix() { &COMMON } else { &[] };
-        self.inputs.iter().chain(common)
+        let time: &'static [Port] = if self.is_steady() { &TIME } else { &[] };
+        let own = self.inputs;
+        let new = move |port: &&Port| own.iter().all(|p| p.id != port.id);
+        own.iter().chain(common).chain(time.iter().filter(new))
+    }
+
+    /// True for nodes that carry what they have found from frame to frame.
+    pub fn is_steady(&self) -> bool {
+        self.own_params.iter().any(|p| p.id == STEADINESS.id)
+    }
+
+    /// Frames before and after its own that a node of these values reads.
+    pub(crate) fn window(&self, values: &[Value]) -> i32 {
+        let value = |id| self.param(id).map(|(index, _)| values[index]);
+        match (value(STEADINESS.id), value(WINDOW.id)) {
+            (Some(Value::Float(steadiness)), Some(Value::Int(window))) if steadiness > 0.0 => window,
+            _ => 0,
+        }
     }
 
     /// True for filters, which smooth the light of a picture beyond its coverage as a picture of its own. What other
@@ -176,6 +248,22 @@ pub struct Scope<'a> {
     pub(crate) scale: f32,
     pub(crate) origin: [f32; 2],
     pub(crate) frame: i64,
+    /// Longest motion that counts, pixels of the picture that is rendered.
+    pub(crate) max_motion: f32,
+    pub(crate) around: Around<'a>,
+}
+
+/// The inputs of a node at neighbouring frames.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Around<'a> {
+    /// By frame, then by port.
+    pub inputs: &'a [Option<ImageId>],
+    /// The frame of the first of them, counted from the one that is computed.
+    pub first: i32,
+    /// What is known of other frames.
+    pub frames: Frames,
+    /// The first number of the stages that the node keeps.
+    pub stage: u32,
 }
 
 impl Scope<'_> {
@@ -245,6 +333,58 @@ impl Scope<'_> {
         }
     }
 
+    /// Frames around the one that is described whose images there are, counted from it, the nearest first, as far as
+    /// `window` to each side.
+    pub(crate) fn neighbours(&self, window: i32) -> impl Iterator<Item = i32> + use<> {
+        let (home, frames) = (self.plan.frame(), self.around.frames);
+        (1..=window).flat_map(|n| [-n, n]).filter(move |offset| frames.has(home + offset))
+    }
+
+    /// True when the host hands in the stages of the frame so far from the one that is described.
+    pub(crate) fn is_handed(&self, offset: i32) -> bool {
+        self.around.frames.is_handed(self.plan.frame() + offset)
+    }
+
+    /// Describes something of the frame so far from the one that is described, with that one's inputs.
+    pub(crate) fn at<T>(&mut self, offset: i32, describe: impl FnOnce(&mut Scope<'_>) -> T) -> T {
+        let home = self.plan.frame();
+        let ports = self.inputs.len();
+        let first = (home + offset - self.around.first) as usize * ports;
+        let inputs = &self.around.inputs[first..first + ports];
+        self.plan.set_frame(home + offset);
+        let frame = self.frame + i64::from(offset);
+        let result = describe(&mut Scope {
+            plan: &mut *self.plan,
+            spec: self.spec,
+            values: self.values,
+            inputs,
+            scale: self.scale,
+            origin: self.origin,
+            frame,
+            max_motion: self.max_motion,
+            around: self.around,
+        });
+        self.plan.set_frame(home);
+        result
+    }
+
+    /// Keeps an image of the frame that is described for the frames that carry it: the node's stage `index`. Returns
+    /// the stage's number in the plan.
+    pub(crate) fn keep(&mut self, index: usize, image: ImageId) -> u32 {
+        let stage = self.around.stage + index as u32;
+        let kept = self.plan.keep(stage, image);
+        if kept == stage && self.around.frames.keep {
+            self.plan.output(stage_name(stage, &mut [0; 16]), image);
+        }
+        kept
+    }
+
+    /// A stage of the frame that is described as the host hands it in, of the shape of `like`.
+    pub(crate) fn handed(&mut self, stage: u32, like: ImageId) -> ImageId {
+        let shape = self.plan.desc(like);
+        self.plan.input(stage_name(stage, &mut [0; 16]), shape.channels, shape.class)
+    }
+
     /// An optional input, when connected.
     pub fn input(&self, id: &str) -> Option<ImageId> {
         match self.spec.input(id) {
@@ -260,4 +400,22 @@ impl Scope<'_> {
             None => panic!("{}.{id} is not connected", self.spec.id),
         }
     }
+}
+
+/// The name of a stage among the inputs and outputs of a plan: "stage" and its number.
+fn stage_name(stage: u32, buffer: &mut [u8; 16]) -> &str {
+    let mut start = buffer.len();
+    let mut rest = stage;
+    // Written by hand, since edits of a plan allocate nothing.
+    loop {
+        start -= 1;
+        buffer[start] = b'0' + (rest % 10) as u8;
+        rest /= 10;
+        if rest == 0 {
+            break;
+        }
+    }
+    start -= 5;
+    buffer[start..start + 5].copy_from_slice(b"stage");
+    std::str::from_utf8(&buffer[start..]).unwrap_or("stage")
 }

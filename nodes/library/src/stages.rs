@@ -9,6 +9,7 @@
 pub(crate) mod abstraction;
 pub(crate) mod lines;
 pub(crate) mod quantization;
+pub(crate) mod steady;
 pub(crate) mod tone;
 
 /// Heading of the controls for artists.

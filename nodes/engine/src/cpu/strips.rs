@@ -6,7 +6,7 @@
 //! only the rows that are still to be read.
 
 use crate::image::Rect;
-use crate::plan::{Plan, Support};
+use crate::plan::{ImageId, Plan, Support};
 
 /// The steps of a run and what each image must hold for them.
 #[derive(Debug)]
@@ -34,8 +34,11 @@ impl Schedule {
     pub fn new(plan: &Plan, region: Rect, windows: &[Rect], rows: i32) -> Self {
         let whole = Self::whole(windows);
         // A step should be long against what passes reach, which a band reads on both its sides.
-        let reach = plan.passes().iter().map(|pass| match pass.support {
-            Support::Pixels(n) => i32::try_from(n).unwrap_or(i32::MAX),
+        // Images that enter are there as a whole: how far they are read costs nothing.
+        let enters = |id: &ImageId| plan.inputs().iter().any(|port| port.image == *id);
+        let inner = plan.passes().iter().flat_map(|pass| pass.inputs.iter().zip(&pass.supports));
+        let reach = inner.filter(|(input, _)| !enters(input)).map(|(_, support)| match support {
+            Support::Pixels(n) => i32::try_from(*n).unwrap_or(i32::MAX),
             Support::Global => i32::MAX,
         });
         let rows = rows.max(reach.max().unwrap_or(0).saturating_mul(4));
@@ -96,8 +99,8 @@ fn kept(plan: &Plan, windows: &[Rect], frontier: &[i32]) -> Vec<i32> {
         if rest.is_empty() {
             continue;
         }
-        for input in &pass.inputs {
-            let first = plan.read_by(pass, rest, *input).y0;
+        for (index, input) in pass.inputs.iter().enumerate() {
+            let first = plan.read_by(pass, rest, index).y0;
             kept[input.index()] = kept[input.index()].min(first);
         }
     }

@@ -1,6 +1,6 @@
 //! How plans are recorded, and edited by recording them again.
 
-use super::parts::{Class, ImageDesc, ImageId, Lifetimes, Pass, Plan, Port, Support};
+use super::parts::{Class, ImageDesc, ImageId, Kept, Lifetimes, Pass, Plan, Port, Support};
 use crate::error::{Error, Result};
 use crate::image::check_size;
 use crate::kernel::{Kernel, MAX_INPUTS};
@@ -18,7 +18,7 @@ struct PassKey {
     kernel: *const Kernel,
     inputs: Vec<ImageId>,
     params: Vec<u8>,
-    support: Support,
+    supports: Vec<Support>,
     outputs: Vec<(Class, i8)>,
 }
 
@@ -37,7 +37,9 @@ impl Plan {
     ) -> std::result::Result<bool, E> {
         let mut plan = std::mem::take(self);
         plan.edit += 1;
-        let mut builder = PlanBuilder { plan, shared: HashMap::new(), replay: Some(Replay::default()) };
+        plan.kept.clear();
+        let mut builder =
+            PlanBuilder { plan, shared: HashMap::new(), replay: Some(Replay::default()), frame: 0 };
         let described = describe(&mut builder);
         let replay = builder.replay.unwrap_or_default();
         let complete = replay.call == builder.plan.calls.len() && replay.output == builder.plan.outputs.len();
@@ -66,7 +68,7 @@ impl Plan {
         let ports = |from: usize, count: usize| {
             ids(from, count)
                 .enumerate()
-                .map(|(name, image)| Port { name: name.to_string(), image })
+                .map(|(name, image)| Port::new(&name.to_string(), 0, image))
                 .collect::<Vec<_>>()
         };
         let (inputs, outputs) = (pass.inputs.len(), pass.outputs.len());
@@ -75,7 +77,7 @@ impl Plan {
             inputs: ids(0, inputs).collect(),
             outputs: ids(inputs, outputs).collect(),
             params: pass.params.clone(),
-            support: pass.support,
+            supports: pass.supports.clone(),
         };
         let plan = Self {
             size: self.size,
@@ -101,6 +103,8 @@ pub struct PlanBuilder {
     plan: Plan,
     shared: HashMap<PassKey, u32>,
     replay: Option<Replay>,
+    /// The frame that is described, counted from the one that is computed.
+    frame: i32,
 }
 
 impl PlanBuilder {
@@ -111,7 +115,7 @@ impl PlanBuilder {
     pub fn new(width: u32, height: u32) -> Result<Self> {
         check_size(width, height)?;
         let plan = Plan { size: [width, height], ..Plan::default() };
-        Ok(Self { plan, shared: HashMap::new(), replay: None })
+        Ok(Self { plan, shared: HashMap::new(), replay: None, frame: 0 })
     }
 
     /// Size of the picture at level 0.
@@ -136,29 +140,52 @@ impl PlanBuilder {
         self.plan.passes.iter().find(|pass| pass.outputs.contains(&image))
     }
 
-    /// Declares an image that enters; the same name twice is the same image.
+    /// The frame that is described, counted from the one that is computed.
+    pub fn frame(&self) -> i32 {
+        self.frame
+    }
+
+    /// Goes on with the description of another frame, counted from the one that is computed: inputs are its own
+    /// from here on.
+    pub fn set_frame(&mut self, frame: i32) {
+        self.frame = frame;
+    }
+
+    /// Declares an image of the frame that is described that enters; the same name twice is the same image.
     pub fn input(&mut self, name: &str, channels: u32, class: Class) -> ImageId {
-        if let Some(port) = self.plan.inputs.iter().find(|p| p.name == name) {
+        let frame = self.frame;
+        if let Some(port) = self.plan.inputs.iter().find(|p| p.frame == frame && p.base() == name) {
             return port.image;
         }
         if let Some(replay) = &mut self.replay {
             replay.diverged = true;
         }
         let image = self.image(ImageDesc { channels, class, level: 0 });
-        self.plan.inputs.push(Port { name: name.to_owned(), image });
+        self.plan.inputs.push(Port::new(name, frame, image));
         image
     }
 
-    /// Declares an image that leaves.
+    /// Declares an image of the frame that is described that leaves.
     pub fn output(&mut self, name: &str, image: ImageId) {
+        let frame = self.frame;
         if let Some(replay) = &mut self.replay {
-            let same =
-                self.plan.outputs.get(replay.output).is_some_and(|p| p.name == name && p.image == image);
-            replay.diverged |= !same;
+            let is_it = |p: &Port| p.image == image && p.frame == frame && p.base() == name;
+            replay.diverged |= !self.plan.outputs.get(replay.output).is_some_and(is_it);
             replay.output += 1;
             return;
         }
-        self.plan.outputs.push(Port { name: name.to_owned(), image });
+        self.plan.outputs.push(Port::new(name, frame, image));
+    }
+
+    /// Marks an image of the frame that is described as its `stage`, which other frames carry; returns the stage
+    /// that the image was marked as before, if it was.
+    pub fn keep(&mut self, stage: u32, image: ImageId) -> u32 {
+        let frame = self.frame;
+        if let Some(kept) = self.plan.kept.iter().find(|k| k.image == image && k.frame == frame) {
+            return kept.stage;
+        }
+        self.plan.kept.push(Kept { stage, frame, image });
+        stage
     }
 
     /// Adds a pass with one output at the level of its first input.
@@ -185,20 +212,35 @@ impl PlanBuilder {
         support: Support,
         level: i8,
     ) -> ImageId {
+        let supports = [support; MAX_INPUTS];
+        self.pass_reaching(kernel, inputs, params, classes, &supports[..inputs.len()], level)
+    }
+
+    /// Adds a pass that does not read all its inputs equally far: `supports` are theirs, in their order.
+    pub fn pass_reaching<P: bytemuck::NoUninit>(
+        &mut self,
+        kernel: &'static Kernel,
+        inputs: &[ImageId],
+        params: &P,
+        classes: &[Class],
+        supports: &[Support],
+        level: i8,
+    ) -> ImageId {
         let params = bytemuck::bytes_of(params);
-        // These three are slips of the describing code, never of outside data; a node's tests meet them.
+        // These are slips of the describing code, never of outside data; a node's tests meet them.
         assert_eq!(params.len(), kernel.params_size, "{}: uniform block of another size", kernel.name);
         assert_eq!(inputs.len(), kernel.inputs, "{}: wrong number of inputs", kernel.name);
         assert_eq!(classes.len(), kernel.outputs.len(), "{}: wrong number of outputs", kernel.name);
+        assert_eq!(supports.len(), kernel.inputs, "{}: wrong number of supports", kernel.name);
         debug_assert!(inputs.len() <= MAX_INPUTS);
         if self.replay.is_some() {
-            return self.replayed(kernel, inputs, params, classes, support, level);
+            return self.replayed(kernel, inputs, params, classes, supports, level);
         }
         let key = PassKey {
             kernel,
             inputs: inputs.to_vec(),
             params: params.to_vec(),
-            support,
+            supports: supports.to_vec(),
             outputs: classes.iter().map(|c| (*c, level)).collect(),
         };
         if let Some(index) = self.shared.get(&key) {
@@ -217,7 +259,7 @@ impl PlanBuilder {
             inputs: inputs.to_vec(),
             outputs,
             params: params.to_vec(),
-            support,
+            supports: supports.to_vec(),
         });
         self.plan.stamps.push(0);
         self.plan.calls.push(index);
@@ -252,7 +294,7 @@ impl PlanBuilder {
         inputs: &[ImageId],
         params: &[u8],
         classes: &[Class],
-        support: Support,
+        supports: &[Support],
         level: i8,
     ) -> ImageId {
         let plan = &mut self.plan;
@@ -270,13 +312,13 @@ impl PlanBuilder {
             return self.diverge(kernel, classes, level);
         }
         let stamp = &mut plan.stamps[index as usize];
-        if *stamp == plan.edit && (pass.params != params || pass.support != support) {
+        if *stamp == plan.edit && (pass.params != params || pass.supports != supports) {
             // Two requests shared this pass and now ask for different things.
             replay.diverged = true;
         }
         *stamp = plan.edit;
         pass.params.copy_from_slice(params);
-        pass.support = support;
+        pass.supports.copy_from_slice(supports);
         pass.outputs[0]
     }
 

@@ -54,15 +54,57 @@ pub struct Pass {
     pub outputs: Vec<ImageId>,
     /// The kernel's uniform block.
     pub params: Vec<u8>,
-    /// How far the kernel reads.
-    pub support: Support,
+    /// How far the kernel reads each input.
+    pub supports: Vec<Support>,
+}
+
+impl Pass {
+    /// How far the kernel reads the input that it reads farthest.
+    pub fn support(&self) -> Support {
+        self.supports.iter().copied().fold(Support::Pixels(0), Support::farther)
+    }
+}
+
+impl Support {
+    /// The one of two that reads farther.
+    pub fn farther(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Pixels(a), Self::Pixels(b)) => Self::Pixels(a.max(b)),
+            _ => Self::Global,
+        }
+    }
 }
 
 /// An image that enters or leaves a plan, by name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Port {
-    /// The caller's name for it.
+    /// The caller's name for it: "color", or "color@-1" for that of the frame before.
     pub name: String,
+    /// Which frame it belongs to, counted from the one that is computed.
+    pub frame: i32,
+    /// The virtual image.
+    pub image: ImageId,
+}
+
+impl Port {
+    pub(super) fn new(base: &str, frame: i32, image: ImageId) -> Self {
+        let name = if frame == 0 { base.to_owned() } else { format!("{base}@{frame:+}") };
+        Self { name, frame, image }
+    }
+
+    /// The name without the frame.
+    pub fn base(&self) -> &str {
+        self.name.split_once('@').map_or(&self.name, |(base, _)| base)
+    }
+}
+
+/// A stage of a plan that frames have in common: what the frame at hand computes of it, later ones carry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kept {
+    /// Which stage, in the order of description; the same in all frames.
+    pub stage: u32,
+    /// The frame that it belongs to, counted from the one that is computed.
+    pub frame: i32,
     /// The virtual image.
     pub image: ImageId,
 }
@@ -104,6 +146,7 @@ pub struct Plan {
     pub(super) passes: Vec<Pass>,
     pub(super) inputs: Vec<Port>,
     pub(super) outputs: Vec<Port>,
+    pub(super) kept: Vec<Kept>,
     pub(super) lifetimes: Lifetimes,
     /// Which pass each call of the builder led to; replayed by edits.
     pub(super) calls: Vec<u32>,
@@ -136,6 +179,11 @@ impl Plan {
     /// Images that leave.
     pub fn outputs(&self) -> &[Port] {
         &self.outputs
+    }
+
+    /// Stages of this frame and of others, as far as they are computed here.
+    pub fn kept(&self) -> &[Kept] {
+        &self.kept
     }
 
     /// Shape of a virtual image.

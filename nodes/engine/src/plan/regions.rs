@@ -1,6 +1,6 @@
 //! Which part of every image a part of the result needs.
 
-use super::parts::{ImageId, Pass, Plan, Support};
+use super::parts::{Pass, Plan, Support};
 use crate::error::{Error, Result};
 use crate::image::Rect;
 
@@ -42,18 +42,18 @@ impl Plan {
             for output in &pass.outputs {
                 windows[output.index()] = out;
             }
-            for input in &pass.inputs {
-                let needed = self.read_by(pass, out, *input);
+            for (index, input) in pass.inputs.iter().enumerate() {
+                let needed = self.read_by(pass, out, index);
                 windows[input.index()] = windows[input.index()].union(&needed);
             }
         }
         windows
     }
 
-    /// The pixels of `input` that `pass` reads to compute `out`.
-    pub(crate) fn read_by(&self, pass: &Pass, out: Rect, input: ImageId) -> Rect {
-        let (from, level) = (self.desc(pass.outputs[0]).level, self.desc(input).level);
-        match pass.support {
+    /// The pixels of input `index` that `pass` reads to compute `out`.
+    pub(crate) fn read_by(&self, pass: &Pass, out: Rect, index: usize) -> Rect {
+        let (from, level) = (self.desc(pass.outputs[0]).level, self.desc(pass.inputs[index]).level);
+        match pass.supports[index] {
             Support::Pixels(n) => self.clip(rescale(out, from, level).grown(n.min(MAX_HALO) as i32), level),
             Support::Global => self.whole(level),
         }

@@ -117,7 +117,7 @@ fn are_same(a: &Plan, b: &Plan) -> bool {
             && a.params == b.params
             && a.inputs == b.inputs
             && a.outputs == b.outputs
-            && a.support == b.support
+            && a.supports == b.supports
     };
     let (a_passes, b_passes) = (needed(a), needed(b));
     a.inputs() == b.inputs()

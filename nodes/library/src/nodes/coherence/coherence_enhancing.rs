@@ -11,7 +11,8 @@ use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::nodes::structure::flow_map::Flow;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::stages::steady::steadied_picture;
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -40,6 +41,8 @@ pub static NODE: NodeSpec = NodeSpec {
         shock::RADIUS,
         shock::THRESHOLD,
         SIGMA_A,
+        STEADINESS,
+        WINDOW,
     ],
     build,
 };
@@ -230,7 +233,7 @@ impl Filter {
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
-    let color = scope.required("color");
+    let color = steadied_picture(scope);
     let filter = Filter::of(scope);
     let (filtered, tensor) = filter.iterate(scope.plan, color);
     filter.finish(scope.plan, filtered, tensor)

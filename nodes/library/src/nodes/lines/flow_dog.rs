@@ -13,7 +13,8 @@ use crate::kernels::shared::stream::Integrator;
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::structure::structure_tensor::{Guides, TensorOptions, of_color_and_guides};
 use crate::ports;
-use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
+use crate::spec::{ImageKind, NodeSpec, Param, Port, STEADINESS, Scope, WINDOW};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -48,6 +49,8 @@ pub static NODE: NodeSpec = NodeSpec {
             .slider(0.0, 2.0)
             .structural()
             .doc("Strength of lines where normal, depth or object id break; 0 leaves the guides unread."),
+        STEADINESS,
+        WINDOW,
     ],
     build,
 };
@@ -226,7 +229,6 @@ pub(crate) fn tensor(scope: &mut Scope<'_>, color: ImageId, guides: &Guides) -> 
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
-    let color = scope.required("color");
     let lines = FlowDog {
         sigma_e: scope.float("sigma_e"),
         k: scope.float("k"),
@@ -242,11 +244,15 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         kernel: scope.option("kernel"),
         guide_weight: scope.float("guide_weight"),
     };
-    let guides = guides(scope, lines.guide_weight);
-    let tensor = match scope.input("tensor") {
-        Some(tensor) => tensor,
-        None => tensor(scope, color, &guides),
-    };
+    let guides_of = |scope: &Scope<'_>| guides(scope, lines.guide_weight);
+    let guides = guides_of(scope);
+    let by = Agreement::rgb(COLOUR_AGREEMENT);
+    let [color, tensor] = steadied(scope, by, |scope| {
+        let color = scope.required("color");
+        let guides = guides_of(scope);
+        let found = scope.input("tensor").unwrap_or_else(|| tensor(scope, color, &guides));
+        [color, found]
+    });
     let lightness = lightness::pass(scope.plan, color);
     lines.edges(scope.plan, lightness, tensor, &guides)
 }

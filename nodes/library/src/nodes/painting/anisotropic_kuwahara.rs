@@ -8,7 +8,8 @@ use crate::nodes::painting::generalized_kuwahara::{Q, SECTORS, THRESHOLD, sector
 use crate::nodes::structure::flow_map::Flow;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
-use crate::spec::{NodeSpec, Param, Port, Scope};
+use crate::spec::{NodeSpec, Param, Port, STEADINESS, Scope, WINDOW};
+use crate::stages::steady::steadied_picture;
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -43,6 +44,8 @@ pub static NODE: NodeSpec = NodeSpec {
         TAU_V,
         TAU_W,
         LIMIT_RANGE,
+        STEADINESS,
+        WINDOW,
     ],
     build,
 };
@@ -193,7 +196,7 @@ const MAX_LEVELS: usize = 8;
 const SMALLEST: i32 = 8;
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
-    let color = scope.required("color");
+    let color = steadied_picture(scope);
     let tensor = scope.input("tensor");
     let weights = scope.option("weights");
     let painting = Painting::of(scope, weights);

@@ -7,7 +7,8 @@ use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::oriented_bilateral::{self, Direction, Options, Sampling};
 use crate::nodes::structure::structure_tensor;
 use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::stages::steady::steadied_picture;
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -34,6 +35,8 @@ pub static NODE: NodeSpec = NodeSpec {
             .doc("How often both passes run; the orientation is found once."),
         SAMPLING,
         ANISOTROPY,
+        STEADINESS,
+        WINDOW,
     ],
     build,
 };
@@ -93,7 +96,7 @@ pub(crate) fn iteration(plan: &mut PlanBuilder, lab: ImageId, tensors: ImageId, 
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
-    let color = scope.required("color");
+    let color = steadied_picture(scope);
     let tensors = structure_tensor::connected(scope, color);
     let options = |domain, range| Options {
         sigma_d: scope.float(domain),

@@ -6,8 +6,9 @@ use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::lines::flow_dog;
 use crate::nodes::structure::flow_map;
 use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::{ADVANCED, LOOK, lines};
 use isophote_engine::ImageId;
 
@@ -58,20 +59,25 @@ pub static NODE: NodeSpec = NodeSpec {
         dog::PHI.group(ADVANCED),
         lines::LINE_ITERATIONS,
         lines::GUIDE_WEIGHT,
+        STEADINESS,
+        WINDOW,
     ],
     build,
 };
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
-    let color = scope.required("color");
     let guide_weight = scope.float("guide_weight");
     let guides = flow_dog::guides(scope, guide_weight);
-    let tensor = flow_dog::tensor(scope, color, &guides);
-    let tensor = flow_map::bent(scope, tensor);
     let abstraction = Abstraction::of(scope);
     let n_e = scope.int("n_e");
-    let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-    let smooth = abstraction.apply(scope.plan, lab, tensor, n_e);
+    let [smooth, tensor] = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
+        let color = scope.required("color");
+        let guides = flow_dog::guides(scope, guide_weight);
+        let tensor = flow_dog::tensor(scope, color, &guides);
+        let tensor = flow_map::bent(scope, tensor);
+        let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
+        [abstraction.apply(scope.plan, lab, tensor, n_e), tensor]
+    });
     let flow = lines::flow_dog(scope, guide_weight);
     let lightness = lightness::pass_lab(scope.plan, smooth);
     let edges = flow.edges(scope.plan, lightness, tensor, &guides);

@@ -11,8 +11,9 @@ use crate::nodes::lines::flow_dog;
 use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::nodes::structure::flow_map;
 use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::{ADVANCED, LOOK, lines, quantization as levels, tone};
 use isophote_engine::ImageId;
 
@@ -67,6 +68,8 @@ pub static NODE: NodeSpec = NodeSpec {
         quantization::OMEGA_PHI.group(ADVANCED),
         WARP,
         SIGMA_A,
+        STEADINESS,
+        WINDOW,
     ],
     build,
 };
@@ -105,16 +108,23 @@ choice! {
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
-    let color = scope.required("color");
     let guide_weight = scope.float("guide_weight");
     let guides = flow_dog::guides(scope, guide_weight);
-    let tensor = flow_dog::tensor(scope, color, &guides);
-    let tensor = flow_map::bent(scope, tensor);
     let abstraction = Abstraction::of(scope);
     let (n_e, n_a) = (scope.int("n_e"), scope.int("n_a"));
+    let shared = n_e.min(n_a);
 
-    let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-    let for_lines = abstraction.apply(scope.plan, lab, tensor, n_e);
+    // What frames have in common is behind both the lines and the colours.
+    let by = Agreement::lab(COLOUR_AGREEMENT);
+    let [for_lines, tensor, begun] = steadied(scope, by, |scope| {
+        let color = scope.required("color");
+        let guides = flow_dog::guides(scope, guide_weight);
+        let tensor = flow_dog::tensor(scope, color, &guides);
+        let tensor = flow_map::bent(scope, tensor);
+        let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
+        let begun = abstraction.apply(scope.plan, lab, tensor, shared);
+        [abstraction.apply(scope.plan, begun, tensor, n_e - shared), tensor, begun]
+    });
     let flow = lines::flow_dog(scope, guide_weight);
     let lightness = lightness::pass_lab(scope.plan, for_lines);
     let edges = match scope.option("line_filter") {
@@ -122,8 +132,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         LineFilter::Isotropic => flow.isotropic(scope.plan, lightness),
     };
 
-    // The first iterations are those behind the lines: the plan records them once.
-    let mut flat = abstraction.apply(scope.plan, lab, tensor, n_a);
+    let mut flat = abstraction.apply(scope.plan, begun, tensor, n_a - shared);
     flat = tone::curve(scope, flat);
     let bins = scope.int("posterize");
     if bins > 0 {

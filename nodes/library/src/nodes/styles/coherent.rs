@@ -6,7 +6,8 @@ use crate::nodes::coherence::coherence_enhancing::{self as filter, Filter};
 use crate::nodes::coherence::shock;
 use crate::nodes::colour::quantize_luminance as quantization;
 use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::stages::steady::steadied_picture;
 use crate::stages::{ADVANCED, LOOK, abstraction, quantization as levels, tone};
 use crate::value::Value;
 use isophote_engine::ImageId;
@@ -45,6 +46,8 @@ pub static NODE: NodeSpec = NodeSpec {
         shock::THRESHOLD.group(ADVANCED),
         quantization::PHI_Q.group(ADVANCED),
         filter::SIGMA_A.group(ADVANCED),
+        STEADINESS,
+        WINDOW,
     ],
     build,
 };
@@ -55,7 +58,7 @@ const SHARPNESS: Param = Param::float("sharpness", "Sharpness", 0.5, [0.0, 1.0])
     .group(LOOK)
     .doc("How wide a soft edge may be to become a sharp one: scales `radius` from 0 to 2 times.");
 fn build(scope: &mut Scope<'_>) -> ImageId {
-    let color = scope.required("color");
+    let color = steadied_picture(scope);
     let mut filter = Filter::of(scope);
     let [scale, _] = abstraction::detail_factors(scope.float("detail"));
     filter.smoothing.sigma *= scale;

@@ -15,9 +15,10 @@ use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::nodes::structure::flow_map;
 use crate::nodes::structure::structure_tensor::{TensorOptions, of_color_and_guides};
 use crate::ports;
-use crate::spec::{HOLD, NodeSpec, Param, Scope};
+use crate::spec::{HOLD, NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::lines::{length_factor, width_factor};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::{ADVANCED, LOOK, lines, tone};
 use isophote_engine::{Class, ImageId};
 
@@ -78,6 +79,8 @@ pub static NODE: NodeSpec = NodeSpec {
         abstraction::SIGMA_D,
         abstraction::SIGMA_R,
         lines::GUIDE_WEIGHT,
+        STEADINESS,
+        WINDOW,
         HOLD,
     ],
     build,
@@ -319,7 +322,6 @@ fn strokes(scope: &mut Scope<'_>, tensor: ImageId, [width, length]: [f32; 2]) ->
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
-    let color = scope.required("color");
     let scale = scope.scale();
     let own = scope.option::<Style>("style").preset();
     let drawing = own.trimmed(scope).with_look(Look {
@@ -332,11 +334,15 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let guide_weight = scope.float("guide_weight");
     let guides = flow_dog::guides(scope, guide_weight);
     let options = TensorOptions { rho: drawing.rho * scale, ..TensorOptions::at_scale(scale) };
-    let tensor = of_color_and_guides(scope.plan, color, &guides, &options);
-    let tensor = flow_map::bent(scope, tensor);
     let (abstraction, n_e) = (Abstraction::of(scope), scope.int("n_e"));
-    let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-    let smooth = abstraction.apply(scope.plan, lab, tensor, n_e + own.flattening);
+    let [smooth, tensor] = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
+        let color = scope.required("color");
+        let guides = flow_dog::guides(scope, guide_weight);
+        let tensor = of_color_and_guides(scope.plan, color, &guides, &options);
+        let tensor = flow_map::bent(scope, tensor);
+        let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
+        [abstraction.apply(scope.plan, lab, tensor, n_e + own.flattening), tensor]
+    });
     let flow = FlowDog {
         sigma_e: drawing.sigma_e * scale,
         k: scope.float("k"),

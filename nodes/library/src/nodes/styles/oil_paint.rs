@@ -10,8 +10,9 @@ use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::nodes::structure::flow_map;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
-use crate::spec::{HOLD, NodeSpec, Param, Scope};
+use crate::spec::{HOLD, NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::{ADVANCED, LOOK, tone};
 use isophote_engine::{Class, ImageId};
 
@@ -84,6 +85,8 @@ pub static NODE: NodeSpec = NodeSpec {
             .slider(0.0, 100.0)
             .group(ADVANCED)
             .doc("Another number, other strokes."),
+        STEADINESS,
+        WINDOW,
         HOLD,
     ],
     build,
@@ -105,7 +108,6 @@ const MOST_BRISTLE: f32 = 20.0;
 const MOST_SHINE: f32 = 30.0;
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
-    let color = scope.required("color");
     // Ratios of two lengths have no unit: the scale of the rendering is taken out again.
     let length = scope.float("stroke_length") / (STROKE_LENGTH.default_float() * scope.scale());
     let width = scope.float("stroke_width") / (STROKE_WIDTH.default_float() * scope.scale());
@@ -114,18 +116,21 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         levels: scope.int("levels"),
         ..TensorOptions::default()
     };
-    let tensors = structure_tensor::of_color(scope.plan, color, &options);
-    let tensors = flow_map::bent(scope, tensors);
     let abstraction = Abstraction::of(scope);
     let n_a = scope.int("n_a");
+    let [flat, tensors] = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
+        let color = scope.required("color");
+        let tensors = structure_tensor::of_color(scope.plan, color, &options);
+        let tensors = flow_map::bent(scope, tensors);
+        let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
+        [abstraction.apply(scope.plan, lab, tensors, n_a), tensors]
+    });
     let (scale, seed) = (scope.scale(), scope.renewed(scope.int("seed") as u32));
     let origin = scope.origin();
     let white = noise::pass(scope.plan, scale, origin, seed);
     let sigma_n = scope.float("sigma_n") * width;
     let grains = gaussian_blur::pass(scope.plan, white, sigma_n, Class::Colour);
 
-    let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-    let flat = abstraction.apply(scope.plan, lab, tensors, n_a);
     let dilation_length = scope.float("dilation_length") * length;
     let strokes = flow_dilation::pass(scope.plan, flat, tensors, grains, dilation_length, true);
     // Grains are about as fine as pixels: none may be left out.

@@ -7,7 +7,8 @@ use crate::nodes::painting::anisotropic_kuwahara::{
 };
 use crate::nodes::painting::generalized_kuwahara::{Q, SECTORS, THRESHOLD};
 use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::stages::steady::steadied_picture;
 use crate::stages::{ADVANCED, LOOK, abstraction, tone};
 use crate::value::Value;
 use isophote_engine::ImageId;
@@ -42,6 +43,8 @@ pub static NODE: NodeSpec = NodeSpec {
         TAU_V.group(ADVANCED),
         TAU_W.group(ADVANCED),
         LIMIT_RANGE.with_default(Value::Bool(true)).group(ADVANCED),
+        STEADINESS,
+        WINDOW,
     ],
     build,
 };
@@ -63,7 +66,7 @@ fn quadruple(control: f32) -> f32 {
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
-    let color = scope.required("color");
+    let color = steadied_picture(scope);
     let tensor = scope.input("tensor");
     let scale = scope.scale();
     let mut painting = Painting::of(scope, Weights::Polynomial);

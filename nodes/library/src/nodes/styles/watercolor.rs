@@ -9,8 +9,9 @@ use crate::nodes::smoothing::{line_integral_convolution as lic, morphology};
 use crate::nodes::structure::flow_map;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::{ADVANCED, LOOK, tone};
 use isophote_engine::ImageId;
 
@@ -79,6 +80,8 @@ pub static NODE: NodeSpec = NodeSpec {
             .slider(1.0, 10.0)
             .group(ADVANCED)
             .doc("Size of the paper's grain, in pixels of the full-size picture."),
+        STEADINESS,
+        WINDOW,
     ],
     build,
 };
@@ -92,14 +95,16 @@ const MOST_GRAIN: f32 = 0.6;
 const SHORTEST_WAVE: f32 = 8.0;
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
-    let color = scope.required("color");
     let options = TensorOptions::at_scale(scope.scale());
-    let tensors = structure_tensor::of_color(scope.plan, color, &options);
-    let tensors = flow_map::bent(scope, tensors);
     let abstraction = Abstraction::of(scope);
     let n_a = scope.int("n_a");
-    let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-    let mut flat = abstraction.apply(scope.plan, lab, tensors, n_a);
+    let [mut flat, tensors] = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
+        let color = scope.required("color");
+        let tensors = structure_tensor::of_color(scope.plan, color, &options);
+        let tensors = flow_map::bent(scope, tensors);
+        let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
+        [abstraction.apply(scope.plan, lab, tensors, n_a), tensors]
+    });
     flat = tone::curve(scope, flat);
     let saturation = scope.float("saturation");
     let rgb = lab_to_rgb::pass(scope.plan, flat, saturation);

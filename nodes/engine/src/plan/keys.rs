@@ -1,0 +1,51 @@
+//! What stages of different frames have in common: a stage on the inputs of one frame is the same image in every plan
+//! that describes it, whichever frame that plan is for.
+
+use super::parts::{Kept, Plan};
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+impl Plan {
+    /// A number for each of [`Plan::kept`], in its order: of the passes that make it, down to their uniform bytes, and
+    /// of the inputs that these read, by name and by how far their frames are from its own. Together with the frame
+    /// it names the image, in this process.
+    pub fn keys(&self) -> Vec<u128> {
+        let mut homes: Vec<i32> = self.kept.iter().map(|kept| kept.frame).collect();
+        homes.sort_unstable();
+        homes.dedup();
+        let mut keys = vec![0; self.kept.len()];
+        for home in homes {
+            let images = self.seen_from(home);
+            let own = |kept: &&Kept| kept.frame == home;
+            for (key, kept) in keys.iter_mut().zip(&self.kept).filter(|(_, kept)| own(kept)) {
+                *key = images[kept.image.index()];
+            }
+        }
+        keys
+    }
+
+    /// A number for each image, with frames counted from `home`.
+    fn seen_from(&self, home: i32) -> Vec<u128> {
+        let mut numbers = vec![0; self.images.len()];
+        for port in &self.inputs {
+            numbers[port.image.index()] = hash(&(port.base(), port.frame - home, self.size));
+        }
+        for pass in &self.passes {
+            let inputs: Vec<u128> = pass.inputs.iter().map(|input| numbers[input.index()]).collect();
+            let made = (pass.kernel.name, inputs, &pass.params, &pass.supports, self.size);
+            for (place, output) in pass.outputs.iter().enumerate() {
+                numbers[output.index()] = hash(&(&made, place, self.desc(*output)));
+            }
+        }
+        numbers
+    }
+}
+
+/// 128 bits, so that no two images of a session meet.
+fn hash(value: &impl Hash) -> u128 {
+    let half = |salt: u8| {
+        let mut hasher = DefaultHasher::new();
+        (salt, value).hash(&mut hasher);
+        u128::from(hasher.finish())
+    };
+    half(0) << 64 | half(1)
+}

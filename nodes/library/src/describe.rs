@@ -1,0 +1,219 @@
+//! From a graph to the passes of a plan: every node at every frame that is asked for.
+
+use crate::error::Result;
+use crate::frames::{Frames, needs_of};
+use crate::graph::{Graph, GraphInput, Node, Source};
+use crate::kernels::colour::{add_light, colour_export, colour_import, emission, mix, mix_by_mask};
+use crate::picture::Request;
+use crate::spec::{Around, ImageKind, MASK, MIX, Scope};
+use isophote_engine::{ImageId, PlanBuilder};
+
+/// Working memory of a description, kept so that editing allocates nothing.
+#[derive(Debug, Default)]
+pub(crate) struct Scratch {
+    /// By node: the frames whose result is needed.
+    needs: Vec<Option<[i32; 2]>>,
+    /// By frame and node.
+    results: Vec<Option<ImageId>>,
+    /// By node: the light beyond coverage of its result, where it is taken apart.
+    lights: Vec<Option<ImageId>>,
+    /// By frame and port of the node that is described.
+    inputs: Vec<Option<ImageId>>,
+}
+
+/// Stages that a node may keep.
+const STAGES: u32 = 8;
+
+/// Describes a graph that was checked.
+pub(crate) fn describe(
+    graph: &Graph,
+    request: &Request,
+    builder: &mut PlanBuilder,
+    scratch: &mut Scratch,
+) -> Result<()> {
+    needs_of(graph, &request.frames, &mut scratch.needs);
+    let frames = (request.frames.past + request.frames.future + 1) as usize;
+    scratch.results.clear();
+    scratch.results.resize(frames * graph.len(), None);
+    scratch.lights.clear();
+    scratch.lights.resize(graph.len(), None);
+    for index in graph.order() {
+        let Some([first, last]) = scratch.needs[*index] else { continue };
+        let mut describing = Describing { graph, request, builder, scratch };
+        describing.find_inputs(*index);
+        // The frame at hand comes first: the others ask for stages of its shapes.
+        for frame in std::iter::once(0).chain((first..=last).filter(|frame| *frame != 0)) {
+            if !request.frames.is_handed(frame) {
+                describing.describe(*index, frame);
+            }
+        }
+    }
+    if let Some((index, kind)) = graph.output_node()
+        && let Some(result) = scratch.results[request.frames.past as usize * graph.len() + index]
+    {
+        let mut image = result;
+        if kind == ImageKind::Color {
+            image = colour_export::pass(builder, image, request.encoding());
+            if let Some(light) = scratch.lights[index] {
+                image = add_light::pass(builder, image, light);
+            }
+        }
+        builder.output("output", image);
+    }
+    Ok(())
+}
+
+struct Describing<'d> {
+    graph: &'d Graph,
+    request: &'d Request,
+    builder: &'d mut PlanBuilder,
+    scratch: &'d mut Scratch,
+}
+
+impl Describing<'_> {
+    fn place(&self, frame: i32, node: usize) -> usize {
+        (frame + self.request.frames.past as i32) as usize * self.graph.len() + node
+    }
+
+    /// Fills the table of what the node reads at every known frame.
+    fn find_inputs(&mut self, index: usize) {
+        let node = self.graph.node_at(index);
+        let [first, last] = self.request.frames.range();
+        let [from, to] = self.scratch.needs[index].unwrap_or([0, 0]);
+        let window = node.spec.window(&node.values);
+        self.scratch.inputs.clear();
+        for frame in first..=last {
+            let is_read = from - window <= frame && frame <= to + window;
+            self.builder.set_frame(frame);
+            for source in &node.inputs {
+                let image = source.filter(|_| is_read).and_then(|source| self.source(source, frame));
+                self.scratch.inputs.push(image);
+            }
+        }
+        self.builder.set_frame(0);
+    }
+
+    fn source(&mut self, source: Source, frame: i32) -> Option<ImageId> {
+        match source {
+            Source::Node(n) => self.scratch.results[self.place(frame, n)],
+            // What is handed in was made from the rest.
+            Source::Input(input) if self.request.frames.is_handed(frame) && !is_read_besides(input) => None,
+            Source::Input(input) if self.request.guides.has(input) => {
+                Some(graph_input(self.builder, input, self.request))
+            }
+            Source::Input(_) => None,
+        }
+    }
+
+    /// Describes a node at one frame.
+    fn describe(&mut self, index: usize, frame: i32) {
+        let node = self.graph.node_at(index);
+        let ports = node.inputs.len();
+        let first = (frame + self.request.frames.past as i32) as usize * ports;
+        let around = Around {
+            inputs: &self.scratch.inputs,
+            first: -(self.request.frames.past as i32),
+            frames: self.request.frames,
+            stage: index as u32 * STAGES,
+        };
+        let inputs = &self.scratch.inputs[first..first + ports];
+        self.builder.set_frame(frame);
+        let result = result(self.builder, node, inputs, around, self.request);
+        self.builder.set_frame(0);
+        let place = self.place(frame, index);
+        self.scratch.results[place] = Some(result);
+        if frame == 0 {
+            self.describe_light(index);
+        }
+    }
+
+    /// Describes the node on the light beyond coverage of its picture, of this frame alone.
+    fn describe_light(&mut self, index: usize) {
+        let node = self.graph.node_at(index);
+        let Some(color) = picture(node) else { return };
+        let Some(light) = light_of(self.builder, node.inputs[color], &self.scratch.lights, self.request)
+        else {
+            return;
+        };
+        let ports = node.inputs.len();
+        let first = self.request.frames.past as usize * ports;
+        let inputs = &mut self.scratch.inputs[first..first + ports];
+        let color_itself = inputs[color].replace(light);
+        let alone = Around { inputs: &[], first: 0, frames: Frames::NONE, stage: 0 };
+        let filters = node.spec.filters_light();
+        let result =
+            if filters { result(self.builder, node, inputs, alone, self.request) } else { light };
+        inputs[color] = color_itself;
+        self.scratch.lights[index] = Some(result);
+    }
+}
+
+/// Whether an input is read at frames whose stages are handed in.
+const fn is_read_besides(input: GraphInput) -> bool {
+    matches!(
+        input,
+        GraphInput::Depth | GraphInput::ObjectId | GraphInput::Motion | GraphInput::MotionForward
+    )
+}
+
+/// The passes of one node at the frame that is described, its mix and mask included.
+fn result(
+    builder: &mut PlanBuilder,
+    node: &Node,
+    inputs: &[Option<ImageId>],
+    around: Around<'_>,
+    request: &Request,
+) -> ImageId {
+    let frame = request.frame + i64::from(builder.frame());
+    let mut scope = Scope {
+        plan: builder,
+        spec: node.spec,
+        values: &node.values,
+        inputs,
+        scale: request.scale,
+        origin: request.origin.map(|o| (o * f64::from(request.scale)) as f32),
+        frame,
+        max_motion: request.max_motion * request.scale,
+        around,
+    };
+    let result = (node.spec.build)(&mut scope);
+    let Some(original) = picture(node).and_then(|color| inputs[color]) else { return result };
+    let (amount, mask) = (scope.float(MIX.id), scope.input(MASK.id));
+    match mask {
+        Some(mask) => mix_by_mask::pass(builder, [original, result], mask, amount),
+        None if amount < 1.0 => mix::pass(builder, original, result, amount),
+        None => result,
+    }
+}
+
+/// The port of the picture that a node from colour to colour filters.
+fn picture(node: &Node) -> Option<usize> {
+    node.spec.has_mix().then(|| node.spec.inputs.iter().position(|p| p.kind == ImageKind::Color))?
+}
+
+/// The light beyond coverage of what a port is connected to.
+fn light_of(
+    builder: &mut PlanBuilder,
+    source: Option<Source>,
+    lights: &[Option<ImageId>],
+    request: &Request,
+) -> Option<ImageId> {
+    match source? {
+        Source::Node(node) => lights[node],
+        Source::Input(GraphInput::Color) if request.emission && request.premultiplied => {
+            let kind = GraphInput::Color.kind();
+            let image = builder.input(GraphInput::Color.id(), kind.channels(), kind.class());
+            Some(emission::pass(builder, image))
+        }
+        Source::Input(_) => None,
+    }
+}
+
+fn graph_input(builder: &mut PlanBuilder, input: GraphInput, request: &Request) -> ImageId {
+    let kind = input.kind();
+    let image = builder.input(input.id(), kind.channels(), kind.class());
+    match input {
+        GraphInput::Color => colour_import::pass(builder, image, request.encoding()),
+        _ => image,
+    }
+}

@@ -1,0 +1,99 @@
+//! What a host knows of the frames around the one that it asks for, and how many a graph wants.
+
+use crate::graph::Graph;
+
+/// Farthest frame that a plan reads, counted from the one that is computed.
+pub const MOST_FRAMES: u32 = 31;
+
+/// What there is of the frames around the one that is computed.
+///
+/// A frame is known when all images of the graph's inputs are, of its own number and of all between it and the frame
+/// that is computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Frames {
+    /// Known frames before this one, at most [`MOST_FRAMES`].
+    pub past: u32,
+    /// Known frames after this one, at most [`MOST_FRAMES`].
+    pub future: u32,
+    /// Whether the stages that other frames carry leave the plan, as outputs `stage0`, `stage1@-1` and so on.
+    pub keep: bool,
+    /// The frames whose stages enter the plan instead of being computed in it, a bit each from -[`MOST_FRAMES`] on.
+    handed: u64,
+}
+
+impl Frames {
+    /// No other frame is known: every still.
+    pub const NONE: Self = Self { past: 0, future: 0, keep: false, handed: 0 };
+
+    /// So many frames before and after this one.
+    pub const fn around(past: u32, future: u32) -> Self {
+        let past = if past < MOST_FRAMES { past } else { MOST_FRAMES };
+        let future = if future < MOST_FRAMES { future } else { MOST_FRAMES };
+        Self { past, future, keep: false, handed: 0 }
+    }
+
+    /// The same where the host hands in the stages of `frame`, which is not 0.
+    pub const fn with_handed(mut self, frame: i32) -> Self {
+        if frame != 0 && frame.unsigned_abs() <= MOST_FRAMES {
+            self.handed |= 1 << (frame + MOST_FRAMES as i32);
+        }
+        self
+    }
+
+    /// The same where all stages that are computed leave the plan.
+    pub const fn keeping(mut self) -> Self {
+        self.keep = true;
+        self
+    }
+
+    /// The first and the last frame that is known, counted from the one that is computed.
+    pub(crate) const fn range(&self) -> [i32; 2] {
+        [-(self.past as i32), self.future as i32]
+    }
+
+    /// Whether a frame is known, counted from the one that is computed.
+    pub const fn has(&self, frame: i32) -> bool {
+        let [first, last] = self.range();
+        first <= frame && frame <= last
+    }
+
+    /// Whether the host hands in the stages of a frame.
+    pub const fn is_handed(&self, frame: i32) -> bool {
+        self.has(frame) && self.handed >> (frame + MOST_FRAMES as i32) & 1 == 1
+    }
+}
+
+impl Graph {
+    /// Frames before and after its own that a frame of the graph's output depends on, where all are known; [0, 0] for
+    /// graphs of stills.
+    pub fn frames(&self) -> [u32; 2] {
+        let mut needs = Vec::new();
+        needs_of(self, &Frames::around(MOST_FRAMES, MOST_FRAMES), &mut needs);
+        let windows = self.nodes().iter().zip(&needs).filter_map(|(node, need)| {
+            let window = node.spec.window(&node.values);
+            need.map(|[first, last]| [(window - first) as u32, (window + last) as u32])
+        });
+        windows.fold([0, 0], |[a, b], [c, d]| [a.max(c), b.max(d)]).map(|n| n.min(MOST_FRAMES))
+    }
+}
+
+/// By node, the first and the last frame whose result the graph's output needs, as far as frames are known; none for
+/// nodes that it does not need.
+pub(crate) fn needs_of(graph: &Graph, frames: &Frames, needs: &mut Vec<Option<[i32; 2]>>) {
+    needs.clear();
+    needs.resize(graph.len(), None);
+    if let Some((output, _)) = graph.output_node() {
+        needs[output] = Some([0, 0]);
+    }
+    let [first, last] = frames.range();
+    for index in graph.order().iter().rev() {
+        let Some([from, to]) = needs[*index] else { continue };
+        let node = graph.node_at(*index);
+        let window = node.spec.window(&node.values);
+        let wanted = [(from - window).max(first), (to + window).min(last)];
+        for source in node.sources() {
+            let need = needs[source].get_or_insert(wanted);
+            *need = [need[0].min(wanted[0]), need[1].max(wanted[1])];
+        }
+    }
+}

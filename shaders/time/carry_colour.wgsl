@@ -1,0 +1,30 @@
+// Takes the colour of a neighbouring frame, carried here along motion, into an average.
+// Cost: 16 loads of colour and 100 operations.
+#import shared/motion
+
+@group(0) @binding(2) var average: texture_2d<f32>;
+@group(0) @binding(3) var motion: texture_2d<f32>;
+@group(0) @binding(4) var shares: texture_2d<f32>;
+@group(0) @binding(5) var theirs: texture_2d<f32>;
+@group(0) @binding(6) var target_image: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let own = fetch(average, 0u, pixel(id));
+    let share = fetch(shares, 2u, pixel(id)).x;
+    if share <= 0.0 {
+        textureStore(target_image, vec2i(id.xy), own);
+        return;
+    }
+    // Shares are those of known motions.
+    let place = centre(id) + fetch(motion, 1u, pixel(id)).xy;
+    let sum = sample_sharp_covered(theirs, 3u, place);
+    let carried = unpremultiply(vec4f(sum.rgb, clamp(sum.a, 0.0, 1.0)));
+    // Colours count by their coverage too.
+    let alpha = own.a + (carried.a - own.a) * share;
+    let weight = select(0.0, share * carried.a / alpha, alpha > LEAST_COVERAGE);
+    textureStore(target_image, vec2i(id.xy), vec4f(own.rgb + (carried.rgb - own.rgb) * weight, alpha));
+}
