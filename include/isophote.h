@@ -18,6 +18,10 @@
  *   api->process(graph, cpu, &request, inputs, 1, NULL, &target, NULL, NULL);   for images in memory
  *   api->graph_destroy(graph);
  *
+ * Frames of a sequence that are steady over time, in any order, need the extension
+ *
+ *   const struct IsophoteSequenceApi *sequences = api->extension("isophote.sequence/1");
+ *
  * A host that renders runs the plan instead:
  *
  *   api->plan_create(graph, &request, NULL, &error, &plan);
@@ -142,6 +146,14 @@ extern "C" {
 // data, which no colour space changes.
 #define ISOPHOTE_KIND_FLOW 6
 
+// Where a point is in another frame, from where it is in this one: 2 channels, x right and y down, in pixels of the
+// picture. What is not finite is unknown.
+#define ISOPHOTE_KIND_MOTION 7
+
+// A point x, y, z of the undeformed object in the scene's units, and 1 where there is something: 4 channels; of 3, all
+// but 0, 0, 0 is something.
+#define ISOPHOTE_KIND_POSITION 8
+
 // A number.
 #define ISOPHOTE_PARAM_FLOAT 0
 
@@ -214,6 +226,15 @@ extern "C" {
 
 // Bit of `IsophoteRequest::guides`: the host has a flow map, an orientation that an artist painted.
 #define ISOPHOTE_GUIDE_FLOW 16
+
+// Bit of `IsophoteRequest::guides`: the host has the motion from the frame before.
+#define ISOPHOTE_GUIDE_MOTION 32
+
+// Bit of `IsophoteRequest::guides`: the host has the motion to the next frame.
+#define ISOPHOTE_GUIDE_MOTION_FORWARD 64
+
+// Bit of `IsophoteRequest::guides`: the host has the points of the undeformed objects.
+#define ISOPHOTE_GUIDE_REST_POSITION 128
 
 // The host binds its own texture, which shows the window of the picture that the plan names.
 #define ISOPHOTE_ROLE_INPUT 0
@@ -464,7 +485,8 @@ typedef uint32_t IsophoteSample;
 // picture and begins at `data + j * row_stride + i * channels * sample size`. No alignment is
 // needed. Missing colour channels repeat the grey, missing alpha is 1. Of depth and object numbers
 // the first channel is read; integer object numbers are taken as they are, and normals must be
-// floats of three or four channels.
+// floats of three or four channels. Of motions, which are floats, the first two channels are read; what is not finite is
+// unknown.
 typedef struct IsophoteImage {
   // The first pixel of the top row, also where rows go upwards in memory.
   const void *data;
@@ -473,7 +495,7 @@ typedef struct IsophoteImage {
   ptrdiff_t row_stride;
   // How a sample is stored.
   IsophoteSample sample;
-  // Samples a pixel: 1 (grey), 3 (RGB) or 4 (RGBA).
+  // Samples a pixel: 1 (grey), 3 (RGB) or 4 (RGBA); 2 to 4 of motions.
   uint32_t channels;
   // Columns held.
   uint32_t width;

@@ -61,6 +61,12 @@ pub const ISOPHOTE_KIND_OBJECT_ID: u32 = 5;
 /// A flow map: a painted direction, x and y in red and green, 0.5 for none, and its strength in alpha. Its values are
 /// data, which no colour space changes.
 pub const ISOPHOTE_KIND_FLOW: u32 = 6;
+/// Where a point is in another frame, from where it is in this one: 2 channels, x right and y down, in pixels of the
+/// picture. What is not finite is unknown.
+pub const ISOPHOTE_KIND_MOTION: u32 = 7;
+/// A point x, y, z of the undeformed object in the scene's units, and 1 where there is something: 4 channels; of 3, all
+/// but 0, 0, 0 is something.
+pub const ISOPHOTE_KIND_POSITION: u32 = 8;
 
 /// Type of a parameter. One of `ISOPHOTE_PARAM_...`.
 pub type IsophoteParamKind = u32;
@@ -126,6 +132,12 @@ pub const ISOPHOTE_GUIDE_OBJECT_ID: u32 = 4;
 pub const ISOPHOTE_GUIDE_MASK: u32 = 8;
 /// Bit of `IsophoteRequest::guides`: the host has a flow map, an orientation that an artist painted.
 pub const ISOPHOTE_GUIDE_FLOW: u32 = 16;
+/// Bit of `IsophoteRequest::guides`: the host has the motion from the frame before.
+pub const ISOPHOTE_GUIDE_MOTION: u32 = 32;
+/// Bit of `IsophoteRequest::guides`: the host has the motion to the next frame.
+pub const ISOPHOTE_GUIDE_MOTION_FORWARD: u32 = 64;
+/// Bit of `IsophoteRequest::guides`: the host has the points of the undeformed objects.
+pub const ISOPHOTE_GUIDE_REST_POSITION: u32 = 128;
 
 /// What a texture of a plan is for. One of `ISOPHOTE_ROLE_...`.
 pub type IsophoteRole = u32;

@@ -199,7 +199,8 @@ pub struct IsophoteRequest {
 /// picture and begins at `data + j * row_stride + i * channels * sample size`. No alignment is
 /// needed. Missing colour channels repeat the grey, missing alpha is 1. Of depth and object numbers
 /// the first channel is read; integer object numbers are taken as they are, and normals must be
-/// floats of three or four channels.
+/// floats of three or four channels. Of motions, which are floats, the first two channels are read; what is not finite is
+/// unknown.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct IsophoteImage {
@@ -210,7 +211,7 @@ pub struct IsophoteImage {
     pub row_stride: isize,
     /// How a sample is stored.
     pub sample: IsophoteSample,
-    /// Samples a pixel: 1 (grey), 3 (RGB) or 4 (RGBA).
+    /// Samples a pixel: 1 (grey), 3 (RGB) or 4 (RGBA); 2 to 4 of motions.
     pub channels: u32,
     /// Columns held.
     pub width: u32,

@@ -16,8 +16,9 @@ fn is_inside(p: vec2f, size: vec2i) -> bool {
 
 // The motion unless it is longer than `limit` or no number, which makes it unknown.
 fn bounded_motion(motion: vec2f, limit: f32) -> vec2f {
-    // Comparisons with what is no number are false.
-    let known = abs(motion.x) <= limit && abs(motion.y) <= limit;
+    // By bits: shader compilers may assume that NaN does not exist.
+    let special = (bitcast<vec2u>(motion) & vec2u(0x7f800000u)) == vec2u(0x7f800000u);
+    let known = !any(special) && abs(motion.x) <= limit && abs(motion.y) <= limit;
     return select(vec2f(UNKNOWN_MOTION), motion, known);
 }
 
@@ -45,6 +46,25 @@ fn sample_sharp_covered(image: texture_2d<f32>, slot: u32, p: vec2f) -> vec4f {
         var row = vec4f(0.0);
         for (var x = 0; x < 4; x++) {
             row += wx[x] * fetch_covered(image, slot, i + vec2i(x - 1, y - 1));
+        }
+        sum += wy[y] * row;
+    }
+    return sum;
+}
+
+// Sample of any image with a sharp interpolation.
+fn sample_sharp(image: texture_2d<f32>, slot: u32, p: vec2f) -> vec4f {
+    let last = vec2f(grid.inputs[slot].zw);
+    let q = min(max(p - 0.5, vec2f(-2.0)), last + 2.0);
+    let corner = floor(q);
+    let i = vec2i(corner);
+    let wx = catmull_rom(q.x - corner.x);
+    let wy = catmull_rom(q.y - corner.y);
+    var sum = vec4f(0.0);
+    for (var y = 0; y < 4; y++) {
+        var row = vec4f(0.0);
+        for (var x = 0; x < 4; x++) {
+            row += wx[x] * fetch(image, slot, i + vec2i(x - 1, y - 1));
         }
         sum += wy[y] * row;
     }

@@ -71,6 +71,28 @@ pub fn read_row(bytes: &[u8], sample: Sample, channels: usize, row: &mut [f32], 
     replaced
 }
 
+/// Decodes one row of vectors of `channels` samples to the first `out_channels` of each, which are no fewer; those of
+/// vectors that are not finite are `unknown`.
+pub fn read_vectors(
+    bytes: &[u8],
+    sample: Sample,
+    channels: usize,
+    row: &mut [f32],
+    out_channels: usize,
+    unknown: f32,
+) {
+    let size = sample.size();
+    let vectors = bytes.chunks_exact(size * channels).zip(row.chunks_exact_mut(out_channels));
+    for (source, vector) in vectors {
+        for (value, bytes) in vector.iter_mut().zip(source.chunks_exact(size)) {
+            *value = read_sample(bytes, sample);
+        }
+        if !vector.iter().all(|v| v.is_finite()) {
+            vector.fill(unknown);
+        }
+    }
+}
+
 /// Writes one row of pixels, the reverse of [`read_row`]: alpha is added as 1 or dropped, and a grey
 /// target takes the first channel.
 pub fn write_row(row: &[f32], in_channels: usize, bytes: &mut [u8], sample: Sample, channels: usize) {

@@ -76,6 +76,16 @@ impl<T> FrameStore<T> {
         Some(stored.image)
     }
 
+    /// Whether there is any image of a frame.
+    pub fn knows(&self, frame: i64) -> bool {
+        self.images.keys().any(|(_, of)| *of == frame)
+    }
+
+    /// Most bytes of all images.
+    pub fn most(&self) -> u64 {
+        self.most
+    }
+
     /// Bytes of all images.
     pub fn bytes(&self) -> u64 {
         self.bytes

@@ -1,9 +1,10 @@
 //! From a graph to the passes of a plan: every node at every frame that is asked for.
 
 use crate::error::Result;
-use crate::frames::{Frames, needs_of};
+use crate::frames::Frames;
 use crate::graph::{Graph, GraphInput, Node, Source};
 use crate::kernels::colour::{add_light, colour_export, colour_import, emission, mix, mix_by_mask};
+use crate::neighbours::needs_of;
 use crate::picture::Request;
 use crate::spec::{Around, ImageKind, MASK, MIX, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
@@ -141,8 +142,7 @@ impl Describing<'_> {
         let color_itself = inputs[color].replace(light);
         let alone = Around { inputs: &[], first: 0, frames: Frames::NONE, stage: 0 };
         let filters = node.spec.filters_light();
-        let result =
-            if filters { result(self.builder, node, inputs, alone, self.request) } else { light };
+        let result = if filters { result(self.builder, node, inputs, alone, self.request) } else { light };
         inputs[color] = color_itself;
         self.scratch.lights[index] = Some(result);
     }
@@ -150,10 +150,7 @@ impl Describing<'_> {
 
 /// Whether an input is read at frames whose stages are handed in.
 const fn is_read_besides(input: GraphInput) -> bool {
-    matches!(
-        input,
-        GraphInput::Depth | GraphInput::ObjectId | GraphInput::Motion | GraphInput::MotionForward
-    )
+    matches!(input, GraphInput::Depth | GraphInput::ObjectId | GraphInput::Motion | GraphInput::MotionForward)
 }
 
 /// The passes of one node at the frame that is described, its mix and mask included.

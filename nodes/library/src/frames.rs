@@ -1,6 +1,4 @@
-//! What a host knows of the frames around the one that it asks for, and how many a graph wants.
-
-use crate::graph::Graph;
+//! What a host knows of the frames around the one that it asks for.
 
 /// Farthest frame that a plan reads, counted from the one that is computed.
 pub const MOST_FRAMES: u32 = 31;
@@ -60,40 +58,5 @@ impl Frames {
     /// Whether the host hands in the stages of a frame.
     pub const fn is_handed(&self, frame: i32) -> bool {
         self.has(frame) && self.handed >> (frame + MOST_FRAMES as i32) & 1 == 1
-    }
-}
-
-impl Graph {
-    /// Frames before and after its own that a frame of the graph's output depends on, where all are known; [0, 0] for
-    /// graphs of stills.
-    pub fn frames(&self) -> [u32; 2] {
-        let mut needs = Vec::new();
-        needs_of(self, &Frames::around(MOST_FRAMES, MOST_FRAMES), &mut needs);
-        let windows = self.nodes().iter().zip(&needs).filter_map(|(node, need)| {
-            let window = node.spec.window(&node.values);
-            need.map(|[first, last]| [(window - first) as u32, (window + last) as u32])
-        });
-        windows.fold([0, 0], |[a, b], [c, d]| [a.max(c), b.max(d)]).map(|n| n.min(MOST_FRAMES))
-    }
-}
-
-/// By node, the first and the last frame whose result the graph's output needs, as far as frames are known; none for
-/// nodes that it does not need.
-pub(crate) fn needs_of(graph: &Graph, frames: &Frames, needs: &mut Vec<Option<[i32; 2]>>) {
-    needs.clear();
-    needs.resize(graph.len(), None);
-    if let Some((output, _)) = graph.output_node() {
-        needs[output] = Some([0, 0]);
-    }
-    let [first, last] = frames.range();
-    for index in graph.order().iter().rev() {
-        let Some([from, to]) = needs[*index] else { continue };
-        let node = graph.node_at(*index);
-        let window = node.spec.window(&node.values);
-        let wanted = [(from - window).max(first), (to + window).min(last)];
-        for source in node.sources() {
-            let need = needs[source].get_or_insert(wanted);
-            *need = [need[0].min(wanted[0]), need[1].max(wanted[1])];
-        }
     }
 }

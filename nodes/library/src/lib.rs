@@ -18,6 +18,7 @@ pub mod frames;
 pub mod graph;
 mod json;
 pub mod kernels;
+mod neighbours;
 pub mod nodes;
 pub mod param;
 pub mod picture;

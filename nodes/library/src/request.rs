@@ -124,4 +124,3 @@ fn plan(graph: &Graph, request: &Request, scratch: &mut Scratch) -> Result<Plan>
     describe(graph, request, &mut builder, scratch)?;
     Ok(builder.finish()?)
 }
-

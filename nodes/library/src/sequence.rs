@@ -33,19 +33,24 @@ impl<T> Sequence<T> {
         Self { whole: None, plans: Vec::new(), store: FrameStore::new(most), stages: Vec::new() }
     }
 
-    /// Plans the frame of a request, whose `frames` say which others are known.
+    /// Plans the frame of a request, whose `frames` say which others are known. Stages are kept, and kept ones used,
+    /// where `keeps` is true, as it may be for runs of whole pictures.
     ///
     /// # Errors
     /// As [`Planned::new`].
-    pub fn plan(&mut self, graph: &Graph, request: Request) -> Result<&Planned> {
+    pub fn plan(&mut self, graph: &Graph, mut request: Request, keeps: bool) -> Result<&Planned> {
         self.stages.clear();
-        let mut request = request;
-        if graph.frames() != [0, 0] {
+        if keeps && graph.frames() != [0, 0] {
             let whole = Request { frames: request.frames.keeping(), ..request };
             let whole = updated(&mut self.whole, graph, whole)?;
             let keys = whole.plan().keys();
             self.stages.extend(
-                whole.plan().kept().iter().zip(keys).map(|(kept, key)| (*kept, (key, request.frame + i64::from(kept.frame)))),
+                whole
+                    .plan()
+                    .kept()
+                    .iter()
+                    .zip(keys)
+                    .map(|(kept, key)| (*kept, (key, request.frame + i64::from(kept.frame)))),
             );
             request.frames = request.frames.keeping();
             for (kept, _) in &self.stages {
@@ -94,7 +99,10 @@ impl<T> Sequence<T> {
         for (port, image) in planned.plan().outputs().iter().zip(results) {
             let stage = stage_of(port.base());
             let name = stage.and_then(|stage| {
-                self.stages.iter().find(|(k, _)| k.frame == port.frame && k.stage == stage).map(|(_, name)| *name)
+                self.stages
+                    .iter()
+                    .find(|(k, _)| k.frame == port.frame && k.stage == stage)
+                    .map(|(_, name)| *name)
             });
             match name {
                 Some(name) => {
@@ -105,6 +113,16 @@ impl<T> Sequence<T> {
             }
         }
         (output, gone)
+    }
+
+    /// Whether stages of a frame of this number are kept.
+    pub fn knows(&self, frame: i64) -> bool {
+        self.store.knows(frame)
+    }
+
+    /// Most bytes that are kept.
+    pub fn most(&self) -> u64 {
+        self.store.most()
     }
 
     /// Forgets all stages, so that their memory is given back.

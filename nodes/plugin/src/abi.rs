@@ -19,6 +19,8 @@ pub mod objects;
 pub mod plan;
 pub mod process;
 pub mod request;
+pub mod run;
+pub mod sequence;
 pub mod shader;
 pub mod threads;
 pub mod warm;
@@ -106,9 +108,13 @@ unsafe extern "C" fn status_name(status: IsophoteStatus) -> *const c_char {
     NAMES.get(status as usize).map_or(c"unknown status", |n| n).as_ptr()
 }
 
-/// None yet.
-unsafe extern "C" fn extension(_id: *const c_char) -> *const c_void {
-    std::ptr::null()
+unsafe extern "C" fn extension(id: *const c_char) -> *const c_void {
+    if id.is_null() {
+        return std::ptr::null();
+    }
+    // SAFETY: the host promised text with a closing zero.
+    let id = unsafe { CStr::from_ptr(id) };
+    if id == sequence::EXTENSION { (&raw const sequence::API).cast() } else { std::ptr::null() }
 }
 
 unsafe extern "C" fn trim() -> IsophoteStatus {

@@ -5,9 +5,12 @@
 //! kept from frame to frame. A neighbour counts by a Gaussian over time, times the agreement of its smoothed colour, of
 //! depth, of object numbers, and of forward with backward motion, where there are such.
 
+use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::time::carried_share::{self, Neighbour};
 use crate::kernels::time::guide_agreement::{self, Guide, Way};
-use crate::kernels::time::{carry_colour, carry_tensor, motion_chain, motion_import, return_agreement};
+use crate::kernels::time::{
+    carry_colour, carry_pair, carry_tensor, motion_chain, motion_import, return_agreement,
+};
 use crate::spec::{STEADINESS, Scope, WINDOW};
 use isophote_engine::{Class, ImageId};
 
@@ -35,11 +38,14 @@ impl Agreement {
 /// Standard deviation of the Gaussian over differences of colour, CIELAB units.
 pub(crate) const COLOUR_AGREEMENT: f32 = 8.0;
 
+/// Standard deviation of the smoothing of pictures before they are compared, pixels: noise must not look like change.
+const SMOOTHING: f32 = 1.5;
+
 /// What `describe` finds on the frame that is described, steadied by what it finds on its neighbours as the parameters
 /// `steadiness` and `window` say.
 ///
-/// The first image is a picture, by which frames are compared as `by` says; fields are structure tensors, the others
-/// colours of any kind.
+/// The first image is a picture, by which frames are compared as `by` says; the others are colours of
+/// any kind, structure tensors (fields of four channels), or values times coverage and coverage (two channels).
 pub(crate) fn steadied<const N: usize>(
     scope: &mut Scope<'_>,
     by: Agreement,
@@ -82,9 +88,11 @@ pub(crate) fn steadied<const N: usize>(
         let share = carried_share::pass(scope.plan, [own[0], theirs[0]], shares, &neighbour);
         for (average, theirs) in average.iter_mut().zip(theirs) {
             let (images, by) = ([*average, theirs], [way.motion, share]);
-            *average = match scope.plan.desc(theirs).class {
-                Class::Field => carry_tensor::pass(scope.plan, images, by, way.reach),
-                Class::Colour => carry_colour::pass(scope.plan, images, by, way.reach),
+            let shape = scope.plan.desc(theirs);
+            *average = match (shape.class, shape.channels) {
+                (_, 2) => carry_pair::pass(scope.plan, images, by, way.reach),
+                (Class::Field, _) => carry_tensor::pass(scope.plan, images, by, way.reach),
+                (Class::Colour, _) => carry_colour::pass(scope.plan, images, by, way.reach),
             };
         }
         shares = Some(share);
@@ -94,8 +102,20 @@ pub(crate) fn steadied<const N: usize>(
 
 /// The node's picture, gamma-encoded, steadied before the filter sees it.
 pub(crate) fn steadied_picture(scope: &mut Scope<'_>) -> ImageId {
-    let [color] = steadied(scope, Agreement::rgb(COLOUR_AGREEMENT), |scope| [scope.required("color")]);
+    let [_, color] = steadied(scope, Agreement::rgb(COLOUR_AGREEMENT), |scope| {
+        let color = scope.required("color");
+        [compared(scope, color), color]
+    });
     color
+}
+
+/// A picture as it is compared with those of other frames; itself where it is not.
+pub(crate) fn compared(scope: &mut Scope<'_>, color: ImageId) -> ImageId {
+    if scope.float(STEADINESS.id) <= 0.0 {
+        return color;
+    }
+    let sigma = SMOOTHING * scope.scale();
+    gaussian_blur::pass_colour(scope.plan, color, sigma)
 }
 
 /// Keeps the stages of the frame that is described, and returns their numbers.
@@ -109,7 +129,7 @@ fn kept<const N: usize>(scope: &mut Scope<'_>, images: [ImageId; N]) -> [u32; N]
 
 /// Weight of a frame so far away: a Gaussian that is 1 for the frame itself and has no width at 0, every width at 1.
 fn gain(steadiness: f32, offset: i32) -> f32 {
-    steadiness.powf((offset * offset) as f32 / 4.0)
+    steadiness.powf((offset * offset) as f32 / 8.0)
 }
 
 /// Where the points of the frame that is described are in another; none where no motion leads there.

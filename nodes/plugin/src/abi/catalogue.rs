@@ -174,6 +174,8 @@ pub fn kind(kind: ImageKind) -> IsophoteKind {
         ImageKind::Depth => ISOPHOTE_KIND_DEPTH,
         ImageKind::ObjectId => ISOPHOTE_KIND_OBJECT_ID,
         ImageKind::Flow => ISOPHOTE_KIND_FLOW,
+        ImageKind::Motion => ISOPHOTE_KIND_MOTION,
+        ImageKind::Position => ISOPHOTE_KIND_POSITION,
     }
 }
 

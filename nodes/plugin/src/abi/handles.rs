@@ -6,6 +6,7 @@
 
 use super::contract::{
     ISOPHOTE_ERROR_INVALID_HANDLE, ISOPHOTE_ERROR_OUT_OF_MEMORY, IsophoteDevice, IsophoteGraph, IsophotePlan,
+    IsophoteSequence,
 };
 use super::failure::{Failure, Outcome};
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
@@ -32,7 +33,7 @@ macro_rules! handles {
     };
 }
 
-handles!(IsophoteGraph, IsophotePlan, IsophoteDevice);
+handles!(IsophoteGraph, IsophotePlan, IsophoteDevice, IsophoteSequence);
 
 /// What hosts hold handles of.
 pub trait Object: Send + Sync + Sized + 'static {

@@ -5,9 +5,11 @@
 
 use super::contract::*;
 use super::failure::{Failure, Outcome};
-use isophote::engine::pixels::{Sample, read_row, write_row};
+use isophote::engine::pixels::{Sample, read_row, read_vectors, write_row};
 use isophote::engine::{Image, Rect};
 use isophote::graph::GraphInput;
+use isophote::kernels::shared::motion::UNKNOWN;
+use isophote::spec::ImageKind;
 
 /// An image of the host's whose shape was checked.
 #[derive(Clone, Copy, Debug)]
@@ -26,8 +28,8 @@ impl Checked {
     /// # Errors
     /// Invalid argument for a null pointer or an unlisted number, geometry for sizes and strides that
     /// no image can have.
-    pub fn source(image: &IsophoteImage, what: &str) -> Outcome<Self> {
-        Self::new(
+    pub fn source(image: &IsophoteImage, input: GraphInput, what: &str) -> Outcome<Self> {
+        Self::of(
             &IsophoteTarget {
                 data: image.data.cast_mut(),
                 row_stride: image.row_stride,
@@ -39,6 +41,7 @@ impl Checked {
                 y: image.y,
             },
             what,
+            input.kind(),
         )
     }
 
@@ -47,6 +50,10 @@ impl Checked {
     /// # Errors
     /// As [`Checked::source`].
     pub fn new(image: &IsophoteTarget, what: &str) -> Outcome<Self> {
+        Self::of(image, what, ImageKind::Color)
+    }
+
+    fn of(image: &IsophoteTarget, what: &str, kind: ImageKind) -> Outcome<Self> {
         if image.data.is_null() {
             return Err(Failure::argument(format!("{what} has no data")));
         }
@@ -59,8 +66,11 @@ impl Checked {
                 return Err(Failure::argument(format!("{what} has samples of the unknown format {other}")));
             }
         };
-        if !matches!(image.channels, 1 | 3 | 4) {
-            return Err(Failure::argument(format!("{what} has {} channels, not 1, 3 or 4", image.channels)));
+        let known = if kind == ImageKind::Motion { [2, 3, 4] } else { [1, 3, 4] };
+        if !known.contains(&image.channels) {
+            let [a, b, c] = known;
+            let message = format!("{what} has {} channels, not {a}, {b} or {c}", image.channels);
+            return Err(Failure::argument(message));
         }
         isophote::engine::image::check_size(image.width, image.height)
             .map_err(|e| Failure::geometry(format!("{what}: {e}")))?;
@@ -118,19 +128,12 @@ impl Checked {
     /// Reads the pixels of `window`, which the image must hold, and counts the samples that were replaced.
     ///
     /// # Errors
-    /// Out of memory; input when normals are not floats of three or four channels.
+    /// Out of memory; input when normals, positions or motions are not floats of as many channels.
     ///
     /// # Safety
     /// The memory of the image must be readable.
     pub unsafe fn read(&self, window: Rect, input: GraphInput) -> Outcome<(Image, u64)> {
-        if input == GraphInput::Normal
-            && (self.channels < 3 || matches!(self.sample, Sample::U8 | Sample::U16))
-        {
-            return Err(Failure::new(
-                ISOPHOTE_ERROR_INPUT,
-                "input image 'normal' must have 3 or 4 channels of f16 or f32",
-            ));
-        }
+        self.must_suit(input)?;
         let channels = input.kind().channels();
         let mut image = Image::with_window(window, channels)?;
         let mut bytes = self.row_of_bytes(&window)?;
@@ -140,7 +143,17 @@ impl Checked {
             // is of bytes and needs no alignment.
             unsafe { bytes.as_mut_ptr().copy_from_nonoverlapping(self.at(&window, y), bytes.len()) };
             let row = image.row_mut(y);
+            if input.kind() == ImageKind::Motion {
+                read_vectors(&bytes, self.sample, self.channels, row, 2, UNKNOWN);
+                continue;
+            }
             replaced += read_row(&bytes, self.sample, self.channels, row, channels as usize);
+            if input == GraphInput::RestPosition && self.channels == 3 {
+                // Renderers leave 0, 0, 0 where there is nothing.
+                for point in row.chunks_exact_mut(4) {
+                    point[3] = f32::from(u8::from(point[..3] != [0.0; 3]));
+                }
+            }
             if input == GraphInput::ObjectId {
                 // Numbers, not shares of the largest one.
                 let most = match self.sample {
@@ -152,6 +165,23 @@ impl Checked {
             }
         }
         Ok((image, replaced))
+    }
+
+    /// Fails for directions and vectors in samples that cannot hold them.
+    fn must_suit(&self, input: GraphInput) -> Outcome<()> {
+        let (channels, shown) = match input.kind() {
+            ImageKind::Normal | ImageKind::Position => (3, "3 or 4"),
+            ImageKind::Motion => (2, "2 to 4"),
+            _ => return Ok(()),
+        };
+        if self.channels < channels || matches!(self.sample, Sample::U8 | Sample::U16) {
+            let name = input.id();
+            return Err(Failure::new(
+                ISOPHOTE_ERROR_INPUT,
+                format!("input image '{name}' must have {shown} channels of f16 or f32"),
+            ));
+        }
+        Ok(())
     }
 
     /// Room for a copy of one row of `window`.

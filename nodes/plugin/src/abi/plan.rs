@@ -38,6 +38,18 @@ impl Object for PlanObject {
     }
 }
 
+impl PlanObject {
+    /// The plan of `region`.
+    ///
+    /// # Errors
+    /// What planning and lowering fail with.
+    pub fn new(graph: Graph, request: Request, region: Rect) -> Outcome<Self> {
+        let planned = Planned::new(&graph, request)?;
+        let state = State::new(graph, planned, region)?;
+        Ok(Self { state: Mutex::new(state), message: Mutex::default() })
+    }
+}
+
 #[derive(Debug)]
 struct State {
     /// The graph that the plan was last made from, to go back to when an update fails.
@@ -58,7 +70,9 @@ impl State {
     fn update(&mut self, graph: Graph, request: Option<Request>) -> Outcome<IsophoteChange> {
         let before = *self.planned.request();
         if let Some(request) = request {
-            self.planned.set_request(request)?;
+            // What is known of other frames is the plan's own.
+            let Request { frames, max_motion, .. } = before;
+            self.planned.set_request(Request { frames, max_motion, ..request })?;
         }
         let change = match self.planned.update(&graph) {
             Ok(change) => change,
@@ -165,9 +179,7 @@ pub(super) unsafe extern "C" fn create(
             let request = request::request(&args::get(host_request, "the request")?)?;
             (request, request::region(region, &request)?)
         };
-        let planned = Planned::new(&graph, request)?;
-        let state = State::new(graph, planned, region)?;
-        Ok(PlanObject { state: Mutex::new(state), message: Mutex::default() })
+        PlanObject::new(graph, request, region)
     };
     // SAFETY: the host promised that both places may be written.
     unsafe { guard::create(plan, error, make) }

@@ -4,22 +4,21 @@ use super::args;
 use super::contract::*;
 use super::failure::{Failure, Outcome};
 use super::graph;
-use super::guard::{self, lock};
+use super::guard;
 use super::handles::Object;
 use super::images::{Checked, shown};
 use super::objects::{DeviceObject, GraphObject};
 use super::request::{region, request};
-use super::threads::{CallThreads, User};
+use super::run::{Run, must_fit};
+use super::threads::CallThreads;
 use super::warm::Warm;
 use isophote::Request;
-use isophote::engine::cpu::{Control, PassTime};
-use isophote::engine::{Image, ImageId, Plan, Rect, Support, gpu, memory};
+use isophote::engine::{Image, Rect, Support};
 use isophote::graph::GraphInput;
 use isophote::kernels::shared::host_colour::has_light;
 use isophote::request::Guides;
-use std::ffi::{CString, c_char, c_void};
+use std::ffi::c_char;
 use std::ptr::null_mut;
-use std::sync::Arc;
 use std::time::Instant;
 
 pub(super) unsafe extern "C" fn support(
@@ -76,13 +75,7 @@ pub(super) unsafe extern "C" fn process(
             (request, sources(inputs, input_count)?, target, control)
         };
         let given = |input| inputs.iter().any(|(i, _)| *i == input);
-        request.guides = Guides {
-            normal: given(GraphInput::Normal),
-            depth: given(GraphInput::Depth),
-            object_id: given(GraphInput::ObjectId),
-            mask: given(GraphInput::Mask),
-            flow: given(GraphInput::Flow),
-        };
+        request.guides = Guides::of(given);
         // SAFETY: the host promised a rectangle behind the pointer, or null.
         let region = unsafe { region(host_region, &request)? };
         target.must_hold(&region, "the target image")?;
@@ -113,7 +106,8 @@ pub(super) unsafe extern "C" fn process(
     })
 }
 
-const NO_CONTROL: IsophoteControl = IsophoteControl {
+/// The control of a host that gives none.
+pub const NO_CONTROL: IsophoteControl = IsophoteControl {
     user: null_mut(),
     run: None,
     progress: None,
@@ -137,7 +131,7 @@ unsafe fn sources(inputs: *const IsophoteInput, count: u32) -> Outcome<Vec<(Grap
         if sources.iter().any(|(i, _)| *i == input) {
             return Err(Failure::argument(format!("input image '{}' is given twice", input.id())));
         }
-        sources.push((input, Checked::source(&host.image, &format!("input image '{}'", input.id()))?));
+        sources.push((input, Checked::source(&host.image, input, &format!("input image '{}'", input.id()))?));
     }
     Ok(sources)
 }
@@ -190,7 +184,13 @@ impl Job<'_> {
             self.make_room(warm, device.is_some())?;
         }
         let images: Vec<(&str, &Image)> = images.iter().map(|(name, image)| (*name, image)).collect();
-        let result = self.execute(warm, device, &images)?;
+        let (plan, cpu, gpu) = warm.parts()?;
+        let run = Run { plan, region: self.region, threads: self.threads, control: self.control };
+        let results = run.execute(cpu, gpu, device, &images)?;
+        let result = results
+            .into_iter()
+            .next()
+            .ok_or_else(|| Failure::new(ISOPHOTE_ERROR_INTERNAL, "the plan gave no image"))?;
         if result.window() != self.region {
             return Err(Failure::new(
                 ISOPHOTE_ERROR_UNSUPPORTED,
@@ -218,117 +218,4 @@ impl Job<'_> {
             && !self.request.emission
             && images.iter().any(|(name, image)| *name == GraphInput::Color.id() && has_light(image.data()))
     }
-
-    fn execute(
-        &self,
-        warm: &mut Warm,
-        device: Option<&DeviceObject>,
-        images: &[(&str, &Image)],
-    ) -> Outcome<Image> {
-        let user = User(self.control.user);
-        let cancelled = self.control.cancelled.map(|ask| {
-            move || {
-                let user = user;
-                // SAFETY: the host promised a function of this type that any thread may call.
-                unsafe { ask(user.0) != 0 }
-            }
-        });
-        let progress = self.control.progress.map(|report| {
-            move |done: f32| {
-                let user = user;
-                // SAFETY: the host promised a function of this type.
-                unsafe { report(user.0, done) }
-            }
-        });
-        let control = Control {
-            cancelled: cancelled.as_ref().map(|c| c as &(dyn Fn() -> bool + Sync)),
-            progress: progress.as_ref().map(|p| p as &dyn Fn(f32)),
-        };
-        let results = match device {
-            None => self.on_cpu(warm, images, control)?,
-            Some(device) => self.on_device(warm, device, images, control)?,
-        };
-        results
-            .into_iter()
-            .next()
-            .ok_or_else(|| Failure::new(ISOPHOTE_ERROR_INTERNAL, "the plan gave no image"))
-    }
-
-    fn on_cpu(
-        &self,
-        warm: &mut Warm,
-        images: &[(&str, &Image)],
-        control: Control<'_>,
-    ) -> Outcome<Vec<Image>> {
-        let (plan, cpu, _) = warm.parts()?;
-        let cpu = cpu.get_or_insert_default();
-        cpu.record_times(self.control.measured.is_some());
-        let results = cpu.run(plan, images, self.region, self.threads.threads(), control)?;
-        if let Some(measured) = self.control.measured {
-            self.report_times(plan, cpu.times(), measured);
-        }
-        Ok(results)
-    }
-
-    fn on_device(
-        &self,
-        warm: &mut Warm,
-        object: &DeviceObject,
-        images: &[(&str, &Image)],
-        control: Control<'_>,
-    ) -> Outcome<Vec<Image>> {
-        let (plan, _, gpu) = warm.parts()?;
-        let executor = match gpu.take() {
-            Some(executor) if Arc::ptr_eq(executor.device(), &object.device) => executor,
-            _ => gpu::Executor::new(Arc::clone(&object.device)),
-        };
-        let results = gpu.insert(executor).run_images(plan, images, self.region, control);
-        if let Err(e) = &results {
-            // A lost device takes all that was made on it with it.
-            *gpu = None;
-            e.to_string().clone_into(&mut lock(object.message()));
-        }
-        Ok(results?)
-    }
-
-    /// Reports to the host what each pass of the last run on the CPU took.
-    fn report_times(
-        &self,
-        plan: &Plan,
-        times: &[PassTime],
-        measured: unsafe extern "C" fn(*mut c_void, *const IsophotePassTime),
-    ) {
-        let windows = plan.windows(self.region);
-        let bytes = |id: &ImageId| windows[id.index()].area() * u64::from(plan.desc(*id).channels) * 4;
-        // Passes that the region does not need were not run.
-        let passes = plan.passes().iter().filter(|pass| !windows[pass.outputs[0].index()].is_empty());
-        for (pass, time) in passes.zip(times) {
-            let kernel = CString::new(pass.kernel.name).unwrap_or_default();
-            let entry = IsophotePassTime {
-                kernel: kernel.as_ptr(),
-                seconds: time.time.as_secs_f64(),
-                operations: (pass.kernel.cost)(&pass.params) * time.pixels as f64,
-                bytes: pass.inputs.iter().chain(&pass.outputs).map(bytes).sum(),
-                pixels: time.pixels,
-            };
-            // SAFETY: the host promised a function of this type; what it is given lives during the call.
-            unsafe { measured(self.control.user, &raw const entry) };
-        }
-    }
-}
-
-/// Fails when the images of a run would not fit into memory, before any of them is computed.
-fn must_fit(plan: &Plan, windows: &[Rect], on_device: bool) -> Outcome<()> {
-    let most = if on_device {
-        let bytes = |id: ImageId| windows[id.index()].area() * u64::from(plan.desc(id).channels) * 4;
-        plan.inputs().iter().chain(plan.outputs()).map(|port| bytes(port.image)).sum()
-    } else {
-        plan.peak_bytes(windows)
-    };
-    memory::must_have(most).map_err(|_| {
-        Failure::new(
-            ISOPHOTE_ERROR_OUT_OF_MEMORY,
-            format!("{} MiB are needed at once, more than there is; compute smaller regions", most >> 20),
-        )
-    })
 }

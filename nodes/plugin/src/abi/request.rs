@@ -5,6 +5,7 @@ use super::contract::*;
 use super::failure::{Failure, Outcome};
 use super::guard;
 use isophote::engine::Rect;
+use isophote::graph::GraphInput;
 use isophote::request::Guides;
 use isophote::{ColourSpace, Request};
 
@@ -25,22 +26,11 @@ pub fn request(host: &IsophoteRequest) -> Outcome<Request> {
         ISOPHOTE_ALPHA_STRAIGHT => (false, false),
         other => return Err(Failure::argument(format!("{other} is no relation of colour to alpha"))),
     };
-    let bit = |bit: u32| host.guides & bit != 0;
-    let guides = Guides {
-        normal: bit(ISOPHOTE_GUIDE_NORMAL),
-        depth: bit(ISOPHOTE_GUIDE_DEPTH),
-        object_id: bit(ISOPHOTE_GUIDE_OBJECT_ID),
-        mask: bit(ISOPHOTE_GUIDE_MASK),
-        flow: bit(ISOPHOTE_GUIDE_FLOW),
-    };
-    const KNOWN: u32 = ISOPHOTE_GUIDE_NORMAL
-        | ISOPHOTE_GUIDE_DEPTH
-        | ISOPHOTE_GUIDE_OBJECT_ID
-        | ISOPHOTE_GUIDE_MASK
-        | ISOPHOTE_GUIDE_FLOW;
-    if host.guides & !KNOWN != 0 {
+    let known = GraphInput::ALL.iter().fold(0, |all, input| all | bit(*input));
+    if host.guides & !known != 0 {
         return Err(Failure::argument(format!("{:#x} are no guides", host.guides)));
     }
+    let guides = Guides::of(|input| host.guides & bit(input) != 0);
     Ok(Request {
         space,
         premultiplied,
@@ -51,6 +41,21 @@ pub fn request(host: &IsophoteRequest) -> Outcome<Request> {
         frame: host.frame,
         ..Request::new(host.width, host.height)
     })
+}
+
+/// The bit of an input in a request's guides; 0 for the colour, which is always there.
+pub const fn bit(input: GraphInput) -> u32 {
+    match input {
+        GraphInput::Color => 0,
+        GraphInput::Normal => ISOPHOTE_GUIDE_NORMAL,
+        GraphInput::Depth => ISOPHOTE_GUIDE_DEPTH,
+        GraphInput::ObjectId => ISOPHOTE_GUIDE_OBJECT_ID,
+        GraphInput::Mask => ISOPHOTE_GUIDE_MASK,
+        GraphInput::Flow => ISOPHOTE_GUIDE_FLOW,
+        GraphInput::Motion => ISOPHOTE_GUIDE_MOTION,
+        GraphInput::MotionForward => ISOPHOTE_GUIDE_MOTION_FORWARD,
+        GraphInput::RestPosition => ISOPHOTE_GUIDE_REST_POSITION,
+    }
 }
 
 /// The host's region, or the whole picture.

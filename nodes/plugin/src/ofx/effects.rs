@@ -133,6 +133,10 @@ fn text(text: &str) -> CString {
 impl Effect {
     /// The effect that a node becomes, if it becomes one.
     fn of(node: &'static NodeSpec) -> Option<Self> {
+        if node.group == "time" {
+            // Effects see one frame.
+            return None;
+        }
         let from_colour = node.reads_colour_alone();
         let find = |id| isophote::registry::find(id).ok();
         match node.output.kind {
@@ -181,7 +185,7 @@ impl Effect {
             self.add(LINES_OUTPUT, "Output", LINES_HINT, "", Target::LinesOutput);
         }
         for (index, node) in self.nodes.clone().into_iter().enumerate() {
-            for param in node.params() {
+            for param in node.params().filter(|param| !param.is_of_neighbours()) {
                 let target = Target::Param(index, param);
                 let hint = match param.unit {
                     Unit::Pixels => format!("{} In pixels of the full-size picture.", param.doc),
@@ -284,7 +288,8 @@ mod tests {
         let ids: BTreeSet<&CStr> = EFFECTS.iter().map(|e| e.identifier.as_c_str()).collect();
         assert_eq!(ids.len(), EFFECTS.len());
         for node in isophote::registry::nodes() {
-            if node.group == "styles" || (node.has_mix() && node.reads_colour_alone()) {
+            let is_still = node.has_mix() && node.reads_colour_alone() && node.group != "time";
+            if node.group == "styles" || is_still {
                 assert!(ids.contains(text(&format!("{PREFIX}{}", node.id)).as_c_str()), "{}", node.id);
             }
         }

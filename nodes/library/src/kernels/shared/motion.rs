@@ -52,13 +52,19 @@ pub fn catmull_rom<S: Simd>(f: f32x8<S>) -> [f32x8<S>; 4] {
 pub fn sample_linear_covered4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 4] {
     let plain = sample_linear4(simd, view, x, y);
     // No alpha is above 1: a mean of 1 is one of nothing else, and opaque colours are their own multiples.
-    if plain[3].simd_ge(1.0).all_true() {
+    let opaque = plain[3].simd_ge(1.0);
+    if opaque.all_true() {
         return plain;
     }
     let one = f32x8::splat(simd, 1.0);
     let (columns, fx) = floor_and_share(x, view.full()[0]);
     let (rows, fy) = floor_and_share(y, view.full()[1]);
-    taps_covered(simd, view, [columns, rows], [one - fx, fx], [one - fy, fy])
+    let mut samples = taps_covered(simd, view, [columns, rows], [one - fx, fx], [one - fy, fy]);
+    // Rounded as anywhere: a pixel must not depend on which others it is computed with.
+    for (sample, plain) in samples.iter_mut().zip(plain) {
+        *sample = opaque.select(plain, *sample);
+    }
+    samples
 }
 
 /// Samples of a colour image at eight positions with a sharp interpolation (absolute, pixel centres at +0.5, clamped to
@@ -99,6 +105,52 @@ pub fn sample_sharp_covered4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: 
         return taps_covered(simd, view, [columns - 1, rows - 1], wx, wy);
     }
     transposed(pixels)
+}
+
+/// Samples of a two-channel image at eight positions with a sharp interpolation; see [`sample_sharp_covered4`].
+#[inline(always)]
+pub fn sample_sharp2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
+    let ([w, h], held, data) = (view.full(), view.window(), view.data());
+    let (columns, fx) = floor_and_share(x, w);
+    let (rows, fy) = floor_and_share(y, h);
+    let (wx, wy) = (catmull_rom(fx), catmull_rom(fy));
+    let inside = columns.simd_ge(1) & columns.simd_lt(w - 2) & rows.simd_ge(1) & rows.simd_lt(h - 2);
+    if !inside.all_true() {
+        let mut sum = [f32x8::splat(simd, 0.0); 2];
+        for j in 0..4 {
+            let mut row = [f32x8::splat(simd, 0.0); 2];
+            for i in 0..4 {
+                let pixel = fetch2(simd, view, columns + (i as i32 - 1), rows + (j as i32 - 1));
+                for c in 0..2 {
+                    row[c] = pixel[c].mul_add(wx[i], row[c]);
+                }
+            }
+            for c in 0..2 {
+                sum[c] = row[c].mul_add(wy[j], sum[c]);
+            }
+        }
+        return sum;
+    }
+    let stride = view.stride() as u32 as usize;
+    let at = ((rows - (held.y0 + 1)) * stride as i32 + (columns - (held.x0 + 1)) * 2).to_array();
+    let (wx, wy) = (wx.map(|w| w.to_array()), wy.map(|w| w.to_array()));
+    let (mut first, mut second) = ([0.0; 8], [0.0; 8]);
+    for lane in 0..8 {
+        let at = at[lane] as u32 as usize;
+        let data = &data[at..at + 3 * stride + 8];
+        // The four pixels of a row are neighbours in memory: one load.
+        let mut columns = f32x8::from_slice(simd, &data[..8]) * wy[0][lane];
+        for j in 1..4 {
+            let row = f32x8::from_slice(simd, &data[j * stride..j * stride + 8]);
+            columns = row.mul_add(f32x8::splat(simd, wy[j][lane]), columns);
+        }
+        let columns = columns.to_array();
+        for i in 0..4 {
+            first[lane] += wx[i][lane] * columns[2 * i];
+            second[lane] += wx[i][lane] * columns[2 * i + 1];
+        }
+    }
+    [f32x8::simd_from(simd, first), f32x8::simd_from(simd, second)]
 }
 
 /// The weighted sum of N x N pixels from those at `first` on, colours multiplied by their alpha.

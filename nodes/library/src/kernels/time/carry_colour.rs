@@ -22,7 +22,12 @@ crate::kernel!(carry_colour {
 
 /// The colour `average` with that of `theirs` taken in, where `motion` leads to and as far as `shares` says
 /// ([`carried_share`](super::carried_share)); motions are at most `reach` pixels long.
-pub fn pass(plan: &mut PlanBuilder, [average, theirs]: [ImageId; 2], [motion, shares]: [ImageId; 2], reach: u32) -> ImageId {
+pub fn pass(
+    plan: &mut PlanBuilder,
+    [average, theirs]: [ImageId; 2],
+    [motion, shares]: [ImageId; 2],
+    reach: u32,
+) -> ImageId {
     let here = Support::Pixels(0);
     let supports = [here, here, here, Support::Pixels(reach + 2)];
     plan.pass_reaching(&KERNEL, &[average, motion, shares, theirs], &(), &[Class::Colour], &supports, 0)

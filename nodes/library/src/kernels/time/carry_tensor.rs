@@ -28,7 +28,12 @@ const BORDER: f32 = 0.5;
 
 /// The tensor `average` with that of `theirs` taken in, where `motion` leads to and as far as `shares` says
 /// ([`carried_share`](super::carried_share)); motions are at most `reach` pixels long.
-pub fn pass(plan: &mut PlanBuilder, [average, theirs]: [ImageId; 2], [motion, shares]: [ImageId; 2], reach: u32) -> ImageId {
+pub fn pass(
+    plan: &mut PlanBuilder,
+    [average, theirs]: [ImageId; 2],
+    [motion, shares]: [ImageId; 2],
+    reach: u32,
+) -> ImageId {
     let here = Support::Pixels(0);
     let supports = [here, Support::Pixels(1), here, Support::Pixels(reach + 1)];
     plan.pass_reaching(&KERNEL, &[average, motion, shares, theirs], &(), &[Class::Field], &supports, 0)

@@ -65,9 +65,7 @@ fn motion_at<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>, limit:
     let [c, d] = [left, left + 1].map(|column| bounded(fetch2(simd, view, column, top + 1), limit));
     let near = |p: f32x8<S>, full: i32| p.floor().max(-2.0f32).min(full as f32 + 2.0).to_int::<i32x8<S>>();
     let nearest = bounded(fetch2(simd, view, near(x, w), near(y, h)), limit);
-    let spread = |i: usize| {
-        a[i].max(b[i]).max(c[i].max(d[i])) - a[i].min(b[i]).min(c[i].min(d[i]))
-    };
+    let spread = |i: usize| a[i].max(b[i]).max(c[i].max(d[i])) - a[i].min(b[i]).min(c[i].min(d[i]));
     let alike = spread(0).max(spread(1)).simd_le(1.0);
     let mut motion = nearest;
     for i in 0..2 {

@@ -14,7 +14,7 @@ use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::structure::structure_tensor::{Guides, TensorOptions, of_color_and_guides};
 use crate::ports;
 use crate::spec::{ImageKind, NodeSpec, Param, Port, STEADINESS, Scope, WINDOW};
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, compared, steadied};
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -134,12 +134,9 @@ impl FlowDog {
         guides: &Guides,
     ) -> ImageId {
         let field = orientation_field::pass(plan, tensor);
-        let guides = [guides.normal, guides.depth, guides.object_id];
         self.iterate(plan, lightness, |plan, source, xdog| match self.kernel {
             Kernel::Separable => {
-                let options = flow_dog_gradient::Options { sigma: self.sigma_e, k: self.k, xdog };
-                let response = flow_dog_gradient::pass(plan, source, field, &options);
-                let response = self.with_guides(plan, response, field, guides);
+                let response = self.across(plan, source, field, guides, xdog);
                 self.along(plan, response, field, &xdog)
             }
             Kernel::TwoDimensional => {
@@ -154,6 +151,53 @@ impl FlowDog {
                 flow_dog_two_dimensional::pass(plan, [source, field, marked], &options)
             }
         })
+    }
+
+    /// What the separable filter has found before lines are smoothed along themselves and decided: the response of its
+    /// last iteration, (u alpha, alpha).
+    pub(crate) fn response(
+        &self,
+        plan: &mut PlanBuilder,
+        lightness: ImageId,
+        tensor: ImageId,
+        guides: &Guides,
+    ) -> ImageId {
+        let field = orientation_field::pass(plan, tensor);
+        let mut source = lightness;
+        if self.iterations > 1 {
+            let before = Self { iterations: self.iterations - 1, xdog: self.deciding(), ..*self };
+            let edges = before.edges(plan, lightness, tensor, guides);
+            source = darken_by_lines::pass(plan, lightness, edges);
+        }
+        self.across(plan, source, field, guides, self.xdog)
+    }
+
+    /// The edge image of a response, along the stream lines of `tensor`.
+    pub(crate) fn decided(&self, plan: &mut PlanBuilder, response: ImageId, tensor: ImageId) -> ImageId {
+        let field = orientation_field::pass(plan, tensor);
+        self.along(plan, response, field, &self.xdog)
+    }
+
+    /// The first pass of the separable filter.
+    fn across(
+        &self,
+        plan: &mut PlanBuilder,
+        source: ImageId,
+        field: ImageId,
+        guides: &Guides,
+        xdog: Xdog,
+    ) -> ImageId {
+        let options = flow_dog_gradient::Options { sigma: self.sigma_e, k: self.k, xdog };
+        let response = flow_dog_gradient::pass(plan, source, field, &options);
+        self.with_guides(plan, response, field, guides)
+    }
+
+    /// Thresholds that give an edge image, which alone can darken the input of the next iteration.
+    fn deciding(&self) -> Xdog {
+        match self.xdog.threshold {
+            Threshold::None => Xdog { threshold: Threshold::Tanh, ..self.xdog },
+            _ => self.xdog,
+        }
     }
 
     /// The edge image of (L alpha, alpha) by the difference of Gaussians in all directions alike (§ 4.2).
@@ -173,11 +217,7 @@ impl FlowDog {
         let (mut source, mut edges) = (lightness, lightness);
         for iteration in 1..=self.iterations {
             let last = iteration == self.iterations;
-            let mut xdog = self.xdog;
-            if !last && xdog.threshold == Threshold::None {
-                // Only an edge image can darken the input of the next iteration.
-                xdog.threshold = Threshold::Tanh;
-            }
+            let xdog = if last { self.xdog } else { self.deciding() };
             edges = filter(plan, source, xdog);
             if !last {
                 source = darken_by_lines::pass(plan, lightness, edges);
@@ -192,8 +232,9 @@ impl FlowDog {
         plan: &mut PlanBuilder,
         response: ImageId,
         field: ImageId,
-        guides: [Option<ImageId>; 3],
+        guides: &Guides,
     ) -> ImageId {
+        let guides = [guides.normal, guides.depth, guides.object_id];
         if self.guide_weight <= 0.0 || guides.iter().all(Option::is_none) {
             return response;
         }
@@ -247,11 +288,11 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let guides_of = |scope: &Scope<'_>| guides(scope, lines.guide_weight);
     let guides = guides_of(scope);
     let by = Agreement::rgb(COLOUR_AGREEMENT);
-    let [color, tensor] = steadied(scope, by, |scope| {
+    let [_, color, tensor] = steadied(scope, by, |scope| {
         let color = scope.required("color");
         let guides = guides_of(scope);
         let found = scope.input("tensor").unwrap_or_else(|| tensor(scope, color, &guides));
-        [color, found]
+        [compared(scope, color), color, found]
     });
     let lightness = lightness::pass(scope.plan, color);
     lines.edges(scope.plan, lightness, tensor, &guides)

@@ -67,20 +67,21 @@ pub static NODE: NodeSpec = NodeSpec {
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let guide_weight = scope.float("guide_weight");
-    let guides = flow_dog::guides(scope, guide_weight);
     let abstraction = Abstraction::of(scope);
     let n_e = scope.int("n_e");
-    let [smooth, tensor] = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
+    let flow = lines::flow_dog(scope, guide_weight);
+    let [smooth, tensor, response] = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
         let color = scope.required("color");
         let guides = flow_dog::guides(scope, guide_weight);
         let tensor = flow_dog::tensor(scope, color, &guides);
         let tensor = flow_map::bent(scope, tensor);
         let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-        [abstraction.apply(scope.plan, lab, tensor, n_e), tensor]
+        let smooth = abstraction.apply(scope.plan, lab, tensor, n_e);
+        let lightness = lightness::pass_lab(scope.plan, smooth);
+        [smooth, tensor, flow.response(scope.plan, lightness, tensor, &guides)]
     });
-    let flow = lines::flow_dog(scope, guide_weight);
     let lightness = lightness::pass_lab(scope.plan, smooth);
-    let edges = flow.edges(scope.plan, lightness, tensor, &guides);
+    let edges = flow.decided(scope.plan, response, tensor);
     let sheet = Sheet {
         line: scope.color("line_color"),
         paper: scope.color("paper_color"),

@@ -109,30 +109,32 @@ choice! {
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let guide_weight = scope.float("guide_weight");
-    let guides = flow_dog::guides(scope, guide_weight);
     let abstraction = Abstraction::of(scope);
     let (n_e, n_a) = (scope.int("n_e"), scope.int("n_a"));
-    let shared = n_e.min(n_a);
-
-    // What frames have in common is behind both the lines and the colours.
+    let flow = lines::flow_dog(scope, guide_weight);
+    let line_filter = scope.option("line_filter");
     let by = Agreement::lab(COLOUR_AGREEMENT);
-    let [for_lines, tensor, begun] = steadied(scope, by, |scope| {
+    let [mut flat, tensor, undecided] = steadied(scope, by, |scope| {
         let color = scope.required("color");
         let guides = flow_dog::guides(scope, guide_weight);
         let tensor = flow_dog::tensor(scope, color, &guides);
         let tensor = flow_map::bent(scope, tensor);
         let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-        let begun = abstraction.apply(scope.plan, lab, tensor, shared);
-        [abstraction.apply(scope.plan, begun, tensor, n_e - shared), tensor, begun]
+        // The first iterations are those behind the lines: the plan records them once.
+        let flat = abstraction.apply(scope.plan, lab, tensor, n_a);
+        let for_lines = abstraction.apply(scope.plan, lab, tensor, n_e);
+        let lightness = lightness::pass_lab(scope.plan, for_lines);
+        let undecided = match line_filter {
+            LineFilter::Flow => flow.response(scope.plan, lightness, tensor, &guides),
+            LineFilter::Isotropic => lightness,
+        };
+        [flat, tensor, undecided]
     });
-    let flow = lines::flow_dog(scope, guide_weight);
-    let lightness = lightness::pass_lab(scope.plan, for_lines);
-    let edges = match scope.option("line_filter") {
-        LineFilter::Flow => flow.edges(scope.plan, lightness, tensor, &guides),
-        LineFilter::Isotropic => flow.isotropic(scope.plan, lightness),
+    let edges = match line_filter {
+        LineFilter::Flow => flow.decided(scope.plan, undecided, tensor),
+        LineFilter::Isotropic => flow.isotropic(scope.plan, undecided),
     };
 
-    let mut flat = abstraction.apply(scope.plan, begun, tensor, n_a - shared);
     flat = tone::curve(scope, flat);
     let bins = scope.int("posterize");
     if bins > 0 {

@@ -332,17 +332,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         grain: scope.float("grain"),
     });
     let guide_weight = scope.float("guide_weight");
-    let guides = flow_dog::guides(scope, guide_weight);
     let options = TensorOptions { rho: drawing.rho * scale, ..TensorOptions::at_scale(scale) };
     let (abstraction, n_e) = (Abstraction::of(scope), scope.int("n_e"));
-    let [smooth, tensor] = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
-        let color = scope.required("color");
-        let guides = flow_dog::guides(scope, guide_weight);
-        let tensor = of_color_and_guides(scope.plan, color, &guides, &options);
-        let tensor = flow_map::bent(scope, tensor);
-        let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-        [abstraction.apply(scope.plan, lab, tensor, n_e + own.flattening), tensor]
-    });
     let flow = FlowDog {
         sigma_e: drawing.sigma_e * scale,
         k: scope.float("k"),
@@ -353,8 +344,17 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         kernel: Kernel::Separable,
         guide_weight,
     };
-    let lightness = lightness::pass_lab(scope.plan, smooth);
-    let response = flow.edges(scope.plan, lightness, tensor, &guides);
+    let [smooth, tensor, response] = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
+        let color = scope.required("color");
+        let guides = flow_dog::guides(scope, guide_weight);
+        let tensor = of_color_and_guides(scope.plan, color, &guides, &options);
+        let tensor = flow_map::bent(scope, tensor);
+        let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
+        let smooth = abstraction.apply(scope.plan, lab, tensor, n_e + own.flattening);
+        let lightness = lightness::pass_lab(scope.plan, smooth);
+        [smooth, tensor, flow.response(scope.plan, lightness, tensor, &guides)]
+    });
+    let response = flow.decided(scope.plan, response, tensor);
     let tinted = lab_to_rgb::pass(scope.plan, smooth, scope.float("saturation"));
     // Which passes there are is a matter of the style alone: the trims only change numbers.
     let carved = if own.stroke[1] > 0.0 { strokes(scope, tensor, own.stroke) } else { tinted };

@@ -2,7 +2,7 @@
 
 use crate::ports;
 use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, compared, steadied};
 use crate::value::Value;
 use isophote_engine::ImageId;
 
@@ -17,11 +17,7 @@ pub static NODE: NodeSpec = NodeSpec {
     section: "",
     inputs: &[ports::COLOR],
     output: ports::color_output("The steady picture."),
-    own_params: &[
-        STEADINESS.with_default(Value::Float(0.5)),
-        WINDOW,
-        COLOR_AGREEMENT,
-    ],
+    own_params: &[STEADINESS.with_default(Value::Float(0.5)), WINDOW, COLOR_AGREEMENT],
     build,
 };
 
@@ -35,6 +31,9 @@ const COLOR_AGREEMENT: Param =
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let by = Agreement::rgb(scope.float(COLOR_AGREEMENT.id));
-    let [color] = steadied(scope, by, |scope| [scope.required("color")]);
+    let [_, color] = steadied(scope, by, |scope| {
+        let color = scope.required("color");
+        [compared(scope, color), color]
+    });
     color
 }

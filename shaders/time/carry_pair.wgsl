@@ -1,0 +1,27 @@
+// Takes a value of a neighbouring frame, carried here along motion, into an average: the value times coverage, and
+// coverage.
+// Cost: 16 loads and 60 operations.
+#import shared/motion
+
+@group(0) @binding(2) var average: texture_2d<f32>;
+@group(0) @binding(3) var motion: texture_2d<f32>;
+@group(0) @binding(4) var shares: texture_2d<f32>;
+@group(0) @binding(5) var theirs: texture_2d<f32>;
+@group(0) @binding(6) var target_image: texture_storage_2d<rg32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let own = fetch(average, 0u, pixel(id));
+    let share = fetch(shares, 2u, pixel(id)).x;
+    if share <= 0.0 {
+        textureStore(target_image, vec2i(id.xy), own);
+        return;
+    }
+    // Shares are those of known motions.
+    let place = centre(id) + fetch(motion, 1u, pixel(id)).xy;
+    let carried = sample_sharp(theirs, 3u, place).xy;
+    textureStore(target_image, vec2i(id.xy), vec4f(own.xy + (carried - own.xy) * share, 0.0, 0.0));
+}
