@@ -208,7 +208,7 @@ pub fn request(kind: Kind, width: u32, height: u32, guides: bool) -> Request {
         premultiplied: kind != Kind::Noise,
         emission: guides,
         guides: Guides::of(|_| guides),
-        frames: if guides { Frames::around(1, 1) } else { Frames::NONE },
+        frames: if guides { Frames::around(2, 1) } else { Frames::NONE },
         // Shorter than some motion of the pictures, so that there is some of which nothing is known.
         max_motion: 3.25,
         ..Request::new(width, height)

@@ -17,6 +17,7 @@ pub mod random;
 pub mod run;
 pub mod sequences;
 pub mod shaders;
+pub mod steadiness;
 pub mod sweep;
 pub mod table;
 pub mod trials;

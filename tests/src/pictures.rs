@@ -92,6 +92,29 @@ pub fn broken(mut image: Image) -> Image {
     image
 }
 
+/// The image with normal noise on its colours, of this standard deviation.
+pub fn noisy(mut image: Image, sigma: f32, seed: u64) -> Image {
+    let mut random = Random::new(seed);
+    for pixel in image.data_mut().chunks_exact_mut(4) {
+        pixel[..3].iter_mut().for_each(|v| *v += sigma * random.normal() as f32);
+    }
+    image
+}
+
+/// The image moved by whole pixels to the right and down; its edges are drawn out.
+pub fn moved(image: &Image, by: [i32; 2]) -> Image {
+    let mut moved = image.clone();
+    let (w, h) = (image.width() as i32, image.height() as i32);
+    for y in 0..h {
+        for x in 0..w {
+            let from = image.pixel((x - by[0]).clamp(0, w - 1), (y - by[1]).clamp(0, h - 1));
+            let at = ((y * w + x) as usize) * from.len();
+            moved.data_mut()[at..at + from.len()].copy_from_slice(from);
+        }
+    }
+    moved
+}
+
 fn steps(x: i32, y: i32) -> [f32; 3] {
     let slanted = 2 * x - 3 * y > 7;
     let disc = (x - 31) * (x - 31) + (y - 19) * (y - 19) < 150;
@@ -135,8 +158,9 @@ pub fn field(kind: ImageKind, width: u32, height: u32) -> Image {
             if empty(x, y) {
                 return [f32::NAN, f32::INFINITY];
             }
-            let jitter: [f32; 2] = [random.range(-0.1, 0.1), random.range(-0.1, 0.1)];
-            let base = if x / 13 % 2 == 0 { [1.25, -0.5] } else { [-3.5, 2.0 + 0.02 * y as f32] };
+            let jitter: [f32; 2] = [random.range(-0.5, 0.5), random.range(-0.5, 0.5)];
+            // About how far pictures move from frame to frame in `sweep::input`, or farther.
+            let base = if x / 13 % 2 == 0 { [-1.9, -1.05] } else { [-3.5, 2.0 + 0.02 * y as f32] };
             [base[0] + jitter[0], base[1] + jitter[1]]
         }),
         ImageKind::Position => from_fn(width, height, |x, y| {

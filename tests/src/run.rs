@@ -27,10 +27,10 @@ pub fn planned(graph: &Graph, request: Request) -> Planned {
 ///
 /// # Panics
 /// When the executor refuses.
-pub fn region(
+pub fn region<S: AsRef<str>>(
     executor: &mut CpuExecutor,
     plan: &Plan,
-    inputs: &[(&str, Image)],
+    inputs: &[(S, Image)],
     region: Rect,
     threads: &dyn Threads,
 ) -> Image {
@@ -38,10 +38,13 @@ pub fn region(
     let mut parts: Vec<(&str, Image)> = Vec::new();
     for port in plan.inputs() {
         let window = windows[port.image.index()];
-        if let Some((name, image)) = inputs.iter().find(|(name, _)| *name == port.name)
+        if let Some((name, image)) = inputs.iter().find(|(name, _)| name.as_ref() == port.name)
             && !window.is_empty()
         {
-            parts.push((name, image.crop(window).expect("the picture holds every window of its plan")));
+            parts.push((
+                name.as_ref(),
+                image.crop(window).expect("the picture holds every window of its plan"),
+            ));
         }
     }
     let borrowed: Vec<(&str, &Image)> = parts.iter().map(|(name, image)| (*name, image)).collect();
@@ -55,7 +58,7 @@ pub fn region(
 ///
 /// # Panics
 /// When the executor refuses.
-pub fn whole(plan: &Plan, inputs: &[(&str, Image)]) -> Image {
+pub fn whole<S: AsRef<str>>(plan: &Plan, inputs: &[(S, Image)]) -> Image {
     let [width, height] = plan.size();
     region(&mut CpuExecutor::new(), plan, inputs, Rect::of_size(width, height), pool())
 }

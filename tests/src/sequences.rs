@@ -45,9 +45,8 @@ impl Player {
         let past = (1..=i64::from(self.around[0])).take_while(|n| exists(-n)).count() as u32;
         let future = (1..=i64::from(self.around[1])).take_while(|n| exists(*n)).count() as u32;
         let guides = Guides::of(|input| source(input, number).is_some());
-        let request =
-            Request { frame: number, frames: Frames::around(past, future), guides, ..request };
-        let planned = self.sequence.plan(&self.graph, request).expect("the frame can be planned");
+        let request = Request { frame: number, frames: Frames::around(past, future), guides, ..request };
+        let planned = self.sequence.plan(&self.graph, request, true).expect("the frame can be planned");
         let plan = planned.plan().clone();
         let region = Rect::of_size(request.width, request.height);
         let windows = plan.windows(region);

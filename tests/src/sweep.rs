@@ -203,16 +203,29 @@ fn needed(plan: &Plan, kernel: &'static Kernel) -> Vec<bool> {
     needed
 }
 
-/// The picture or guide that enters a plan under `name`.
+/// The picture or guide that enters a plan under `name`, such as `color` or `depth@-1`. Other frames show what this one does,
+/// moved by a few pixels.
 ///
 /// # Panics
 /// For a name that graphs do not have.
 pub fn input(name: &str, kind: Kind, [width, height]: [u32; 2]) -> Image {
-    match GraphInput::from_id(name) {
+    let (base, frame) = name.split_once('@').unwrap_or((name, "0"));
+    let mut image = match GraphInput::from_id(base) {
         Some(GraphInput::Color) => pictures::color(kind, width, height),
         Some(guide) if kind == Kind::Broken => pictures::broken(pictures::field(guide.kind(), width, height)),
         Some(guide) => pictures::field(guide.kind(), width, height),
         None => panic!("no graph has an input '{name}'"),
+    };
+    if base == GraphInput::MotionForward.id() {
+        // It leads back more or less to where other motion comes from.
+        let row = 2 * width as usize;
+        for (y, row) in image.data_mut().chunks_exact_mut(row).enumerate() {
+            row.iter_mut().for_each(|v| *v *= -1.0 - 0.1 * (y % 8) as f32);
+        }
+    }
+    match frame.parse::<i32>() {
+        Ok(0) | Err(_) => image,
+        Ok(frame) => pictures::moved(&image, [2 * frame, frame]),
     }
 }
 

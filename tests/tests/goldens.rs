@@ -3,11 +3,15 @@
 //!
 //! `cargo xtask bless` makes them anew. Nothing else does: a missing one is a failure. What differs is written to `target/isophote-tests`.
 
+use isophote::frames::Frames;
+use isophote::graph::GraphInput;
 use isophote::registry;
+use isophote::request::Guides;
 use isophote::spec::{ImageKind, NodeSpec};
-use isophote::{Planned, Request};
+use isophote::{Planned, Request, Value};
 use isophote_engine::cpu::Control;
-use isophote_engine::{Image, Rect};
+use isophote_engine::plan::Port;
+use isophote_engine::{Image, Plan, Rect};
 use isophote_tests::pictures::{self, from_fn};
 use isophote_tests::trials::Trials;
 use isophote_tests::{cases, device, png, run};
@@ -59,7 +63,34 @@ fn plan(spec: &'static NodeSpec, input: &Image) -> Planned {
     let setup = cases::setup(spec, false);
     // The frame of the scene is small: half the lengths suit its detail.
     let scale = if input.width() > 200 { 0.5 } else { 1.0 };
-    run::planned(&setup.graph, Request { scale, ..Request::new(input.width(), input.height()) })
+    let request = Request { scale, ..Request::new(input.width(), input.height()) };
+    if !is_of_time(spec) {
+        return run::planned(&setup.graph, request);
+    }
+    let guides = Guides::of(|input| matches!(input, GraphInput::Motion | GraphInput::MotionForward));
+    run::planned(&setup.graph, Request { guides, frames: Frames::around(2, 2), max_motion: 8.0, ..request })
+}
+
+/// Whether a node does something to neighbouring frames with its defaults.
+fn is_of_time(spec: &NodeSpec) -> bool {
+    spec.params().any(|p| p.id == "steadiness" && p.default != Value::Float(0.0))
+}
+
+/// What enters a plan: the picture; or where it knows of time a camera that moves over it, with noise on each frame.
+fn inputs(spec: &NodeSpec, plan: &Plan, picture: &Image) -> Vec<(String, Image)> {
+    let enters = |port: &Port| {
+        let way = match GraphInput::from_id(port.base()) {
+            Some(GraphInput::Motion) => -1.0,
+            Some(GraphInput::MotionForward) => 1.0,
+            _ if is_of_time(spec) => {
+                let moved = pictures::moved(picture, [3 * port.frame, -2 * port.frame]);
+                return pictures::noisy(moved, 0.08, (40 + port.frame) as u64);
+            }
+            _ => return picture.clone(),
+        };
+        from_fn(picture.width(), picture.height(), |_, _| [3.0 * way, -2.0 * way])
+    };
+    plan.inputs().iter().map(|port| (port.name.clone(), enters(port))).collect()
 }
 
 /// Compares with the golden image `name`, or makes it. Returns what is wrong.
@@ -140,7 +171,11 @@ fn main() -> ExitCode {
 
 fn the_cpu_gives_the_golden_image(golden: &Golden) -> Vec<String> {
     let input = (golden.input)();
-    let result = run::whole(plan(golden.spec, &input).plan(), &[("color", input)]);
+    let planned = plan(golden.spec, &input);
+    let inputs = inputs(golden.spec, planned.plan(), &input);
+    let named: Vec<(&str, Image)> =
+        inputs.iter().map(|(name, image)| (name.as_str(), image.clone())).collect();
+    let result = run::whole(planned.plan(), &named);
     check(&golden.name, "cpu", &shown(golden.spec, &result)).into_iter().collect()
 }
 
@@ -152,7 +187,9 @@ fn the_gpu_gives_the_golden_image(golden: &Golden) -> Option<Vec<String>> {
     let input = (golden.input)();
     let planned = plan(golden.spec, &input);
     let region = Rect::of_size(input.width(), input.height());
-    let images = gpu.run_images(planned.plan(), &[("color", &input)], region, Control::default()).unwrap();
+    let inputs = inputs(golden.spec, planned.plan(), &input);
+    let named: Vec<(&str, &Image)> = inputs.iter().map(|(name, image)| (name.as_str(), image)).collect();
+    let images = gpu.run_images(planned.plan(), &named, region, Control::default()).unwrap();
     Some(check(&golden.name, "gpu", &shown(golden.spec, &images[0])).into_iter().collect())
 }
 

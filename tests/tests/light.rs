@@ -145,7 +145,8 @@ fn the_mask_says_how_much_is_used(spec: &'static NodeSpec) {
             assert_eq!(halves.pixel(x, y), want.pixel(x, y), "{x}, {y}");
         }
     }
-    assert!(untouched != filtered, "the node does something");
+    // A picture by itself is steady.
+    assert!(untouched != filtered || spec.group == "time", "the node does something");
     // A picture that only went in and out again.
     let (worst, _) = distance(&untouched, &color);
     assert!(worst < 1e-3, "{worst}");

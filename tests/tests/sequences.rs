@@ -91,7 +91,9 @@ fn a_frame_after_a_cut_equals_the_still() {
     for node in steady_nodes() {
         let [w, h] = SIZE;
         let source = |input, frame| match input {
-            GraphInput::Color if frame == 3 => Some(from_fn(w, h, |x, y| texture(y as f32, 2.0 * x as f32).map(|v| 1.0 - v))),
+            GraphInput::Color if frame == 3 => {
+                Some(from_fn(w, h, |x, y| texture(y as f32, 2.0 * x as f32).map(|v| 1.0 - v)))
+            }
             GraphInput::MotionForward => None,
             // A cut has no motion, or a wrong one.
             GraphInput::Motion if frame == 3 => Some(from_fn(w, h, |_, _| [f32::NAN; 2])),

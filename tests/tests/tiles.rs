@@ -2,7 +2,6 @@
 //! the threads; other instruction sets differ by rounding only; a proxy looks like the full frame.
 
 use isophote::Request;
-use isophote::graph::GraphInput;
 use isophote::request::Planned;
 use isophote::spec::{ImageKind, NodeSpec};
 use isophote_engine::cpu::{CallingThread, CpuExecutor, Pool, Threads};
@@ -64,7 +63,7 @@ fn most_nodes_are_local() {
 struct Run {
     label: String,
     planned: Planned,
-    inputs: Vec<(&'static str, Image)>,
+    inputs: Vec<(String, Image)>,
 }
 
 /// The node with several parameter sets, pictures and guides.
@@ -92,8 +91,8 @@ fn one(
     let mut setup = cases::setup(spec, wired);
     setting.apply(&mut setup.graph, setup.node);
     let planned = run::planned(&setup.graph, cases::request(kind, size[0], size[1], guides));
-    let names = GraphInput::ALL.map(GraphInput::id);
-    let inputs = names.into_iter().map(|n| (n, sweep::input(n, kind, size))).collect();
+    let names = planned.plan().inputs().iter().map(|port| port.name.clone());
+    let inputs = names.map(|name| (name.clone(), sweep::input(&name, kind, size))).collect();
     Run { label: format!("{} ({}) {kind:?} guides={guides}", spec.id, setting.label), planned, inputs }
 }
 

@@ -140,7 +140,7 @@ pub fn controls_are_the_parameters_of_the_nodes(binary: &Binary, effect: Expecte
         names.extend(general.then(|| "mask_apply".to_owned()));
         names.extend(effect.is_lines().then(|| "lines_output".to_owned()));
         for (node, prefix) in members {
-            for param in node.params() {
+            for param in node.params().filter(|param| !param.is_of_neighbours()) {
                 let name = format!("{prefix}{}", param.id);
                 check(&shown, &name, param);
                 names.insert(name);

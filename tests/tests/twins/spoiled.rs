@@ -33,17 +33,12 @@ pub fn notice(kernel: &'static Kernel, steps: &[Step]) -> Option<Vec<String>> {
     Some(if enough { Vec::new() } else { vec![format!("only {noticed} of {tried} changes were noticed")] })
 }
 
-/// Some of the steps: the first ones, which are of the smallest pictures, give place to later ones in turn.
+/// Some of the steps, evenly from the smallest pictures to the largest.
 fn sample(steps: &[Step]) -> Vec<&Step> {
-    let mut kept: Vec<&Step> = Vec::new();
-    for step in steps {
-        let place = (step.label.len() + kept.len() * 7) % STEPS;
-        if kept.len() < STEPS {
-            kept.push(step);
-        } else {
-            kept[place] = step;
-        }
-    }
+    let stride = steps.len().div_ceil(STEPS).max(1);
+    // The last one, of a large picture, is always there.
+    let mut kept: Vec<&Step> = steps.iter().rev().step_by(stride).collect();
+    kept.reverse();
     kept
 }
 

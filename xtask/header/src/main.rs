@@ -10,10 +10,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// The files that declare the contract, in the order of the header.
-const SOURCES: [&str; 4] = [
+const SOURCES: [&str; 5] = [
     "include/rust/constants.rs",
     "include/rust/types.rs",
     "include/rust/table.rs",
+    "include/rust/sequences.rs",
     "nodes/plugin/src/abi/entry.rs",
 ];
 
@@ -37,6 +38,10 @@ const PREAMBLE: &str = "\
  *   api->request_init(width, height, &request);
  *   api->process(graph, cpu, &request, inputs, 1, NULL, &target, NULL, NULL);   for images in memory
  *   api->graph_destroy(graph);
+ *
+ * Frames of a sequence that are steady over time, in any order, need the extension
+ *
+ *   const struct IsophoteSequenceApi *sequences = api->extension(\"isophote.sequence/1\");
  *
  * A host that renders runs the plan instead:
  *

@@ -1,0 +1,110 @@
+//! Experiment 16: how steady the styles are over time, on the demo scene along its camera's path, on a running fox
+//! and on a static shot with noise, without and with `steadiness`.
+//!
+//! `ISOPHOTE_STYLES=cartoon,ink` runs those styles alone, `ISOPHOTE_PICTURES=FOLDER` writes what they draw.
+
+use isophote_tests::device::device;
+use isophote_tests::steadiness::{Entry, Row, Shot, Style, footage, table};
+use isophote_tests::table::Table;
+
+/// Styles and filters.
+const STYLES: [&str; 7] =
+    ["cartoon", "ink", "blueprint", "coherent", "watercolor", "oil_paint", "anisotropic_kuwahara"];
+
+/// The most that the steady ones may have of the warping error of the same style without, and of its answer to noise.
+const MOST: [f64; 2] = [0.95, 0.65];
+
+/// What presets for sequences set.
+const STEADINESS: (&str, &str) = ("steadiness", "0.5");
+
+/// What real time knows of other frames: the last two.
+const AROUND: [u32; 2] = [2, 0];
+
+/// A style's frames for themselves, and steady ones.
+struct Pair {
+    name: &'static str,
+    still: Row,
+    steady: Row,
+}
+
+fn measured(shot: &Shot) -> Vec<Pair> {
+    let chosen = std::env::var("ISOPHOTE_STYLES").ok();
+    let is_chosen =
+        |name: &str| chosen.as_ref().is_none_or(|all| all.split(',').any(|one| one.trim() == name));
+    let styles = STYLES.into_iter().filter(|name| is_chosen(name));
+    styles
+        .map(|name| {
+            let steady = Style::new(name, &[STEADINESS]).play(shot, AROUND);
+            let mut rows = table(
+                shot,
+                vec![
+                    Entry::new(name, Style::new(name, &[]).play(shot, AROUND)),
+                    Entry::new(format!("{name} steady"), steady).against(name),
+                ],
+            );
+            let (Some(steady), Some(still)) = (rows.pop(), rows.pop()) else { panic!("two rows") };
+            Pair { name, still, steady }
+        })
+        .collect()
+}
+
+fn print(title: &str, pairs: &[Pair]) {
+    let columns = ["style", "frames for themselves", "steady", "gradient energy kept"];
+    let mut table = Table::new(16, "steadiness over time", title, &columns);
+    for Pair { name, still, steady, .. } in pairs {
+        table.row(&[
+            (*name).to_owned(),
+            format!("{:.2}", still.steadiness.ratio),
+            format!("{:.2}", steady.steadiness.ratio),
+            format!("{:.3}", steady.steadiness.energy_of_still),
+        ]);
+    }
+    table.print();
+}
+
+#[test]
+fn steady_styles_exaggerate_less_along_the_path_of_the_camera() {
+    let Some(_) = device("the demo scene") else { return };
+    let pairs = measured(&footage::demo().unwrap());
+    print(
+        "Warping error over that of the plain frames: demo scene, camera on its path, two frames before known",
+        &pairs,
+    );
+    for Pair { name, still, steady } in &pairs {
+        let [before, after] = [still.steadiness.ratio, steady.steadiness.ratio];
+        assert!(after <= MOST[0] * before, "{name}: {before:.3} -> {after:.3}");
+        let kept = steady.steadiness.energy_of_still;
+        assert!(kept >= 0.97, "{name} keeps {kept:.3} of its energy");
+    }
+}
+
+#[test]
+fn steady_styles_exaggerate_less_on_a_running_fox() {
+    let Some(_) = device("the fox") else { return };
+    let Some(shot) = footage::fox() else {
+        eprintln!("\n*** SKIPPED: no fox beside the checkout ***\n");
+        return;
+    };
+    for Pair { name, still, steady, .. } in measured(&shot.unwrap()) {
+        let [before, after] = [still.steadiness.ratio, steady.steadiness.ratio];
+        println!(
+            "fox: {name} {before:.2} -> {after:.2}, energy kept {:.3}",
+            steady.steadiness.energy_of_still
+        );
+        // What is drawn on the paper stays there while the fox runs.
+        assert!(after < before, "{name}: {before:.3} -> {after:.3}");
+    }
+}
+
+#[test]
+fn steady_styles_draw_less_noise() {
+    let Some(_) = device("the static shot") else { return };
+    let shot = footage::demo().unwrap();
+    let shot = Shot::noisy(&shot.frames[shot.frames.len() / 2], 6, 0.01);
+    let pairs = measured(&shot);
+    print("Warping error over that of the plain frames: static shot with 1 % noise", &pairs);
+    for Pair { name, still, steady, .. } in &pairs {
+        let [before, after] = [still.steadiness.ratio, steady.steadiness.ratio];
+        assert!(after <= MOST[1] * before, "{name}: {before:.3} -> {after:.3}");
+    }
+}
