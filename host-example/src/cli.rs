@@ -20,7 +20,7 @@ enum Command {
     /// Renders a glTF or OBJ scene to PNG or EXR frames.
     Render(render::RenderArgs),
     /// Applies a node, graph or preset to a picture or a sequence of frames.
-    Apply(apply::ApplyArgs),
+    Apply(Box<apply::ApplyArgs>),
     /// Opens a window that renders a scene and stylizes every frame.
     View(view::ViewArgs),
     /// Puts pictures side by side on one contact sheet, with their names.

@@ -89,6 +89,21 @@ pub fn write(
     Ok(())
 }
 
+/// As [`write()`], by another program that is told the path of the file for the time being.
+///
+/// # Errors
+/// As [`write()`], and what `content` says.
+pub fn write_by_path(path: &Path, content: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
+    let fail = |problem: io::Error| unwritable(path, problem.kind(), problem);
+    let target = target(path)?;
+    let temporary = Temporary::in_folder(folder(&target)).map_err(fail)?;
+    content(temporary.file.path())?;
+    temporary.take_permissions(&target);
+    temporary.file.as_file().sync_all().map_err(fail)?;
+    temporary.file.persist(&target).map_err(|e| fail(e.error))?;
+    Ok(())
+}
+
 /// Whether a file could be written at this place, as far as can be told without touching anything.
 ///
 /// # Errors

@@ -19,4 +19,5 @@ pub mod shot;
 pub mod stop;
 pub mod stylize;
 pub mod verbs;
+pub mod video;
 pub mod view;

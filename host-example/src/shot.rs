@@ -108,17 +108,44 @@ impl Shot {
     }
 
     /// Renders and stylizes the frame of a number. It does not depend on those drawn before: its motion is that
-    /// from the frame of the number before it, and none in frame 1.
+    /// from the frame of the number before it, and none in frame 1; where the style depends on frames before, those that
+    /// were not drawn are drawn first.
     ///
     /// # Errors
     /// [`crate::error::Error::Failure`] when the device fails.
     pub fn draw(&mut self, number: i64) -> Result<Picture> {
+        let follows = self.drawn.as_ref().is_some_and(|(drawn, _)| *drawn == number - 1);
+        if number == 1 || !follows {
+            let depth = self.stylizer.as_ref().map_or(0, Stylizer::depth) as i64;
+            // Nothing comes before frame 1.
+            let first = if number < 1 { number - depth } else { (number - depth).max(1) };
+            if let Some(stylizer) = &mut self.stylizer {
+                stylizer.forget();
+            }
+            self.begin_before(first);
+            for before in first..number {
+                self.encode(before)?;
+            }
+        }
+        self.encode(number)?;
+        let targets = self.renderer.targets();
+        let plain = if self.options.scene_referred { &targets.radiance } else { &targets.color };
+        let result = self.stylizer.as_ref().map_or(&plain.view, Stylizer::output);
+        self.readback.read(&self.gpu, result.texture())
+    }
+
+    /// Lets the renderer know where everything was before a frame.
+    fn begin_before(&mut self, number: i64) {
         if number == 1 {
             self.renderer.forget_motion();
-        } else if self.drawn.is_none_or(|(drawn, _)| drawn != number - 1) {
+        } else {
             let view = self.go_to(number - 1);
             self.renderer.pass_over(&self.scene, &self.pose, &view, &self.look);
         }
+    }
+
+    /// Renders and stylizes the frame that follows the last one.
+    fn encode(&mut self, number: i64) -> Result<()> {
         let view = self.go_to(number);
         self.drawn = Some((number, view));
         let mut is_rebuilt = false;
@@ -131,14 +158,11 @@ impl Shot {
         }
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         self.renderer.encode(&mut encoder, &self.scene, &self.pose, &view, &self.look);
-        if let Some(stylizer) = &self.stylizer {
+        if let Some(stylizer) = &mut self.stylizer {
             stylizer.encode(&mut encoder)?;
         }
         self.gpu.queue.submit([encoder.finish()]);
-        let targets = self.renderer.targets();
-        let plain = if self.options.scene_referred { &targets.radiance } else { &targets.color };
-        let result = self.stylizer.as_ref().map_or(&plain.view, Stylizer::output);
-        self.readback.read(&self.gpu, result.texture())
+        Ok(())
     }
 
     /// What the frame drawn last was seen by.

@@ -56,7 +56,7 @@ impl Stage {
     }
 
     /// One frame, as a viewer draws it: one encoder, one submission.
-    fn frame(&mut self, stylizer: &Stylizer, angle: f32) {
+    fn frame(&mut self, stylizer: &mut Stylizer, angle: f32) {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let view = self.orbit.turned(angle).view();
         self.renderer.encode(&mut encoder, &self.scene, &self.pose, &view, &self.look);
@@ -81,12 +81,12 @@ fn a_warm_frame_makes_nothing_and_is_one_submission() {
     let kernels = Kernels::new(stage.gpu.device.clone(), stage.gpu.queue.clone());
     for style in ["cartoon", "blueprint"] {
         let mut stylizer = stage.stylizer(&kernels, style);
-        stage.frame(&stylizer, 0.0);
+        stage.frame(&mut stylizer, 0.0);
         let before = stylizer.counts();
         for frame in 1..5 {
             stylizer.update().expect("nothing is to be updated");
             stylizer.bind(stage.renderer.targets()).expect("the targets are the same");
-            stage.frame(&stylizer, frame as f32 * 0.1);
+            stage.frame(&mut stylizer, frame as f32 * 0.1);
         }
         // The submission is the host's own, with the scene in it; the library adds none.
         assert_eq!(stylizer.counts(), before, "{style}");
@@ -96,7 +96,7 @@ fn a_warm_frame_makes_nothing_and_is_one_submission() {
         let slider = "tau=0.6";
         assert!(!set(&mut stylizer, slider), "{slider} changes the passes of {style}");
         assert_eq!(stylizer.counts(), Counts { uploads: before.uploads + 1, ..before });
-        stage.frame(&stylizer, 0.4);
+        stage.frame(&mut stylizer, 0.4);
         assert_ne!(stage.read(stylizer.output()), picture, "{slider} changes nothing");
     }
 }
@@ -112,11 +112,11 @@ fn structural_changes_and_other_sizes_are_taken_over() {
     assert!(set(&mut stylizer, "iterations=3"), "iterations are passes");
     assert!(passes(&stylizer) > before);
     stylizer.bind(stage.renderer.targets()).expect("the targets fit");
-    stage.frame(&stylizer, 0.0);
+    stage.frame(&mut stylizer, 0.0);
     stage.renderer.resize((50, 70)).expect("the size fits");
     stylizer.resize((50, 70)).expect("the size fits");
     stylizer.bind(stage.renderer.targets()).expect("the targets fit");
-    stage.frame(&stylizer, 0.0);
+    stage.frame(&mut stylizer, 0.0);
     let picture = stage.read(stylizer.output());
     assert_eq!((picture.width, picture.height, picture.channels), (50, 70, 1));
     stage.gpu.check().expect("the device reports nothing");
@@ -128,8 +128,8 @@ fn the_hosts_device_gives_what_the_librarys_processor_gives() {
     let mut stage = Stage::new(folder.path());
     let kernels = Kernels::new(stage.gpu.device.clone(), stage.gpu.queue.clone());
     for name in ["cartoon", "blueprint"] {
-        let stylizer = stage.stylizer(&kernels, name);
-        stage.frame(&stylizer, 0.3);
+        let mut stylizer = stage.stylizer(&kernels, name);
+        stage.frame(&mut stylizer, 0.3);
         let ours = stage.read(stylizer.output());
         let Targets { color, normal, depth, object_id, .. } = stage.renderer.targets();
         let inputs = [("color", color), ("normal", normal), ("depth", depth), ("object_id", object_id)].map(

@@ -4,9 +4,9 @@ use serde_json::json;
 
 use super::exr::Selection;
 use super::filter::Planner;
-use super::memory::{Bytes, Needs};
+use super::memory::{Bytes, Needs, too_large};
 use super::read::{self, Unread};
-use super::sequence::{MOST_IN_FLIGHT, too_large};
+use super::sequence::MOST_IN_FLIGHT;
 use super::tasks::{Task, Tasks};
 use crate::error::Result;
 use crate::output;
@@ -66,17 +66,17 @@ impl DryRun<'_> {
     /// Refuses what the run would refuse before it decodes the frame.
     fn check(&self, planner: &mut Planner, task: &Task) -> Result<()> {
         let file = Unread::open(&task.input)?;
-        let least = Bytes(file.length());
-        if least.0 > self.most.0 {
-            return Err(too_large(&task.input, least, self.most));
-        }
-        let opened = file.read(&task.input, self.selection)?;
-        match planner.needs(&task.input, task.frame, &opened)? {
-            Some(needs) if needs.total() > self.most.0 => {
-                Err(too_large(&task.input, Bytes(needs.total()), self.most))
+        let span = planner.span(task.frame)?;
+        let fits = |needs: Needs| {
+            let together = needs.of(span);
+            if together.total() > self.most.0 {
+                return Err(too_large(&task.input, span, together, self.most));
             }
-            _ => Ok(()),
-        }
+            Ok(())
+        };
+        fits(Needs { frame: file.length(), filter: 0 })?;
+        let opened = file.read(&task.input, self.selection)?;
+        planner.needs(&task.input, task.frame, &opened)?.map_or(Ok(()), fits)
     }
 
     fn summary(&self, done: u64, refused: u64, needs: Option<Needs>) -> String {

@@ -4,21 +4,21 @@ use std::path::Path;
 
 use super::backend::Backend;
 use super::convert;
-use super::exr::{Guide, Picture};
+use super::exr::{ExrFile, Guide, Picture};
 use super::memory::Needs;
 use super::primaries::{AP1, Change, REC709, same};
-use super::read::{ImageState, Opened, Source};
+use super::read::{ImageState, Opened};
+use super::reel::{Window, guide_bit};
 use super::space::Space;
 use super::write::Format;
 use crate::error::Result;
 use crate::loader::catalogue::Kind;
 use crate::loader::contract::{
-    ISOPHOTE_ALPHA_PREMULTIPLIED, ISOPHOTE_ALPHA_STRAIGHT, ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_NORMAL,
-    ISOPHOTE_GUIDE_OBJECT_ID, ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR, ISOPHOTE_SPACE_SRGB,
-    IsophoteRequest,
+    ISOPHOTE_ALPHA_PREMULTIPLIED, ISOPHOTE_ALPHA_STRAIGHT, ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR,
+    ISOPHOTE_SPACE_SRGB, IsophoteHistory, IsophoteRequest,
 };
-use crate::loader::plan::Texture;
-use crate::loader::{Control, Device, Input, Library};
+use crate::loader::plan::{Role, Texture};
+use crate::loader::{Answer, Control, Device, Input, Library, Sequence};
 use crate::pixels::{Pixels, Precision};
 use crate::stylize::style::Style;
 
@@ -30,6 +30,15 @@ pub struct Filter {
     device: Option<Device>,
     space: Option<Space>,
     threads: u32,
+    /// What is kept of the frames of each picture.
+    sequences: Vec<Kept>,
+}
+
+/// What is kept of the frames of one picture, whose size it is made for.
+#[derive(Debug)]
+struct Kept {
+    size: (u32, u32),
+    sequence: Sequence,
 }
 
 /// Farthest from 0 that a picture may begin, pixels, as the contract has it.
@@ -67,10 +76,10 @@ impl Filter {
         threads: u32,
     ) -> Result<Self> {
         let device = backend.device(&library)?;
-        Ok(Self { library, style, device, space, threads })
+        Ok(Self { library, style, device, space, threads, sequences: Vec::new() })
     }
 
-    /// Filters all pictures of `source`, or the first where `format` holds one.
+    /// Filters all pictures of a frame, or the first where `format` holds one; `exr` is the file that they came from.
     ///
     /// # Errors
     /// [`crate::error::Error::Input`] for pictures that the library refuses,
@@ -78,32 +87,29 @@ impl Filter {
     pub fn run(
         &mut self,
         name: &str,
-        frame: Option<i64>,
-        source: &Source,
+        window: &Window<'_>,
+        exr: Option<&ExrFile>,
         format: Format,
         progress: &mut dyn FnMut(f32),
     ) -> Result<Filtered> {
-        if let Some(frame) = frame {
+        let (own, source) = (&window.own, &window.own.source);
+        if let Some(frame) = own.number {
             self.style.at_frame(frame)?;
         }
-        let in_place = source.exr.as_ref().filter(|_| format == Format::Exr);
-        let pictures = if in_place.is_some() {
-            source.pictures.as_slice()
-        } else {
-            source.pictures.get(..1).unwrap_or_default()
-        };
+        let in_place = exr.filter(|_| format == Format::Exr);
+        let count = if in_place.is_some() { source.pictures.len() } else { source.pictures.len().min(1) };
         let to = format.state(source.state);
         let scalar = self.style.kind != Kind::Color;
-        let mut filtered = Filtered { results: Vec::with_capacity(pictures.len()), replaced: 0 };
-        for (at, picture) in pictures.iter().enumerate() {
+        let mut filtered = Filtered { results: Vec::with_capacity(count), replaced: 0 };
+        for (at, picture) in source.pictures.iter().take(count).enumerate() {
             let channels = match in_place {
                 Some(exr) => exr.result_channels(at, scalar),
                 None if scalar => 1,
                 None => picture.pixels.channels().max(3),
             };
             let working = WorkingSpace::of(self.space, source.state, picture);
-            let there = working.change.map(|(there, _)| convert::changed(&picture.pixels, &there));
-            let (color, bad) = there.as_ref().map_or((&picture.pixels, 0), |(pixels, bad)| (pixels, *bad));
+            let there = working.change.as_ref().map(|(there, _)| there);
+            let (color, bad) = own.working(at, there).unwrap_or((&picture.pixels, 0));
             filtered.replaced += bad;
             let precision = if to == source.state { color.precision() } else { Precision::F32 };
             let mut result = Pixels::zeroed(color.width(), color.height(), channels, precision);
@@ -112,18 +118,14 @@ impl Filter {
             if picture.origin.iter().all(|o| o.abs() <= MOST_ORIGIN) {
                 [request.origin_x, request.origin_y] = picture.origin.map(f64::from);
             }
-            request.frame = frame.unwrap_or_default();
-            let mut inputs = vec![Input { name: "color", pixels: color }];
-            inputs.extend(picture.guides.iter().map(|(name, pixels)| Input { name, pixels }));
-            let share = 1.0 / pictures.len() as f32;
+            request.frame = own.number.unwrap_or_default();
+            let share = 1.0 / count as f32;
             let mut report = |done: f32| progress((at as f32 + done) * share);
             let mut control = Control { threads: self.threads, progress: Some(&mut report), measured: None };
-            let report = self
-                .style
-                .graph
-                .process(self.device.as_ref(), &request, &inputs, &mut result, &mut control)
+            let job = Job { at, there, request, color, window };
+            filtered.replaced += self
+                .process(&job, &mut result, &mut control)
                 .map_err(|e| e.at(name, "choose another picture or style"))?;
-            filtered.replaced += report.replaced;
             if !scalar {
                 result = convert::between(result, source.state, working.space, to);
                 let is_shown = source.state == ImageState::SceneReferred && to == ImageState::DisplayReferred;
@@ -134,6 +136,34 @@ impl Filter {
             filtered.results.push(result);
         }
         Ok(filtered)
+    }
+
+    /// Filters one picture, and returns how many samples were replaced.
+    fn process(&mut self, job: &Job<'_>, result: &mut Pixels, control: &mut Control<'_>) -> Answer<u64> {
+        let Job { at, there, mut request, color, window } = *job;
+        let Some(picture) = window.own.source.pictures.get(at) else { return Ok(0) };
+        let frames = self.library.frames(&self.style.graph)?;
+        if frames == [0, 0] {
+            let mut inputs = vec![Input { name: "color", pixels: color }];
+            inputs.extend(picture.guides.iter().map(|(name, pixels)| Input { name, pixels }));
+            let device = self.device.as_ref();
+            return Ok(self.style.graph.process(device, &request, &inputs, result, control)?.replaced);
+        }
+        request.guides = picture.guides.iter().fold(0, |all, (name, _)| all | guide_bit(name));
+        let size = (request.width, request.height);
+        self.sequences.truncate(if self.sequences.get(at).is_some_and(|k| k.size != size) {
+            at
+        } else {
+            usize::MAX
+        });
+        if self.sequences.len() <= at {
+            let memory = stages(&self.library, &self.style, &request, frames)?;
+            self.sequences.push(Kept { size, sequence: self.library.sequence(memory, 0.0)? });
+        }
+        let footage = |input: &str, frame: i64| window.image(at, input, frame, there);
+        let sequence = &mut self.sequences[at].sequence;
+        let device = self.device.as_ref();
+        Ok(sequence.process(&mut self.style.graph, device, &request, &footage, result, control)?.replaced)
     }
 
     fn request(
@@ -166,7 +196,7 @@ impl Planner {
     /// # Errors
     /// [`crate::error::Error::Failure`] when the library fails.
     pub fn new(library: Library, style: Style) -> Result<Self> {
-        let guides = usable_guides(&style)?;
+        let guides = usable_guides(&library, &style)?;
         Ok(Self { library, style, guides, last: None })
     }
 
@@ -186,17 +216,38 @@ impl Planner {
         }
         let refused = |e: crate::loader::Refusal| e.at(name, "choose another picture or style");
         let mut request = self.library.request(size).map_err(refused)?;
-        for guide in &self.guides {
-            request.guides |= match guide {
-                Guide::Normal => ISOPHOTE_GUIDE_NORMAL,
-                Guide::Depth => ISOPHOTE_GUIDE_DEPTH,
-                Guide::ObjectId => ISOPHOTE_GUIDE_OBJECT_ID,
-            };
-        }
-        let plan = self.style.graph.plan(&request).map_err(refused)?;
-        let bytes = plan.textures().map_err(refused)?.iter().map(Texture::bytes).sum();
+        request.guides = self.guides.iter().fold(0, |all, guide| all | guide_bit(guide.id()));
+        let frames = self.library.frames(&self.style.graph).map_err(refused)?;
+        let plan = match frames {
+            [0, 0] => self.style.graph.plan(&request),
+            [past, _] => self.library.plan_in_order(&self.style.graph, &request, &history(past)),
+        };
+        let plan = plan.map_err(refused)?;
+        let textures: u64 = plan.textures().map_err(refused)?.iter().map(Texture::bytes).sum();
+        let bytes = textures + stages(&self.library, &self.style, &request, frames).map_err(refused)?;
         self.last = Some((size, bytes));
         Ok(bytes)
+    }
+
+    /// Frames before and after `frame` that it depends on.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Input`] when an animated parameter cannot have its value.
+    pub fn frames(&self, frame: Option<i64>) -> Result<[i64; 2]> {
+        let Some(frame) = frame else { return Ok([0, 0]) };
+        self.style.at_frame(frame)?;
+        let frames = self.library.frames(&self.style.graph);
+        let frames = frames.map_err(|e| e.at(&self.style.name, "choose another style"))?;
+        Ok(frames.map(i64::from))
+    }
+
+    /// How many frames are held while `frame` is done: it and all that it depends on.
+    ///
+    /// # Errors
+    /// As [`Planner::frames`].
+    pub fn span(&self, frame: Option<i64>) -> Result<u64> {
+        let [past, future] = self.frames(frame)?;
+        Ok((past + future + 1) as u64)
     }
 
     /// What the frame `file` needs; nothing when it will be refused, which is reported when its turn comes.
@@ -240,19 +291,53 @@ impl WorkingSpace {
     }
 }
 
+/// One picture of a frame.
+#[derive(Clone, Copy)]
+struct Job<'a> {
+    at: usize,
+    /// The change to the working space.
+    there: Option<&'a Change>,
+    request: IsophoteRequest,
+    /// The picture in its working space.
+    color: &'a Pixels,
+    window: &'a Window<'a>,
+}
+
+/// Plans for so many frames before the one that is computed.
+fn history(past: u32) -> IsophoteHistory {
+    IsophoteHistory { past, max_motion: 0.0 }
+}
+
+/// Bytes of the stages of so many frames before and after a frame, and of itself.
+fn stages(library: &Library, style: &Style, request: &IsophoteRequest, frames: [u32; 2]) -> Answer<u64> {
+    let [past, future] = frames;
+    if past + future == 0 {
+        return Ok(0);
+    }
+    let plan = library.plan_in_order(&style.graph, request, &history(past))?;
+    let textures = plan.textures()?;
+    let kept = textures.iter().filter(|t| t.role == Role::Output && t.name.starts_with("stage"));
+    Ok(kept.map(Texture::bytes).sum::<u64>() * u64::from(past + future + 1))
+}
+
 /// Guides that a style can use, whether or not they are connected.
 ///
 /// # Errors
 /// [`crate::error::Error::Failure`] when the library fails.
-pub fn usable_guides(style: &Style) -> Result<Vec<Guide>> {
+pub fn usable_guides(library: &Library, style: &Style) -> Result<Vec<Guide>> {
     let mut guides = Vec::new();
+    let refused = |e: crate::loader::Refusal| e.at(&style.name, "choose another style");
+    // Stills read no motion.
+    let is_steady = style.is_animated() || library.frames(&style.graph).map_err(refused)? != [0, 0];
     for node in 0..style.graph.count() {
-        let spec = style.graph.spec(node).map_err(|e| e.at(&style.name, "choose another style"))?;
+        let spec = style.graph.spec(node).map_err(refused)?;
         for port in spec.inputs {
             match port.kind {
                 Kind::Normal => guides.push(Guide::Normal),
                 Kind::Depth => guides.push(Guide::Depth),
                 Kind::ObjectId => guides.push(Guide::ObjectId),
+                Kind::Motion if is_steady && port.id == "motion" => guides.push(Guide::Motion),
+                Kind::Motion if is_steady => guides.push(Guide::MotionForward),
                 _ => {}
             }
         }

@@ -1,9 +1,11 @@
 //! How much memory frames may take together.
 
+use std::path::Path;
 use std::str::FromStr;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use super::machine;
+use crate::error::Error;
 
 /// A number of bytes as people write it: `4GiB`, `500MB`, `2G`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,6 +75,11 @@ impl Needs {
     pub fn total(self) -> u64 {
         self.frame.saturating_add(self.filter)
     }
+
+    /// Those of so many frames of which one is filtered.
+    pub fn of(self, frames: u64) -> Self {
+        Self { frame: self.frame.saturating_mul(frames), filter: self.filter }
+    }
 }
 
 impl Budget {
@@ -95,13 +102,14 @@ impl Budget {
 }
 
 impl Share<'_> {
-    /// Waits until there is room for what the frame is now known to need.
+    /// Waits until there is room for what the frame is now known to need; so many bytes will be held together before any
+    /// is given back.
     ///
     /// # Errors
-    /// The whole budget, when that is less.
-    pub fn grow(&self, needs: Needs) -> Result<(), Bytes> {
+    /// The whole budget, when that is less than those.
+    pub fn grow(&self, needs: Needs, together: u64) -> Result<(), Bytes> {
         let most = self.budget.most;
-        if needs.total() > most {
+        if together > most {
             return Err(Bytes(most));
         }
         let mut held = self.budget.held();
@@ -129,6 +137,19 @@ impl Drop for Share<'_> {
     }
 }
 
+/// The error of frames that need more memory than all may take together, `count` of which are held at the same time.
+pub fn too_large(path: &Path, count: u64, needs: Needs, most: Bytes) -> Error {
+    let needed = Bytes(needs.total());
+    let (who, fix) = match count {
+        0 | 1 => ("a frame needs".to_owned(), "give more by --memory"),
+        _ => (
+            format!("{count} frames that depend on each other need"),
+            "give more by --memory, or a smaller window",
+        ),
+    };
+    Error::file(path, format!("{who} about {needed} of memory, and {most} may be used"), fix)
+}
+
 /// Memory of a run that is given no bound: 4 GiB, or what the machine has.
 pub fn usual() -> Bytes {
     const MOST: u64 = 4 << 30;
@@ -154,17 +175,17 @@ mod tests {
         let budget = Budget::new(20);
         let needs = |frame, filter| Needs { frame, filter };
         let large = budget.share();
-        assert_eq!(large.grow(needs(15, 6)), Err(Bytes(20)));
+        assert_eq!(large.grow(needs(15, 6), 21), Err(Bytes(20)));
         drop(large);
         let (a, b) = (budget.share(), budget.share());
         // What both need of the filter counts once.
-        a.grow(needs(5, 10)).unwrap();
-        b.grow(needs(5, 8)).unwrap();
+        a.grow(needs(5, 10), 15).unwrap();
+        b.grow(needs(5, 8), 13).unwrap();
         std::thread::scope(|scope| {
             let third = scope.spawn(|| {
                 let share = budget.share();
-                share.grow(needs(1, 0)).unwrap();
-                share.grow(needs(5, 0)).unwrap();
+                share.grow(needs(1, 0), 1).unwrap();
+                share.grow(needs(5, 0), 5).unwrap();
             });
             drop(a);
             third.join().unwrap();

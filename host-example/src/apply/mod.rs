@@ -11,6 +11,8 @@ pub mod memory;
 mod png;
 pub mod primaries;
 pub mod read;
+pub mod reader;
+pub mod reel;
 pub mod report;
 pub mod sequence;
 pub mod space;

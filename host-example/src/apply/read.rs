@@ -61,7 +61,7 @@ pub struct Opened(Kind);
 
 #[derive(Debug)]
 enum Kind {
-    Exr(exr::Opened),
+    Exr(Box<exr::Opened>),
     /// The bytes of another file, and what was selected as if it were an EXR file.
     Other(Vec<u8>, Option<&'static str>),
 }
@@ -112,12 +112,17 @@ impl Unread {
     pub fn read(self, path: &Path, selection: &Selection) -> Result<Opened> {
         let bytes = self.bytes(path)?;
         if bytes.starts_with(&EXR) {
-            return exr::Opened::new(path, bytes, selection).map(Kind::Exr).map(Opened);
+            let opened = exr::Opened::new(path, bytes, selection)?;
+            return Ok(Opened(Kind::Exr(Box::new(opened))));
         }
         Ok(Opened(Kind::Other(bytes, selection.option())))
     }
 
-    fn bytes(self, path: &Path) -> Result<Vec<u8>> {
+    /// All of it.
+    ///
+    /// # Errors
+    /// As [`open`].
+    pub fn bytes(self, path: &Path) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let room = usize::try_from(self.length).ok().and_then(|length| bytes.try_reserve_exact(length).ok());
         let read = match room {

@@ -52,7 +52,8 @@ pub struct Report {
     bar: ProgressBar,
     json: bool,
     sequence: bool,
-    frames: u64,
+    /// How many there are; none where nobody knows exactly.
+    frames: Option<u64>,
     /// Whether it was said that nothing can be printed.
     unheard: AtomicBool,
     started: Instant,
@@ -76,13 +77,18 @@ impl Report {
             bar,
             json,
             sequence,
-            frames: frames as u64,
+            frames: Some(frames as u64),
             unheard: AtomicBool::new(false),
             started: Instant::now(),
             counts: Mutex::new(Counts::default()),
         };
         report.line(&json!({"event": "start", "frames": frames}));
         report
+    }
+
+    /// The same where the number of frames is a guess.
+    pub fn about(frames: usize, json: bool) -> Self {
+        Self { frames: None, ..Self::new(frames, true, json) }
     }
 
     /// The share of the frame at hand that is done.
@@ -151,7 +157,8 @@ impl Report {
             "replaced": counts.replaced,
             "seconds": seconds,
         }));
-        let is_complete = counts.failed == 0 && counts.done() + counts.missing == self.frames;
+        let is_complete =
+            counts.failed == 0 && self.frames.is_none_or(|frames| counts.done() + counts.missing == frames);
         if self.sequence && !self.json && whole && is_complete {
             let mut text = format!("{} frames written in {seconds:.1} s", counts.written);
             for (count, what) in [

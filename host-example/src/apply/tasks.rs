@@ -35,8 +35,10 @@ pub struct Tasks {
     pub ready: Vec<Task>,
     /// Frames of the sequence that have no file.
     pub missing: Vec<Task>,
-    /// Whether they are frames of a sequence; otherwise there is one picture.
-    pub is_sequence: bool,
+    /// The sequence that they are of; otherwise there is one picture.
+    pub sequence: Option<Pattern>,
+    /// Whether results take the place of frames.
+    pub is_in_place: bool,
 }
 
 impl Tasks {
@@ -57,7 +59,8 @@ impl Tasks {
                 return Err(Error::file(input, "has no place for a frame number", "write shot.####.exr"));
             }
             let task = Task { frame: None, input: input.to_owned(), output: output.to_owned() };
-            return Ok(Self { ready: vec![task], missing: Vec::new(), is_sequence: false });
+            let is_in_place = input == output;
+            return Ok(Self { ready: vec![task], missing: Vec::new(), sequence: None, is_in_place });
         };
         let (ready, missing) = match list {
             Some(list) => list.frames().iter().partition(|frame| from.file(**frame).is_file()),
@@ -83,8 +86,14 @@ impl Tasks {
         Ok(Self {
             ready: ready.iter().map(task).collect(),
             missing: missing.iter().map(task).collect(),
-            is_sequence: true,
+            is_in_place: from.file(0) == to.file(0),
+            sequence: Some(from),
         })
+    }
+
+    /// Whether they are frames of a sequence.
+    pub fn is_sequence(&self) -> bool {
+        self.sequence.is_some()
     }
 
     /// Number of frames, with those that are missing.

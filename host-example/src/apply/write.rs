@@ -4,7 +4,7 @@ use std::path::Path;
 
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
 
-use super::exr::{Picture, components};
+use super::exr::{ExrFile, Picture, components};
 use super::read::{ImageState, Source};
 use crate::error::{Error, Result};
 use crate::pixels::{Pixels, Precision, Samples};
@@ -57,12 +57,18 @@ impl Format {
 }
 
 /// Writes the results of what `source` held, one for each of its pictures, in the image state of `format`.
-/// All of them go into an EXR file that came from one; of other files there is one picture.
+/// All of them go into `exr`, an EXR file that they came from; of other files there is one picture.
 ///
 /// # Errors
 /// [`Error::Input`] when the folder is missing or cannot be written.
-pub fn write(path: &Path, format: Format, mut results: Vec<Pixels>, source: Source) -> Result<()> {
-    if let (Format::Exr, Some(mut exr)) = (format, source.exr) {
+pub fn write(
+    path: &Path,
+    format: Format,
+    mut results: Vec<Pixels>,
+    source: &Source,
+    exr: Option<ExrFile>,
+) -> Result<()> {
+    if let (Format::Exr, Some(mut exr)) = (format, exr) {
         for (at, result) in results.drain(..).enumerate() {
             exr.replace(at, &result)
                 .map_err(|problem| Error::file(path, problem, "choose another picture"))?;
@@ -85,7 +91,7 @@ pub fn write(path: &Path, format: Format, mut results: Vec<Pixels>, source: Sour
             // PNG wants the larger byte first; the encoder takes the machine's order.
             files::write(path, |file| {
                 let mut encoder = image::codecs::png::PngEncoder::new(file);
-                keep_profile(&mut encoder, source.profile);
+                keep_profile(&mut encoder, source.profile.clone());
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
             })
         }
@@ -99,7 +105,7 @@ pub fn write(path: &Path, format: Format, mut results: Vec<Pixels>, source: Sour
             let color = color_type(&pixels);
             files::write(path, |file| {
                 let mut encoder = image::codecs::tiff::TiffEncoder::new(file);
-                keep_profile(&mut encoder, source.profile);
+                keep_profile(&mut encoder, source.profile.clone());
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
             })
         }
@@ -108,7 +114,7 @@ pub fn write(path: &Path, format: Format, mut results: Vec<Pixels>, source: Sour
             let color = color_type(&pixels);
             files::write(path, |file| {
                 let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(file, JPEG_QUALITY);
-                keep_profile(&mut encoder, source.profile);
+                keep_profile(&mut encoder, source.profile.clone());
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
             })
         }

@@ -11,6 +11,7 @@ use crate::loader::plan::Pass;
 use crate::loader::{Answer, Library, Plan, Refusal};
 use crate::pixels::Pixels;
 use crate::render::gpu::Gpu;
+use crate::stylize::history::Past;
 use crate::stylize::plan_runner::{Kernels, PlanRunner};
 use crate::stylize::style::Style;
 
@@ -46,11 +47,11 @@ impl Bench {
         let style = Style::any(library, &subject.node, &subject.settings)?;
         let request = library.request(size).map_err(|e| e.at("--size", "choose another size"))?;
         let plan = style.graph.plan(&request).map_err(refused)?;
-        let mut runner = PlanRunner::new(&self.kernels, &plan)?;
+        let mut runner = PlanRunner::new(&self.kernels, &plan, Past::default())?;
         runner.bind(&[("color", &self.upload(picture))])?;
         // The first run compiles, and is not counted.
-        self.once(&runner)?;
-        let totals = (0..runs).map(|_| self.once(&runner)).collect::<Result<Vec<f64>>>()?;
+        self.once(&mut runner)?;
+        let totals = (0..runs).map(|_| self.once(&mut runner)).collect::<Result<Vec<f64>>>()?;
         let mut passes = passes(&plan).map_err(refused)?;
         match Timer::new(&self.gpu, passes.len()) {
             Some(timer) => {
@@ -73,7 +74,7 @@ impl Bench {
     }
 
     /// From the first command recorded to the last one done, in seconds.
-    fn once(&self, runner: &PlanRunner) -> Result<f64> {
+    fn once(&self, runner: &mut PlanRunner) -> Result<f64> {
         let started = Instant::now();
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         runner.encode(&mut encoder)?;

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use serde::Serialize;
@@ -10,6 +11,8 @@ use crate::apply::exr::{Selection, components};
 use crate::apply::filter::{Filter, Planner};
 use crate::apply::memory::Budget;
 use crate::apply::read;
+use crate::apply::reader::{Footage, Reader};
+use crate::apply::reel::{Held, Window};
 use crate::apply::report::Report;
 use crate::apply::sequence::Run;
 use crate::apply::tasks::Task;
@@ -60,30 +63,31 @@ pub fn measure(
     }
     let selection = Selection { wanted: planner.guides().to_vec(), ..Selection::default() };
     let mut filter_seconds = 0.0;
+    let (budget, report) = (Budget::new(bound), Report::new(tasks.len(), false, false));
+    let footage = Footage { frames: None, motion: None, selection: &selection, budget: &budget };
     // The first of these runs makes the plan and is not counted.
     for (at, task) in tasks.iter().take(1).chain(&tasks).enumerate() {
         let source = read::read(&task.input, &selection)?;
+        let own = Arc::new(Held::new(task.frame, source, true, budget.share()));
+        let (exr, window) = (own.take_exr(), Window { own: Arc::clone(&own), frames: vec![own] });
         let started = Instant::now();
-        filter.run("a frame", task.frame, &source, Format::Exr, &mut |_| {})?;
+        filter.run("a frame", &window, exr.as_ref(), Format::Exr, &mut |_| {})?;
         if at > 0 {
             filter_seconds += started.elapsed().as_secs_f64();
         }
     }
-    let (budget, report) = (Budget::new(bound), Report::new(tasks.len(), false, false));
     let stop = Stop::default();
     let run = Run {
         tasks: &tasks,
-        selection: &selection,
         format: Format::Exr,
         skip_existing: false,
         threads: Threads::Several,
-        budget: &budget,
         report: &report,
         stop: &stop,
     };
     forget_peak();
     let started = Instant::now();
-    let result = run.all(&mut filter, planner, None);
+    let result = run.all(&mut filter, Reader::new(footage, planner, &tasks, None));
     let seconds = started.elapsed().as_secs_f64();
     let counts = report.end(false);
     result?;

@@ -66,6 +66,10 @@ pub enum Kind {
     ObjectId,
     /// A painted direction and its strength.
     Flow,
+    /// Where things are in a neighbouring frame.
+    Motion,
+    /// Points in space.
+    Position,
     /// Something that this program does not know.
     Other,
 }
@@ -80,6 +84,8 @@ impl Kind {
             c::ISOPHOTE_KIND_DEPTH => Self::Depth,
             c::ISOPHOTE_KIND_OBJECT_ID => Self::ObjectId,
             c::ISOPHOTE_KIND_FLOW => Self::Flow,
+            c::ISOPHOTE_KIND_MOTION => Self::Motion,
+            c::ISOPHOTE_KIND_POSITION => Self::Position,
             _ => Self::Other,
         }
     }
@@ -99,6 +105,8 @@ impl Kind {
             Self::Depth => "depth",
             Self::ObjectId => "object id",
             Self::Flow => "flow map",
+            Self::Motion => "motion",
+            Self::Position => "position",
             Self::Other => "something unknown",
         }
     }

@@ -16,6 +16,7 @@ mod open;
 pub mod plan;
 pub mod process;
 mod refusal;
+pub mod sequence;
 mod text;
 
 pub use catalogue::Catalogue;
@@ -25,3 +26,4 @@ pub use library::Library;
 pub use plan::Plan;
 pub use process::{Control, Input, Report};
 pub use refusal::{Answer, Refusal};
+pub use sequence::Sequence;

@@ -3,7 +3,10 @@
 use std::cell::Cell;
 use std::marker::PhantomData;
 
-use super::contract::{self as c, IsophoteApi, IsophotePass, IsophotePlan, IsophoteRequest, IsophoteTexture};
+use super::contract::{
+    self as c, IsophoteApi, IsophotePass, IsophotePlan, IsophoteRequest, IsophoteStatus, IsophoteText,
+    IsophoteTexture,
+};
 use super::graph::Graph;
 use super::refusal::{Answer, Refusal, check};
 use super::text;
@@ -104,17 +107,25 @@ impl Graph {
     /// # Errors
     /// [`Refusal`] when an input that is needed is open, or the size is impossible.
     pub fn plan(&self, request: &IsophoteRequest) -> Answer<Plan> {
-        let mut handle = Default::default();
-        let (status, message) = text::message(|error| {
+        Plan::made(self.api, |error, plan| {
             // SAFETY: the handle is the graph's; the request is read and the others written during the call.
-            unsafe { (self.api.plan_create)(self.handle, request, std::ptr::null(), error, &raw mut handle) }
-        });
-        check(status, || message)?;
-        Ok(Plan { api: self.api, handle, one_thread: PhantomData })
+            unsafe { (self.api.plan_create)(self.handle, request, std::ptr::null(), error, plan) }
+        })
     }
 }
 
 impl Plan {
+    /// The plan that `create` makes.
+    pub(super) fn made(
+        api: &'static IsophoteApi,
+        create: impl FnOnce(*mut IsophoteText, *mut IsophotePlan) -> IsophoteStatus,
+    ) -> Answer<Self> {
+        let mut handle = Default::default();
+        let (status, message) = text::message(|error| create(error, &raw mut handle));
+        check(status, || message)?;
+        Ok(Self { api, handle, one_thread: PhantomData })
+    }
+
     /// Takes over the parameters that `graph` has now, and what `request` of the same size asks for.
     ///
     /// # Errors
@@ -173,7 +184,7 @@ impl Plan {
         Ok(Wgsl { source, entry_point })
     }
 
-    fn check(&self, status: c::IsophoteStatus) -> Answer<()> {
+    fn check(&self, status: IsophoteStatus) -> Answer<()> {
         check(status, || {
             // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
             text::message(|out| unsafe { (self.api.plan_error)(self.handle, out) }).1

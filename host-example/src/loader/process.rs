@@ -15,7 +15,7 @@ use crate::pixels::{Pixels, Precision};
 /// An image that enters a graph: the whole picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Input<'a> {
-    /// `color`, `normal`, `depth` or `object_id`.
+    /// `color`, `normal`, `depth` and so on.
     pub name: &'a str,
     /// The pixels.
     pub pixels: &'a Pixels,
@@ -80,15 +80,7 @@ impl Graph {
             .map(|(name, input)| IsophoteInput { name: name.as_ptr(), image: image(input.pixels) })
             .collect();
         let target = self::target(target);
-        let (threads, wants_times) = (control.threads, control.measured.is_some());
-        let control = IsophoteControl {
-            user: std::ptr::from_mut(control).cast(),
-            run: None,
-            progress: Some(progress),
-            cancelled: None,
-            measured: if wants_times { Some(measured) } else { None },
-            threads,
-        };
+        let control = self::control(control);
         let mut report = IsophoteReport::default();
         // SAFETY: the handles are their objects'. Images and target describe memory that is borrowed for the
         // whole call, with strides and sizes that `Pixels` vouches for; the callbacks get the caller's control, borrowed
@@ -108,6 +100,19 @@ impl Graph {
         };
         self.check(status)?;
         Ok(Report { replaced: report.replaced, seconds: report.seconds })
+    }
+}
+
+/// The control as the contract has it; it gets `control`, which must stay for the whole call.
+pub(super) fn control(control: &mut Control<'_>) -> IsophoteControl {
+    let (threads, wants_times) = (control.threads, control.measured.is_some());
+    IsophoteControl {
+        user: std::ptr::from_mut(control).cast(),
+        run: None,
+        progress: Some(progress),
+        cancelled: None,
+        measured: if wants_times { Some(measured) } else { None },
+        threads,
     }
 }
 
@@ -152,7 +157,7 @@ fn row_stride(pixels: &Pixels) -> isize {
     (pixels.width() as usize * pixels.channels() as usize * pixels.precision().bytes()) as isize
 }
 
-fn image(pixels: &Pixels) -> IsophoteImage {
+pub(super) fn image(pixels: &Pixels) -> IsophoteImage {
     IsophoteImage {
         data: pixels.bytes().as_ptr().cast(),
         row_stride: row_stride(pixels),
@@ -165,7 +170,7 @@ fn image(pixels: &Pixels) -> IsophoteImage {
     }
 }
 
-fn target(pixels: &mut Pixels) -> IsophoteTarget {
+pub(super) fn target(pixels: &mut Pixels) -> IsophoteTarget {
     IsophoteTarget {
         row_stride: row_stride(pixels),
         sample: sample(pixels.precision()),

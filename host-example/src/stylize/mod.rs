@@ -4,30 +4,39 @@
 //! after the scene's, and read the renderer's textures directly. Once warm, a frame creates no GPU object and
 //! is one submission.
 
+pub mod history;
 pub mod plan_runner;
 pub mod preset;
 pub mod style;
 
 use std::sync::Arc;
 
+use self::history::Past;
 use self::plan_runner::{Counts, Kernels, PlanRunner};
 use self::style::{Setting, Style};
 use crate::error::Result;
 use crate::loader::catalogue::Kind;
 use crate::loader::contract::{
-    ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID, ISOPHOTE_SPACE_LINEAR,
-    IsophoteRequest,
+    ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
+    ISOPHOTE_SPACE_LINEAR, IsophoteHistory, IsophoteRequest,
 };
-use crate::loader::plan::Change;
-use crate::loader::{Library, Plan};
+use crate::loader::plan::{Change, Role};
+use crate::loader::{Library, Plan, Refusal};
 use crate::render::targets::{Target, Targets};
 
 /// A style for frames of one size, ready to be recorded.
 #[derive(Debug)]
 pub struct Stylizer {
+    library: Library,
     style: Style,
     request: IsophoteRequest,
     plan: Plan,
+    /// What plans read of frames before, once enough are known.
+    past: Past,
+    /// Frames before the next one that were recorded, at most those that the style depends on.
+    known: usize,
+    /// How many of them the plan reads.
+    planned: usize,
     runner: PlanRunner,
     output: wgpu::TextureView,
     edited: bool,
@@ -41,10 +50,22 @@ impl Stylizer {
     /// [`crate::error::Error::Input`] when an input that the style needs is open, [`crate::error::Error::Failure`] when the device refuses.
     pub fn new(kernels: &Arc<Kernels>, library: &Library, style: Style, size: (u32, u32)) -> Result<Self> {
         let request = request(library, size)?;
-        let plan = style.plan(&request)?;
-        let runner = PlanRunner::new(kernels, &plan)?;
+        let past = style.past(library, &request)?;
+        let plan = style.plan(library, &request, 0)?;
+        let runner = PlanRunner::new(kernels, &plan, past.clone())?;
         let output = runner.output()?.clone();
-        Ok(Self { style, request, plan, runner, output, edited: false })
+        let library = library.clone();
+        Ok(Self { library, style, request, plan, past, known: 0, planned: 0, runner, output, edited: false })
+    }
+
+    /// Frames before its own that a frame depends on.
+    pub fn depth(&self) -> usize {
+        self.past.frames
+    }
+
+    /// Takes the next frame for the first: those before are of another shot.
+    pub fn forget(&mut self) {
+        self.known = 0;
     }
 
     /// Whether the output is a colour (linear Rec.709, premultiplied alpha, `Rgba32Float`) or a scalar
@@ -80,22 +101,42 @@ impl Stylizer {
         Ok(())
     }
 
-    /// Takes over what [`Stylizer::set`] has set, and says whether the output is another texture now and
-    /// [`Stylizer::bind`] must be called. Parameters that are not structural cost one small upload.
+    /// Takes over what [`Stylizer::set`] has set and which frames are known now, and says whether the output is another
+    /// texture and [`Stylizer::bind`] must be called. Parameters that are not structural cost one small upload.
     ///
     /// # Errors
     /// [`crate::error::Error::Failure`] when the device refuses; the style must then be made anew.
     pub fn update(&mut self) -> Result<bool> {
-        if !std::mem::take(&mut self.edited) {
+        let is_edited = std::mem::take(&mut self.edited);
+        if is_edited {
+            let past = self.style.past(&self.library, &self.request)?;
+            if past != self.past {
+                (self.past, self.known) = (past, 0);
+                self.replan(0)?;
+                return Ok(true);
+            }
+        }
+        if self.known != self.planned {
+            self.replan(self.known)?;
+            return Ok(true);
+        }
+        if !is_edited {
             return Ok(false);
         }
-        let refused = |e: crate::loader::Refusal| e.at(&self.style.name, "choose another value");
+        let refused = |e: Refusal| e.at(&self.style.name, "choose another value");
         if self.plan.update(&self.style.graph, &self.request).map_err(refused)? == Change::Uniforms {
             self.runner.repack(&self.plan)?;
             return Ok(false);
         }
         self.rebuild()?;
         Ok(true)
+    }
+
+    /// Plans for so many known frames before.
+    fn replan(&mut self, known: usize) -> Result<()> {
+        self.plan = self.style.plan(&self.library, &self.request, known)?;
+        self.planned = known;
+        self.rebuild()
     }
 
     /// Changes the size of the frames; [`Stylizer::bind`] must be called then.
@@ -108,14 +149,15 @@ impl Stylizer {
         if request == self.request {
             return Ok(());
         }
-        self.plan = self.style.plan(&request)?;
+        self.past = self.style.past(&self.library, &request)?;
         self.request = request;
         self.edited = false;
-        self.rebuild()
+        self.forget();
+        self.replan(0)
     }
 
     fn rebuild(&mut self) -> Result<()> {
-        self.runner.rebuild(&self.plan)?;
+        self.runner.rebuild(&self.plan, self.past.clone())?;
         self.output = self.runner.output()?.clone();
         Ok(())
     }
@@ -143,16 +185,19 @@ impl Stylizer {
             ("normal", &targets.normal.view),
             ("depth", &targets.depth.view),
             ("object_id", &targets.object_id.view),
+            ("motion", &targets.motion.view),
         ];
         self.runner.bind(&inputs)
     }
 
-    /// Records the whole style. Nothing is created and nothing submitted.
+    /// Records the whole style on a frame; the next call is of the next one. Nothing is created and nothing submitted.
     ///
     /// # Errors
     /// [`crate::error::Error::Failure`] when nothing is bound.
-    pub fn encode(&self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
-        self.runner.encode(encoder)
+    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
+        self.runner.encode(encoder)?;
+        self.known = (self.planned + 1).min(self.past.frames);
+        Ok(())
     }
 
     /// The passes with their textures.
@@ -167,13 +212,32 @@ impl Stylizer {
 }
 
 impl Style {
-    fn plan(&self, request: &IsophoteRequest) -> Result<Plan> {
-        self.graph.plan(request).map_err(|e| {
+    fn plan(&self, library: &Library, request: &IsophoteRequest, known: usize) -> Result<Plan> {
+        let history = IsophoteHistory { past: known as u32, max_motion: 0.0 };
+        let plan = match library.frames(&self.graph) {
+            Ok([0, 0]) => self.graph.plan(request),
+            Ok(_) => library.plan_in_order(&self.graph, request, &history),
+            Err(refusal) => Err(refusal),
+        };
+        plan.map_err(|e| {
             e.at(
                 &self.name,
-                "choose a style whose inputs are color, normal, depth or object_id, or another size",
+                "choose a style whose inputs are color, normal, depth, object_id or motion, or another size",
             )
         })
+    }
+
+    /// What frames read of those before, where all are known.
+    fn past(&self, library: &Library, request: &IsophoteRequest) -> Result<Past> {
+        let refused = |e: Refusal| e.at(&self.name, "choose another style");
+        let [frames, _] = library.frames(&self.graph).map_err(refused)?;
+        if frames == 0 {
+            return Ok(Past::default());
+        }
+        let plan = self.plan(library, request, frames as usize)?;
+        let textures = plan.textures().map_err(refused)?;
+        let inputs = textures.iter().filter(|t| t.role == Role::Input).map(|t| t.name);
+        Ok(Past::of(frames as usize, inputs))
     }
 }
 
@@ -182,7 +246,10 @@ fn request(library: &Library, size: (u32, u32)) -> Result<IsophoteRequest> {
     let request = library.request(size).map_err(|e| e.at("--size", "choose another size"))?;
     Ok(IsophoteRequest {
         space: ISOPHOTE_SPACE_LINEAR,
-        guides: ISOPHOTE_GUIDE_NORMAL | ISOPHOTE_GUIDE_DEPTH | ISOPHOTE_GUIDE_OBJECT_ID,
+        guides: ISOPHOTE_GUIDE_NORMAL
+            | ISOPHOTE_GUIDE_DEPTH
+            | ISOPHOTE_GUIDE_OBJECT_ID
+            | ISOPHOTE_GUIDE_MOTION,
         ..request
     })
 }

@@ -8,7 +8,8 @@
 //! 3. [`PlanRunner::bind`] connects the host's textures. They are read where they are; nothing is copied.
 //! 4. [`PlanRunner::encode`] records the passes into the host's command encoder. It makes no object and submits
 //!    nothing, so that a frame is scene, style and presentation in one submission.
-//! 5. After a parameter has changed, [`PlanRunner::repack`] uploads a few bytes, or [`PlanRunner::rebuild`] takes
+//! 5. Plans for frames in order name textures of frames before; [`Rings`] holds them.
+//! 6. After a parameter has changed, [`PlanRunner::repack`] uploads a few bytes, or [`PlanRunner::rebuild`] takes
 //!    over other passes, as `plan_update` says.
 //!
 //! Everything is bound in group 0: at 0 the grid, which says where textures lie in the picture, at 1 the kernel's
@@ -19,6 +20,7 @@ use std::collections::HashMap;
 use std::num::NonZeroU64;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::history::{self, Past, Rings};
 use crate::error::{Error, Result};
 use crate::loader::Plan;
 use crate::loader::plan::{Format, Pass, Role, Texture};
@@ -142,6 +144,8 @@ pub struct PlanRunner {
     kernels: Arc<Kernels>,
     textures: Vec<Slot>,
     passes: Vec<ReadyPass>,
+    past: Past,
+    rings: Rings,
     uniforms: wgpu::Buffer,
     /// What lies in `uniforms`.
     bytes: Vec<u8>,
@@ -155,8 +159,9 @@ struct Slot {
     role: Role,
     format: Format,
     size: [u32; 2],
-    /// The runner's own, or what the host has bound; missing for inputs until then.
-    view: Option<wgpu::TextureView>,
+    /// The runner's own, or what the host has bound, none for inputs until then; one for all frames, or as many as take
+    /// turns.
+    views: Vec<wgpu::TextureView>,
 }
 
 #[derive(Debug)]
@@ -167,8 +172,8 @@ struct ReadyPass {
     /// Indices of the textures read and written.
     textures: Vec<u32>,
     workgroups: [u32; 3],
-    /// Missing until all textures are there.
-    group: Option<wgpu::BindGroup>,
+    /// None until all textures are there; one for all frames, or as many as take turns.
+    groups: Vec<wgpu::BindGroup>,
 }
 
 /// Where the bytes of a uniform block lie in the buffer.
@@ -179,12 +184,14 @@ struct Block {
 }
 
 impl PlanRunner {
-    /// Compiles what `plan` needs and makes its textures, but for the inputs, which are the host's.
+    /// Compiles what `plan` needs and makes its textures, but for the inputs, which are the host's. `past` says what this
+    /// and later plans read of frames before.
     ///
     /// # Errors
     /// [`Error::Failure`] when the device refuses or has no memory.
-    pub fn new(kernels: &Arc<Kernels>, plan: &Plan) -> Result<Self> {
-        Self::build(kernels, plan, Vec::new(), Counts::default())
+    pub fn new(kernels: &Arc<Kernels>, plan: &Plan, past: Past) -> Result<Self> {
+        let rings = Rings::new(&past);
+        Self::build(kernels, plan, past, (Vec::new(), rings), Counts::default())
     }
 
     /// Takes over a plan whose structure has changed; textures of unchanged size are used again. The inputs must
@@ -192,27 +199,43 @@ impl PlanRunner {
     ///
     /// # Errors
     /// As [`PlanRunner::new`]; the runner must then be made anew.
-    pub fn rebuild(&mut self, plan: &Plan) -> Result<()> {
-        *self = Self::build(&self.kernels, plan, std::mem::take(&mut self.textures), self.counts)?;
+    pub fn rebuild(&mut self, plan: &Plan, past: Past) -> Result<()> {
+        let rings = if past == self.past { std::mem::take(&mut self.rings) } else { Rings::new(&past) };
+        let old = (std::mem::take(&mut self.textures), rings);
+        *self = Self::build(&self.kernels, plan, past, old, self.counts)?;
         Ok(())
     }
 
-    fn build(kernels: &Arc<Kernels>, plan: &Plan, mut old: Vec<Slot>, mut counts: Counts) -> Result<Self> {
+    fn build(
+        kernels: &Arc<Kernels>,
+        plan: &Plan,
+        past: Past,
+        (mut old, mut rings): (Vec<Slot>, Rings),
+        mut counts: Counts,
+    ) -> Result<Self> {
         let wanted = plan.textures().map_err(refused)?;
-        old.retain(|slot| slot.role != Role::Input && wanted.iter().any(|t| slot.is_like(t)));
+        let is_own = |slot: &Slot| slot.role != Role::Input && !history::is_stage(&slot.name);
+        old.retain(|slot| is_own(slot) && wanted.iter().any(|t| slot.is_like(t)));
+        let is_written = |name: &str| wanted.iter().any(|t| t.name == name && t.role == Role::Output);
+        rings.retain(|name| is_written(name) || past.inputs.iter().any(|input| input == name));
         let mut textures = Vec::with_capacity(wanted.len());
         for texture in &wanted {
+            let Texture { name, role, format, size } = *texture;
+            let make = || create_texture(&kernels.device, texture_format(format), size, WRITTEN);
             let found = old.iter().position(|slot| slot.is_like(texture));
-            let view = match (texture.role, found) {
-                (Role::Input, _) => None,
-                (_, Some(at)) => old.swap_remove(at).view,
+            let views = match (role, found) {
+                (Role::Input, _) => Vec::new(),
+                (Role::Output, _) if history::is_stage(name) => {
+                    counts.objects += rings.hold(name, texture_format(format), size, None, make)?;
+                    rings.views(name, 0).unwrap_or_default()
+                }
+                (_, Some(at)) => old.swap_remove(at).views,
                 (_, None) => {
                     counts.objects += 1;
-                    Some(create_texture(&kernels.device, texture)?)
+                    vec![make()?]
                 }
             };
-            let Texture { name, role, format, size } = *texture;
-            textures.push(Slot { name: name.to_owned(), role, format, size, view });
+            textures.push(Slot { name: name.to_owned(), role, format, size, views });
         }
         let alignment = u64::from(kernels.device.limits().min_uniform_buffer_offset_alignment);
         let mut end = 0;
@@ -236,7 +259,7 @@ impl PlanRunner {
                 params: Some(pass.params).filter(|p| !p.is_empty()).map(&mut place),
                 textures: named,
                 workgroups: pass.workgroups,
-                group: None,
+                groups: Vec::new(),
             });
         }
         let uniforms = checked(&kernels.device, || {
@@ -249,7 +272,8 @@ impl PlanRunner {
         })?;
         counts.objects += 1;
         let bytes = vec![0; end as usize];
-        let mut runner = Self { kernels: Arc::clone(kernels), textures, passes, uniforms, bytes, counts };
+        let kernels = Arc::clone(kernels);
+        let mut runner = Self { kernels, textures, passes, past, rings, uniforms, bytes, counts };
         runner.repack(plan)?;
         Ok(runner)
     }
@@ -288,24 +312,46 @@ impl PlanRunner {
     /// # Errors
     /// [`Error::Failure`] for an input that is missing or too small, and when the device refuses a view.
     pub fn bind(&mut self, inputs: &[(&str, &wgpu::TextureView)]) -> Result<()> {
+        let given = |name: &str| {
+            let found = inputs.iter().find(|(given, _)| *given == name).map(|(_, view)| *view);
+            found.ok_or_else(|| mistaken(format!("no texture is given for '{name}'")))
+        };
+        for name in &self.past.inputs {
+            let texture = given(name)?.texture();
+            let (format, size) = (texture.format(), [texture.width(), texture.height()]);
+            let make = || create_texture(&self.kernels.device, format, size, COPIED);
+            self.counts.objects += self.rings.hold(name, format, size, Some(texture.clone()), make)?;
+        }
         for (index, slot) in (0..).zip(&mut self.textures).filter(|(_, slot)| slot.role == Role::Input) {
-            let given = inputs.iter().find(|(name, _)| *name == slot.name);
-            let (_, view) =
-                given.ok_or_else(|| mistaken(format!("no texture is given for '{}'", slot.name)))?;
-            let texture = view.texture();
-            if texture.width() < slot.size[0] || texture.height() < slot.size[1] {
+            let views = match history::split(&slot.name) {
+                Some((name, before)) => self
+                    .rings
+                    .views(name, before)
+                    .ok_or_else(|| mistaken(format!("nothing is held of '{}'", slot.name)))?,
+                None => vec![given(&slot.name)?.clone()],
+            };
+            let fits = |view: &wgpu::TextureView| {
+                view.texture().width() >= slot.size[0] && view.texture().height() >= slot.size[1]
+            };
+            if !views.iter().all(fits) {
                 return Err(mistaken(format!("the texture given for '{}' is too small", slot.name)));
             }
-            if slot.view.as_ref() != Some(*view) {
-                slot.view = Some((*view).clone());
-                self.passes.iter_mut().filter(|p| p.textures.contains(&index)).for_each(|p| p.group = None);
+            if slot.views != views {
+                slot.views = views;
+                let mut readers = self.passes.iter_mut();
+                readers.by_ref().filter(|p| p.textures.contains(&index)).for_each(|p| p.groups.clear());
             }
         }
-        for pass in self.passes.iter_mut().filter(|p| p.group.is_none()) {
-            pass.group = Some(checked(&self.kernels.device, || {
-                bind_group(&self.kernels.device, pass, &self.uniforms, &self.textures)
-            })?);
-            self.counts.objects += 1;
+        for pass in self.passes.iter_mut().filter(|p| p.groups.is_empty()) {
+            let slots = pass.textures.iter().filter_map(|index| self.textures.get(*index as usize));
+            let turns = slots.map(|slot| slot.views.len()).max().unwrap_or(1);
+            for turn in 0..turns {
+                let group = checked(&self.kernels.device, || {
+                    bind_group(&self.kernels.device, pass, &self.uniforms, &self.textures, turn)
+                })?;
+                pass.groups.push(group);
+                self.counts.objects += 1;
+            }
         }
         Ok(())
     }
@@ -315,18 +361,23 @@ impl PlanRunner {
     /// # Errors
     /// [`Error::Failure`] when the plan has no output.
     pub fn output(&self) -> Result<&wgpu::TextureView> {
-        let output = self.textures.iter().find(|slot| slot.role == Role::Output);
-        output.and_then(|slot| slot.view.as_ref()).ok_or_else(|| mistaken("the plan has no output".into()))
+        let mut outputs = self.textures.iter().filter(|slot| slot.role == Role::Output);
+        let output = outputs.find(|slot| !history::is_stage(&slot.name));
+        output.and_then(|slot| slot.views.first()).ok_or_else(|| mistaken("the plan has no output".into()))
     }
 
-    /// Records all passes.
+    /// Records all passes of a frame; the next call is of the next one.
     ///
     /// # Errors
     /// [`Error::Failure`] when the inputs are not bound.
-    pub fn encode(&self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
+    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
         let descriptor = wgpu::ComputePassDescriptor { label: Some("stylize"), timestamp_writes: None };
         let mut compute = encoder.begin_compute_pass(&descriptor);
-        (0..self.passes.len()).try_for_each(|index| self.encode_pass(&mut compute, index))
+        (0..self.passes.len()).try_for_each(|index| self.encode_pass(&mut compute, index))?;
+        drop(compute);
+        self.rings.encode_copies(encoder);
+        self.rings.advance();
+        Ok(())
     }
 
     /// Records the pass of an index alone, for hosts that measure each.
@@ -334,11 +385,12 @@ impl PlanRunner {
     /// # Errors
     /// [`Error::Failure`] when there is no such pass, or its inputs are not bound.
     pub fn encode_pass(&self, compute: &mut wgpu::ComputePass<'_>, index: usize) -> Result<()> {
-        let pass = self.passes.get(index).filter(|p| p.group.is_some());
-        let pass = pass.ok_or_else(unbound)?;
+        let pass = self.passes.get(index).ok_or_else(unbound)?;
+        let turn = if pass.groups.len() == self.rings.turns() { self.rings.turn() } else { 0 };
+        let group = pass.groups.get(turn).ok_or_else(unbound)?;
         let [x, y, z] = pass.workgroups;
         compute.set_pipeline(&pass.kernel.pipeline);
-        compute.set_bind_group(0, &pass.group, &[]);
+        compute.set_bind_group(0, group, &[]);
         compute.dispatch_workgroups(x, y, z);
         Ok(())
     }
@@ -355,8 +407,19 @@ impl Slot {
     }
 }
 
-fn create_texture(device: &wgpu::Device, texture: &Texture<'_>) -> Result<wgpu::TextureView> {
-    let [width, height] = texture.size;
+/// What textures that passes write are used for.
+const WRITTEN: wgpu::TextureUsages = wgpu::TextureUsages::TEXTURE_BINDING
+    .union(wgpu::TextureUsages::STORAGE_BINDING)
+    .union(wgpu::TextureUsages::COPY_SRC);
+/// What copies of the host's textures are used for.
+const COPIED: wgpu::TextureUsages = wgpu::TextureUsages::TEXTURE_BINDING.union(wgpu::TextureUsages::COPY_DST);
+
+fn create_texture(
+    device: &wgpu::Device,
+    format: wgpu::TextureFormat,
+    [width, height]: [u32; 2],
+    usage: wgpu::TextureUsages,
+) -> Result<wgpu::TextureView> {
     checked(device, || {
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("texture of a plan"),
@@ -364,10 +427,8 @@ fn create_texture(device: &wgpu::Device, texture: &Texture<'_>) -> Result<wgpu::
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: texture_format(texture.format),
-            usage: wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::STORAGE_BINDING
-                | wgpu::TextureUsages::COPY_SRC,
+            format,
+            usage,
             view_formats: &[],
         });
         Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
@@ -379,6 +440,7 @@ fn bind_group(
     pass: &ReadyPass,
     uniforms: &wgpu::Buffer,
     textures: &[Slot],
+    turn: usize,
 ) -> Result<wgpu::BindGroup> {
     let uniform = |block: Block| {
         wgpu::BindingResource::Buffer(wgpu::BufferBinding {
@@ -391,8 +453,8 @@ fn bind_group(
     let mut entries: Vec<wgpu::BindGroupEntry<'_>> =
         blocks.map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
     for (binding, index) in (2..).zip(&pass.textures) {
-        let view = textures.get(*index as usize).and_then(|slot| slot.view.as_ref());
-        let view = view.ok_or_else(unbound)?;
+        let slot = textures.get(*index as usize).ok_or_else(unbound)?;
+        let view = slot.views.get(turn).or(slot.views.first()).ok_or_else(unbound)?;
         entries.push(wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) });
     }
     Ok(device.create_bind_group(&wgpu::BindGroupDescriptor {

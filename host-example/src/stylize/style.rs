@@ -161,6 +161,11 @@ impl Style {
         Ok(!self.animated.is_empty())
     }
 
+    /// Whether parameters change from frame to frame.
+    pub fn is_animated(&self) -> bool {
+        !self.animated.is_empty()
+    }
+
     /// The value at a frame of the animated parameter that a preset names `name`.
     pub fn animated_at(&self, name: &str, frame: i64) -> Option<String> {
         self.animated.iter().find(|a| a.name == name).map(|a| a.at(frame))
@@ -208,6 +213,30 @@ impl Style {
     /// have the value.
     pub fn set(&self, setting: &Setting) -> Result<(u32, Node)> {
         self.put(setting, &format!("--set {setting}"))
+    }
+
+    /// Makes all nodes that can be steady over time so, from 0 to 1.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when no node can, or not so much.
+    pub fn steady(&mut self, steadiness: f32) -> Result<()> {
+        const PARAM: &str = "steadiness";
+        let place = format!("--steadiness {steadiness}");
+        let fail = |e: Refusal| e.at(&place, "give a number from 0 to 1");
+        let mut found = false;
+        for node in 0..self.graph.count() {
+            let spec = self.graph.spec(node).map_err(fail)?;
+            if spec.params.iter().any(|p| p.id == PARAM) {
+                self.graph.set(node, PARAM, &steadiness.to_string()).map_err(fail)?;
+                self.animated.retain(|a| (a.node, a.param.as_str()) != (node, PARAM));
+                found = true;
+            }
+        }
+        if !found {
+            let fix = "choose a style that has the parameter steadiness, or put the node steady before it";
+            return Err(Error::input(&place, "no node of the style knows of time", fix));
+        }
+        Ok(())
     }
 
     /// [`Style::set`], where `place` says in messages who wants it.
@@ -344,7 +373,7 @@ fn fed(library: &Library, mut graph: Graph) -> Answer<Graph> {
 
 /// Whether an input takes a picture that enters the graph, by its name.
 fn is_picture(port: &Port) -> bool {
-    ["color", "normal", "depth", "object_id"].contains(&port.id)
+    ["color", "normal", "depth", "object_id", "motion", "motion_forward"].contains(&port.id)
 }
 
 #[cfg(test)]

@@ -6,31 +6,35 @@ use clap::Args;
 
 use crate::apply::backend::Backend;
 use crate::apply::dry_run::DryRun;
-use crate::apply::exr::{GuideChoice, Selection};
+use crate::apply::exr::{Convention, GuideChoice, Selection};
 use crate::apply::filter::{self, Filter, Planner};
-use crate::apply::memory::{self, Budget, Bytes};
+use crate::apply::memory::{self, Budget, Bytes, too_large};
 use crate::apply::read::{self, Opened};
+use crate::apply::reader::{Footage, Reader};
 use crate::apply::report::{Counts, Outcome, Report};
-use crate::apply::sequence::{self, Run};
+use crate::apply::sequence::Run;
 use crate::apply::space::Space;
 use crate::apply::tasks::{OnMissing, Tasks};
 use crate::apply::write::Format;
 use crate::error::{Error, Result};
 use crate::files;
-use crate::frames::FrameList;
+use crate::frames::{FrameList, Pattern};
 use crate::limits;
 use crate::loader::Library;
 use crate::stop::Stop;
 use crate::stylize::style::{Setting, Style};
+use crate::video;
 
 /// Options of `apply`.
 #[derive(Args, Debug)]
 pub struct ApplyArgs {
     /// The id of a node, or a graph file or preset (.json). Left out where --preset is given.
     pub style: PathBuf,
-    /// The picture: PNG, JPEG, TIFF, WebP, HDR or EXR. A sequence: shot.####.exr, shot.@@@@.exr or shot.%04d.exr.
+    /// The picture: PNG, JPEG, TIFF, WebP, HDR or EXR. A sequence: shot.####.exr, shot.@@@@.exr or shot.%04d.exr. A video
+    /// that ffmpeg reads, such as .mp4, .mov, .mkv or .webm; or - for YUV4MPEG on standard input.
     pub input: PathBuf,
-    /// The result: .png, .jpg, .tif or .exr; may be the input itself. For a sequence with #### as well.
+    /// The result: .png, .jpg, .tif or .exr; may be the input itself. For a sequence with #### as well. For a video another
+    /// one, or - for YUV4MPEG on standard output.
     #[arg(required_unless_present = "preset")]
     pub output: Option<PathBuf>,
     /// A preset file with the style and its parameters.
@@ -77,11 +81,26 @@ pub struct ApplyArgs {
     /// Adds the result to the EXR file as a new layer of this name, and keeps the layer that was read.
     #[arg(long, value_name = "NEWLAYER")]
     pub into: Option<String>,
-    /// The layer of an EXR file that guides the filter: normal=LAYER, depth=LAYER or object_id=LAYER, or none
-    /// instead of a layer. Without it guides are found by names such as N, normal, Z, depth, P and id. May be
-    /// repeated.
+    /// The layer of an EXR file that guides the filter: normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER or
+    /// motion_forward=LAYER, or none instead of a layer. Without it guides are found by names such as N, normal, Z, depth,
+    /// P, id, backward, Vector and velocity. May be repeated.
     #[arg(long, value_name = "GUIDE=LAYER")]
     pub guide: Vec<GuideChoice>,
+    /// How steady frames of a sequence are, from 0 to 1: neighbouring frames are carried along motion and averaged before
+    /// the style decides anything. Needs motion vectors in the EXR files, or --motion [default: what the style says].
+    #[arg(long, value_name = "S")]
+    pub steadiness: Option<f32>,
+    /// EXR files with motion vectors, one for each frame: mv.####.exr.
+    #[arg(long, value_name = "FILES")]
+    pub motion: Option<PathBuf>,
+    /// What motion vectors mean: isophote, arnold, blender, renderman, vray or unreal, and after commas what differs, of
+    /// units=pixels|normalised|ndc, y=up|down, direction=backward|forward, sign=1|-1, centre=NUMBER and scale=NUMBER
+    /// [default: what the name of their layer says].
+    #[arg(long, value_name = "NAME")]
+    pub motion_convention: Option<Convention>,
+    /// Options of ffmpeg's encoder for a video, such as "-c:v libx265 -crf 20".
+    #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
+    pub encode: Option<String>,
     /// Threads on the CPU; 0 for one per core.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1024))]
     pub threads: u32,
@@ -94,20 +113,24 @@ pub struct ApplyArgs {
 /// when the library or the device fails. Each output is written as a whole or not at all.
 pub fn run(args: &ApplyArgs) -> Result<()> {
     let files = args.files()?;
+    if video::is_video(files.input) || video::is_video(files.output) {
+        return args.run_on_video(&files);
+    }
     let format = Format::of(files.output)?;
     let tasks = args.tasks()?;
     let library = Library::open()?;
     let threads = limits::start_threads(args.threads as usize)?;
-    let style = Style::load(&library, files.style, &args.set)?;
-    if tasks.is_sequence {
+    let style = args.style_of(&library, files.style)?;
+    if tasks.is_sequence() {
         let frames: Vec<i64> =
             tasks.ready.iter().chain(&tasks.missing).filter_map(|task| task.frame).collect();
         style.warn_of_keys_beyond(&frames);
     }
-    let selection = args.selection(&style, format)?;
+    let selection = args.selection(&library, &style, format)?;
+    let motion = args.motion_files(&tasks, &selection)?;
     let opened = args.open_first(&tasks, &selection)?;
     let backend = if args.dry_run { Backend::Cpu } else { args.backend };
-    let mut planner = Planner::new(library.clone(), Style::load(&library, files.style, &args.set)?)?;
+    let mut planner = Planner::new(library.clone(), args.style_of(&library, files.style)?)?;
     let mut filter = Filter::new(library, style, backend, args.space, args.threads)?;
     let most = args.memory.unwrap_or_else(memory::usual);
     let first = &tasks.ready[0];
@@ -115,8 +138,16 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         Some(opened) => planner.needs(&first.input, first.frame, opened)?,
         None => None,
     };
-    if let Some(needs) = needs.filter(|needs| needs.total() > most.0) {
-        return Err(sequence::too_large(&first.input, Bytes(needs.total()), most));
+    let span = planner.span(first.frame)?;
+    if let Some(needs) = needs.map(|needs| needs.of(span)).filter(|needs| needs.total() > most.0) {
+        return Err(too_large(&first.input, span, needs, most));
+    }
+    if span > 1 && tasks.is_in_place && args.into.is_none() {
+        return Err(Error::file(
+            files.output,
+            "would take the place of frames that others depend on",
+            "name another folder for the results, or leave --steadiness out",
+        ));
     }
     if args.dry_run {
         let (skip_existing, json) = (args.skip_existing, args.json);
@@ -125,24 +156,29 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         return check_failed(files.input, refused, tasks.ready.len());
     }
     let stop = Stop::on_signals();
-    if !tasks.is_sequence {
+    if !tasks.is_sequence() {
         stop.ends_the_process("the picture");
     }
-    let report = Report::new(tasks.count(), tasks.is_sequence, args.json);
+    let report = Report::new(tasks.count(), tasks.is_sequence(), args.json);
     for task in &tasks.missing {
         report.frame(task, &Outcome::Missing);
     }
+    let budget = Budget::new(most.0);
+    let footage = Footage {
+        frames: tasks.sequence.as_ref(),
+        motion: motion.as_ref(),
+        selection: &selection,
+        budget: &budget,
+    };
     let run = Run {
         tasks: &tasks.ready,
-        selection: &selection,
         format,
         skip_existing: args.skip_existing,
         threads,
-        budget: &Budget::new(most.0),
         report: &report,
         stop: &stop,
     };
-    let result = run.all(&mut filter, planner, opened);
+    let result = run.all(&mut filter, Reader::new(footage, planner, &tasks.ready, opened));
     let counts = report.end(result.is_ok());
     result?;
     check_complete(files.input, &counts, tasks.ready.len())
@@ -192,6 +228,73 @@ impl ApplyArgs {
         }
     }
 
+    /// Filters a video.
+    fn run_on_video(&self, files: &Files<'_>) -> Result<()> {
+        let wrong = |place: &str, problem: &str, fix: &str| Err(Error::input(place, problem, fix));
+        if !video::is_video(files.input) || !video::is_video(files.output) {
+            let place = files.output.display().to_string();
+            return wrong(&place, "a video becomes a video, and pictures pictures", "name two of a kind");
+        }
+        let others = [
+            ("--frames", self.frames.is_some()),
+            ("--dry-run", self.dry_run),
+            ("--motion", self.motion.is_some()),
+            ("--into", self.into.is_some()),
+        ];
+        if let Some((option, _)) = others.iter().find(|(_, given)| *given) {
+            return wrong(option, "is not for videos", "leave it out");
+        }
+        if files.input == files.output && files.input != Path::new("-") {
+            return wrong(&files.output.display().to_string(), "is the input", "name another file");
+        }
+        if self.skip_existing && files.output.is_file() {
+            return Ok(());
+        }
+        if files.output != Path::new("-") {
+            files::check_writable(files.output)?;
+            files::sweep(files.output);
+        }
+        let library = Library::open()?;
+        limits::start_threads(self.threads as usize)?;
+        let style = self.style_of(&library, files.style)?;
+        let mut filter = Filter::new(library, style, self.backend, self.space, self.threads)?;
+        let stop = Stop::on_signals();
+        let (input, output, encode) = (files.input, files.output, self.encode.as_deref());
+        video::run(&video::Job { input, output, encode, json: self.json, stop: &stop }, &mut filter)
+    }
+
+    /// The style with its parameters.
+    fn style_of(&self, library: &Library, name: &Path) -> Result<Style> {
+        let mut style = Style::load(library, name, &self.set)?;
+        if let Some(steadiness) = self.steadiness {
+            style.steady(steadiness)?;
+        }
+        Ok(style)
+    }
+
+    /// The files of motion vectors.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where they would not be used, and where none is there.
+    fn motion_files(&self, tasks: &Tasks, selection: &Selection) -> Result<Option<Pattern>> {
+        let Some(path) = &self.motion else { return Ok(None) };
+        let wrong = |problem: &str, fix: &str| Err(Error::input("--motion", problem, fix));
+        if !tasks.is_sequence() {
+            return wrong("a picture by itself has no neighbours", "name a sequence such as shot.####.exr");
+        }
+        if selection.wanted.iter().all(|guide| !guide.is_motion()) {
+            return wrong("the style reads no motion", "give --steadiness 0.5, or another style");
+        }
+        let Some(pattern) = Pattern::new(path)? else {
+            return wrong("has no place for a frame number", "write mv.####.exr");
+        };
+        let mut frames = tasks.ready.iter().filter_map(|task| task.frame);
+        match frames.find(|frame| pattern.file(*frame).is_file()) {
+            Some(_) => Ok(Some(pattern)),
+            None => Err(Error::file(path, "has none of the frames", "name files that exist")),
+        }
+    }
+
     /// The frames that are read and written.
     ///
     /// # Errors
@@ -211,7 +314,7 @@ impl ApplyArgs {
     /// As [`Tasks::find`]; [`Error::Input`] when the input is no sequence.
     pub fn frame_numbers(&self) -> Result<Vec<i64>> {
         let tasks = self.tasks()?;
-        if !tasks.is_sequence {
+        if !tasks.is_sequence() {
             return Err(Error::file(self.files()?.input, "is no sequence", "write shot.####.exr"));
         }
         Ok(tasks.ready.iter().filter_map(|task| task.frame).collect())
@@ -222,7 +325,7 @@ impl ApplyArgs {
         let first = &tasks.ready[0];
         let opened = match read::open(&first.input, selection) {
             // A picture that cannot be read is reported before a folder that cannot be written.
-            Err(error) if !tasks.is_sequence && !self.skip_existing => return Err(error),
+            Err(error) if !tasks.is_sequence() && !self.skip_existing => return Err(error),
             opened => opened.ok(),
         };
         if self.dry_run {
@@ -235,7 +338,7 @@ impl ApplyArgs {
     }
 
     /// What is read of EXR files.
-    fn selection(&self, style: &Style, format: Format) -> Result<Selection> {
+    fn selection(&self, library: &Library, style: &Style, format: Format) -> Result<Selection> {
         if self.into.is_some() && format != Format::Exr {
             return Err(Error::input(
                 "--into",
@@ -259,7 +362,8 @@ impl ApplyArgs {
             alpha: self.alpha.clone(),
             into: self.into.clone(),
             guides: self.guide.clone(),
-            wanted: filter::usable_guides(style)?,
+            wanted: filter::usable_guides(library, style)?,
+            convention: self.motion_convention,
         })
     }
 }

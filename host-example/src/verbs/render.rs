@@ -67,6 +67,10 @@ pub struct RenderArgs {
     /// Sets a parameter of the style; node.id=value for one node of a graph. May be repeated.
     #[arg(long, value_name = "ID=VALUE")]
     set: Vec<Setting>,
+    /// How steady the style is over time, from 0 to 1: frames before are carried along the scene's motion and averaged
+    /// before the style decides anything [default: what the style says].
+    #[arg(long, value_name = "S")]
+    steadiness: Option<f32>,
 }
 
 /// Runs the verb.
@@ -78,7 +82,11 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     let library = args.is_stylized().then(Library::open).transpose()?;
     limits::start_threads(0)?;
     let style = match &library {
-        Some(library) => Some((library, Style::load(library, &args.style, &args.set)?)),
+        Some(library) => {
+            let mut style = Style::load(library, &args.style, &args.set)?;
+            args.steadiness.map_or(Ok(()), |steadiness| style.steady(steadiness))?;
+            Some((library, style))
+        }
         None => None,
     };
     if let Some((_, style)) = &style {
@@ -129,9 +137,11 @@ impl RenderArgs {
     fn check(&self) -> Result<()> {
         output::check_extension(&self.out)?;
         files::check_writable(&self.out)?;
-        if let (true, Some(setting)) = (!self.is_stylized(), self.set.first()) {
+        let steadiness = self.steadiness.map(|s| format!("--steadiness {s}"));
+        let setting = self.set.first().map(|setting| format!("--set {setting}")).or(steadiness);
+        if let (true, Some(setting)) = (!self.is_stylized(), setting) {
             return Err(Error::input(
-                format!("--set {setting}"),
+                setting,
                 "the style none has no parameters",
                 "choose a style with --style",
             ));

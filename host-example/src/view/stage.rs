@@ -137,10 +137,11 @@ impl Stage {
                 return Ok(Drawn::Skipped);
             }
         };
+        self.update_style()?;
         let target = frame.texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         self.renderer.encode(&mut encoder, scene, pose, view, look);
-        if let Some(stylizer) = &self.stylizer {
+        if let Some(stylizer) = &mut self.stylizer {
             stylizer.encode(&mut encoder)?;
         }
         self.present.encode(&mut encoder, &target);
@@ -164,6 +165,17 @@ impl Stage {
     /// Name of the adapter.
     pub fn adapter(&self) -> String {
         self.gpu.adapter.get_info().name
+    }
+
+    /// Lets the style look at as many frames before as there are by now.
+    fn update_style(&mut self) -> Result<()> {
+        if let Some(stylizer) = &mut self.stylizer
+            && stylizer.update()?
+        {
+            stylizer.bind(self.renderer.targets())?;
+            self.show();
+        }
+        Ok(())
     }
 
     fn show(&mut self) {

@@ -5,6 +5,7 @@ use std::str::FromStr;
 use isophote_exr_edit::{File, Sample};
 
 use super::fault::Fault;
+use super::motion::{self, Convention, Rule};
 use super::names::{Group, Model, groups, is_matte, rank};
 
 /// What is read of a file, and where the result goes.
@@ -22,6 +23,8 @@ pub struct Selection {
     pub guides: Vec<GuideChoice>,
     /// Guides that the style can use.
     pub wanted: Vec<Guide>,
+    /// What motion vectors mean; what the names of their layers say without.
+    pub convention: Option<Convention>,
 }
 
 impl Selection {
@@ -33,6 +36,7 @@ impl Selection {
             ("--alpha", self.alpha.is_some()),
             ("--into", self.into.is_some()),
             ("--guide", self.guides.iter().any(|g| g.layer.is_some())),
+            ("--motion-convention", self.convention.is_some()),
         ];
         asked.into_iter().find(|(_, asked)| *asked).map(|(name, _)| name)
     }
@@ -47,11 +51,15 @@ pub enum Guide {
     Depth,
     /// Numbers of objects.
     ObjectId,
+    /// Where things were in the frame before.
+    Motion,
+    /// Where things are in the frame after.
+    MotionForward,
 }
 
 impl Guide {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Normal, Self::Depth, Self::ObjectId];
+    pub const ALL: [Self; 5] = [Self::Normal, Self::Depth, Self::ObjectId, Self::Motion, Self::MotionForward];
 
     /// The name of the graph's input.
     pub fn id(self) -> &'static str {
@@ -59,9 +67,19 @@ impl Guide {
             Self::Normal => "normal",
             Self::Depth => "depth",
             Self::ObjectId => "object_id",
+            Self::Motion => "motion",
+            Self::MotionForward => "motion_forward",
         }
     }
+
+    /// Whether it tells of motion.
+    pub fn is_motion(self) -> bool {
+        matches!(self, Self::Motion | Self::MotionForward)
+    }
 }
+
+/// How to write a guide.
+const FIX: &str = "write normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER or motion_forward=LAYER";
 
 /// One `--guide`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -76,14 +94,9 @@ impl FromStr for GuideChoice {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (name, layer) =
-            text.split_once('=').ok_or("write normal=LAYER, depth=LAYER or object_id=LAYER")?;
-        let guide = match name {
-            "normal" => Guide::Normal,
-            "depth" => Guide::Depth,
-            "object_id" | "id" => Guide::ObjectId,
-            _ => return Err("write normal=LAYER, depth=LAYER or object_id=LAYER".into()),
-        };
+        let (name, layer) = text.split_once('=').ok_or(FIX)?;
+        let name = if name == "id" { "object_id" } else { name };
+        let guide = Guide::ALL.into_iter().find(|guide| guide.id() == name).ok_or(FIX)?;
         Ok(Self { guide, layer: (layer != "none").then(|| layer.to_owned()) })
     }
 }
@@ -112,8 +125,19 @@ pub struct Source {
     pub part: usize,
     /// Its channels.
     pub channels: Vec<usize>,
+    /// What is made of them.
+    pub meaning: Meaning,
+}
+
+/// What is made of the channels of a guide.
+#[derive(Clone, Copy, Debug)]
+pub enum Meaning {
+    /// They are it.
+    Same,
     /// Positions in the world, of which depth is to be reckoned.
-    pub position: bool,
+    Position,
+    /// Vectors of some convention.
+    Vectors(Rule),
 }
 
 /// The pictures of a file that are asked for: one for every view that has the layer.
@@ -235,14 +259,17 @@ fn sources(
         };
         let mut near: Vec<&Group> = groups.iter().filter(is_near).collect();
         near.sort_by_key(|g| (g.part != picture.part, g.view != picture.view, g.prefix != picture.prefix));
-        let found = near.iter().find_map(|group| source(exr, group, guide, name));
+        let found = near.iter().find_map(|group| match guide.is_motion() {
+            true => vectors(exr, group, guide, name, selection.convention),
+            false => source(exr, group, guide, name),
+        });
         let found = found.or_else(|| {
             let has_camera = exr.parts()[picture.part].world_to_camera.is_some();
             (guide == Guide::Depth && name.is_none() && has_camera).then_some(())?;
             near.iter().find_map(|group| {
                 let channels =
                     xyz(group).filter(|_| matches!(group.word().as_str(), "p" | "pworld" | "position"))?;
-                Some(Source { guide, part: group.part, channels, position: true })
+                Some(Source { guide, part: group.part, channels, meaning: Meaning::Position })
             })
         });
         match (found, name) {
@@ -261,14 +288,67 @@ fn sources(
     Ok(sources)
 }
 
+/// Motion vectors in a file of their own, where they may lie in its main layer.
+///
+/// # Errors
+/// [`Fault::Choice`] for files without.
+pub fn motion(exr: &File, selection: &Selection) -> Result<Vec<Source>, Fault> {
+    let groups = groups(exr);
+    let readable: Vec<&Group> = groups.iter().filter(|g| exr.can_decode(g.part)).collect();
+    let wanted = selection.wanted.iter().copied().filter(|guide| guide.is_motion());
+    let mut found = Vec::new();
+    for guide in wanted {
+        let choice = selection.guides.iter().rev().find(|c| c.guide == guide);
+        let name = choice.and_then(|c| c.layer.as_deref());
+        let known = readable.iter().find_map(|g| vectors(exr, g, guide, name, selection.convention));
+        // Any convention may have its vectors in a file's red and green.
+        let main = || {
+            let group = readable.iter().find(|g| name.is_none() && g.layer.is_empty())?;
+            let is_forward = guide == Guide::MotionForward;
+            motion::find(group, is_forward, true, selection.convention)
+                .map(|found| of_vectors(group, guide, found))
+        };
+        // Known layers of the other way say that there is none of this.
+        found.extend(known.or_else(|| if found.is_empty() { main() } else { None }));
+    }
+    found.retain(|s| s.channels.iter().all(|c| exr.parts()[s.part].channels[*c].sampling == (1, 1)));
+    if found.is_empty() {
+        return Err(Fault::Choice {
+            problem: "has no layer that could be motion vectors".into(),
+            fix: "name it by --guide motion=LAYER, or its renderer by --motion-convention".into(),
+        });
+    }
+    Ok(found)
+}
+
+fn of_vectors(group: &Group, guide: Guide, motion::Found { channels, rule }: motion::Found) -> Source {
+    Source { guide, part: group.part, channels, meaning: Meaning::Vectors(rule) }
+}
+
 fn xyz(group: &Group) -> Option<Vec<usize>> {
     group.all(["X", "Y", "Z"]).or_else(|| group.all(["R", "G", "B"]))
+}
+
+/// Motion vectors in a group; `name` is the layer that was asked for.
+fn vectors(
+    exr: &File,
+    group: &Group,
+    guide: Guide,
+    name: Option<&str>,
+    convention: Option<Convention>,
+) -> Option<Source> {
+    let is_named = name.is_some_and(|name| is_named(exr, group, name));
+    if name.is_some() && !is_named {
+        return None;
+    }
+    let found = motion::find(group, guide == Guide::MotionForward, is_named, convention)?;
+    Some(of_vectors(group, guide, found))
 }
 
 /// The channels of a guide in a group; `name` is the layer or channel that was asked for.
 fn source(exr: &File, group: &Group, guide: Guide, name: Option<&str>) -> Option<Source> {
     let part = &exr.parts()[group.part];
-    let found = |channels: Vec<usize>| Source { guide, part: group.part, channels, position: false };
+    let found = |channels| Source { guide, part: group.part, channels, meaning: Meaning::Same };
     let single = |components: &[&str]| {
         let known = components.iter().find_map(|c| group.member(c));
         known.or(match group.members.as_slice() {
@@ -288,6 +368,7 @@ fn source(exr: &File, group: &Group, guide: Guide, name: Option<&str>) -> Option
             Guide::Normal => xyz(group),
             Guide::Depth => single(&["Z", "depth", "Y", "V", "R"]).map(|c| vec![c]),
             Guide::ObjectId => single(&["id", "object_id", "Y", "R"]).map(|c| vec![c]),
+            Guide::Motion | Guide::MotionForward => None,
         }
         .map(found);
     }
@@ -312,6 +393,7 @@ fn source(exr: &File, group: &Group, guide: Guide, name: Option<&str>) -> Option
             "id" | "object_id" | "objectid" => vec![single(&["id", "Y", "R", "X"])?],
             _ => vec![["id", "object_id", "objectid"].iter().find_map(|c| group.member(c))?],
         },
+        Guide::Motion | Guide::MotionForward => return None,
     };
     Some(found(channels))
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use isophote_exr_edit::{Decoded, Edit, File, Limits, PartEdit, Sample};
+use isophote_exr_edit::{Decoded, Edit, File, Limits, PartEdit, Sample, Window};
 
 use super::choose::{self, Chosen, Selection};
 use super::fault::Fault;
@@ -13,6 +13,54 @@ use crate::pixels::{MOST_PIXELS, Pixels};
 /// What one file may take at most, whatever it says of itself. How many files are in memory at the same time is
 /// decided by what they weigh; see [`Opened::weight`].
 const LIMITS: Limits = Limits { memory: 16 << 30, pixels: MOST_PIXELS };
+
+/// Motion vectors for a picture from a file of their own, by the names of the graph's inputs.
+///
+/// # Errors
+/// [`Error::Input`](crate::error::Error::Input) for damaged files, those that hold no vectors, and vectors for a picture of
+/// another size.
+pub fn motion_of(
+    path: &Path,
+    bytes: Vec<u8>,
+    selection: &Selection,
+    picture: &Picture,
+) -> Result<Vec<(&'static str, Pixels)>> {
+    let window = Window {
+        x: picture.origin[0],
+        y: picture.origin[1],
+        width: picture.pixels.width() as usize,
+        height: picture.pixels.height() as usize,
+    };
+    let read = || -> std::result::Result<_, Fault> {
+        let exr = File::parse(bytes, LIMITS)?;
+        let sources = choose::motion(&exr, selection)?;
+        let mut decoded: Vec<Option<Decoded>> = exr.parts().iter().map(|_| None).collect();
+        let mut found = Vec::new();
+        for source in &sources {
+            let own = exr.parts()[source.part].window;
+            // A window that begins elsewhere is a part of the picture.
+            let is_scaled = (own.x, own.y) == (window.x, window.y)
+                && (own.width < window.width || own.height < window.height);
+            if is_scaled {
+                return Err(Fault::Choice {
+                    problem: format!(
+                        "shows {}x{} pixels, and the picture {}x{}",
+                        own.width, own.height, window.width, window.height
+                    ),
+                    fix: "render motion in the picture's size".into(),
+                });
+            }
+            if decoded[source.part].is_none() {
+                decoded[source.part] = Some(exr.decode(source.part)?);
+            }
+            if let Some(pixels) = picture::guide(&exr, &decoded, source, window, None)? {
+                found.push((source.guide.id(), pixels));
+            }
+        }
+        Ok(found)
+    };
+    read().map_err(|fault| fault.of(path))
+}
 
 /// Whether all chunks of a file are there.
 pub fn is_whole(bytes: Vec<u8>) -> bool {

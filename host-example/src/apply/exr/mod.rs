@@ -6,10 +6,12 @@
 mod choose;
 mod fault;
 mod file;
+mod motion;
 mod names;
 mod picture;
 
 pub use self::choose::{Guide, GuideChoice, Selection};
-pub use self::file::{ExrFile, Opened, is_whole};
+pub use self::file::{ExrFile, Opened, is_whole, motion_of};
+pub use self::motion::Convention;
 pub use self::names::components;
 pub use self::picture::Picture;

@@ -125,7 +125,7 @@ fn own_name(part: &Part) -> String {
 /// How likely a layer is the picture that an artist means when naming none: less is more likely.
 pub fn rank(group: &Group) -> Option<u32> {
     const MAIN: [&str; 9] = ["rgba", "rgb", "beauty", "combined", "color", "colour", "main", "c", "image"];
-    const DATA: [&str; 20] = [
+    const DATA: [&str; 28] = [
         "n",
         "normal",
         "normals",
@@ -138,6 +138,14 @@ pub fn rank(group: &Group) -> Option<u32> {
         "backward",
         "vector",
         "velocity",
+        "motionvector",
+        "motion_vector",
+        "motionvectors",
+        "finalimagemotionvectors",
+        "motionback",
+        "motionfore",
+        "pref",
+        "rest",
         "uv",
         "st",
         "z",

@@ -2,7 +2,7 @@
 
 use isophote_exr_edit::{Channel, Decoded, Edit, Error, File, Part, Plane, Window};
 
-use super::choose::{Chosen, Guide, Selection, Source};
+use super::choose::{Chosen, Guide, Meaning, Selection, Source};
 use super::fault::Fault;
 use super::names::{Model, components};
 use crate::apply::primaries;
@@ -47,7 +47,7 @@ pub fn read(exr: &File, decoded: &[Option<Decoded>], chosen: &Chosen) -> Result<
     }
     let mut guides = Vec::with_capacity(chosen.guides.len());
     for source in &chosen.guides {
-        if let Some(pixels) = guide(exr, decoded, source, part)? {
+        if let Some(pixels) = guide(exr, decoded, source, part.window, part.world_to_camera)? {
             guides.push((source.guide.id(), pixels));
         }
     }
@@ -151,20 +151,22 @@ fn interleaved(window: Window, planes: &[Plane]) -> Option<Pixels> {
     Pixels::new(window.width as u32, window.height as u32, count as u32, samples)
 }
 
-/// A guide over the window of the picture's part; nothing where it has no pixels or no number.
-fn guide(
+/// A guide over the window of a picture that this camera has seen; nothing where it has no pixels or no number.
+pub fn guide(
     exr: &File,
     decoded: &[Option<Decoded>],
     source: &Source,
-    picture: &Part,
+    window: Window,
+    world_to_camera: Option<[f32; 16]>,
 ) -> Result<Option<Pixels>, Error> {
     let part = &exr.parts()[source.part];
     let Some(data) = decoded[source.part].as_ref() else { return Ok(None) };
     let plane = |channel: &usize| Ok::<_, Error>(numbers(&data.plane(*channel)?));
     let planes: Vec<Vec<f32>> = source.channels.iter().map(plane).collect::<Result<_, _>>()?;
     let count = planes.len();
-    let window = picture.window;
-    let mut all = vec![0.0; window.width * window.height * count];
+    // What a motion does not tell is unknown.
+    let nothing = if source.guide.is_motion() { f32::NAN } else { 0.0 };
+    let mut all = vec![nothing; window.width * window.height * count];
     for y in 0..window.height {
         let from_y = window.y as i64 + y as i64 - part.window.y as i64;
         if !(0..part.window.height as i64).contains(&from_y) {
@@ -181,13 +183,16 @@ fn guide(
                 *to = plane[from];
             }
             if to.iter().any(|v| !v.is_finite()) {
-                to.fill(0.0);
+                to.fill(nothing);
             }
         }
     }
     let size = (window.width as u32, window.height as u32);
-    if source.position {
-        let Some(camera) = picture.world_to_camera else { return Ok(None) };
+    if let Meaning::Vectors(rule) = source.meaning {
+        return Ok(rule.applied(all, size));
+    }
+    if let Meaning::Position = source.meaning {
+        let Some(camera) = world_to_camera else { return Ok(None) };
         // Row vectors; the camera looks along -z.
         let depth = all.as_chunks::<3>().0.iter().map(|p| {
             let z = p[0] * camera[2] + p[1] * camera[6] + p[2] * camera[10] + camera[14];
