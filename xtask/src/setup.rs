@@ -61,6 +61,10 @@ pub const BROWSER: Need = Need {
     packages: &["chromium-headless-shell"],
 };
 
+/// What reads and writes videos.
+pub const FFMPEG: Need =
+    Need { what: "ffmpeg", present: || program("ffmpeg") && program("ffprobe"), packages: &["ffmpeg"] };
+
 /// A display without a screen, and what winit loads to open a window on it.
 pub const XVFB: Need = Need {
     what: "Xvfb and the X11 libraries",

@@ -2,7 +2,7 @@
 
 use crate::error::{Context, Failure, Result};
 use crate::setup::{
-    self, BINUTILS, BROWSER, C_COMPILER, CLANG, CPP_COMPILER, VALGRIND, VULKAN, VULKAN_HEADERS, XVFB,
+    self, BINUTILS, BROWSER, C_COMPILER, CLANG, CPP_COMPILER, FFMPEG, VALGRIND, VULKAN, VULKAN_HEADERS, XVFB,
 };
 use crate::tools::{cargo, cargo_command, heading, root, target_dir};
 use std::path::{Path, PathBuf};
@@ -38,6 +38,7 @@ pub fn run(options: &Options) -> Result<()> {
         &VULKAN_HEADERS,
         &VALGRIND,
         &XVFB,
+        &FFMPEG,
         &BROWSER,
         &CLANG,
     ])?;
