@@ -40,7 +40,7 @@ impl Plan {
     }
 }
 
-/// 128 bits, so that no two images of a session meet.
+/// 128 bits, so that no two images of a run meet.
 fn hash(value: &impl Hash) -> u128 {
     let half = |salt: u8| {
         let mut hasher = DefaultHasher::new();
