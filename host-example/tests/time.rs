@@ -109,6 +109,29 @@ fn motion_comes_from_files_of_its_own_too() {
 }
 
 #[test]
+fn motion_is_estimated_where_nobody_knows_it() {
+    let folder = folder();
+    let at = folder.path();
+    shot(at, INPUT, "96x64");
+    let run = |out: &str, more: &[&str]| {
+        let fixed = ["cartoon", INPUT, out, "--steadiness", "0.5", "--motion", "estimate"];
+        succeeds(&mut apply(at, &[&fixed[..], more].concat()));
+    };
+    run("all.####.exr", &["--frames", "3-7"]);
+    run("part.####.exr", &["--frames", "5-7"]);
+    run("one.####.exr", &["--frames", "7"]);
+    succeeds(&mut apply(at, &["cartoon", INPUT, "still.####.exr", "--frames", "3-7"]));
+    for frame in 3..=7 {
+        let name = |stem: &str| format!("{stem}.{frame:04}.exr");
+        assert_ne!(bytes(at, &name("all")), bytes(at, &name("still")), "frame {frame} is not steadied");
+        if frame >= 5 {
+            assert!(bytes(at, &name("all")) == bytes(at, &name("part")), "frame {frame} of a chunk");
+        }
+    }
+    assert!(bytes(at, "all.0007.exr") == bytes(at, "one.0007.exr"));
+}
+
+#[test]
 fn what_cannot_be_steady_is_refused() {
     let folder = folder();
     let at = folder.path();

@@ -110,6 +110,21 @@ fn sound_rate_range_and_matrix_are_kept() {
 }
 
 #[test]
+fn styles_are_steady_by_the_motion_of_the_pictures() {
+    if !has_ffmpeg() {
+        return;
+    }
+    let folder = folder();
+    let at = folder.path();
+    clip(at, "video.mp4", "-pix_fmt yuv420p");
+    let steady = ["--steadiness", "0.5", "--motion", "estimate"];
+    succeeds(&mut apply(at, &["cartoon", "video.mp4", "still.mp4"]));
+    succeeds(&mut apply(at, &[&["cartoon", "video.mp4", "steady.mp4"][..], &steady].concat()));
+    let difference = difference(at, "still.mp4", "steady.mp4");
+    assert!(difference > 0.02 && difference < 8.0, "{difference} of 255");
+}
+
+#[test]
 fn streams_go_through_pipes() {
     if !has_ffmpeg() {
         return;

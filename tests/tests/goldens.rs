@@ -52,6 +52,8 @@ fn shown(spec: &NodeSpec, image: &Image) -> Image {
             ImageKind::Color => [0, 1, 2].map(|c| v[c] + 0.5 * (1.0 - v[3])),
             // The square roots spread the dark parts, where most edges lie.
             ImageKind::Tensor => [v[0].max(0.0).sqrt(), 0.5 + v[1], v[2].max(0.0).sqrt()],
+            // Mid-grey is no motion.
+            ImageKind::Motion => [0.5 + 0.05 * v[0], 0.5 + 0.05 * v[1], 0.5],
             _ => [v[0]; 3],
         };
         let store = |v: f32| (v.clamp(0.0, 1.0) * 255.0).round() / 255.0;
@@ -73,7 +75,8 @@ fn plan(spec: &'static NodeSpec, input: &Image) -> Planned {
 
 /// Whether a node does something to neighbouring frames with its defaults.
 fn is_of_time(spec: &NodeSpec) -> bool {
-    spec.params().any(|p| p.id == "steadiness" && p.default != Value::Float(0.0))
+    let is_steady = spec.params().any(|p| p.id == "steadiness" && p.default != Value::Float(0.0));
+    is_steady || spec.output.kind == ImageKind::Motion
 }
 
 /// What enters a plan: the picture; or where it knows of time a camera that moves over it, with noise on each frame.

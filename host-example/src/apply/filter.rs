@@ -79,6 +79,15 @@ impl Filter {
         Ok(Self { library, style, device, space, threads, sequences: Vec::new() })
     }
 
+    /// Frames before and after its own that a frame depends on.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Failure`] when the library fails.
+    pub fn frames(&self) -> Result<[i64; 2]> {
+        let frames = self.library.frames(&self.style.graph);
+        Ok(frames.map_err(|e| e.at(&self.style.name, "choose another style"))?.map(i64::from))
+    }
+
     /// Filters all pictures of a frame, or the first where `format` holds one; `exr` is the file that they came from.
     ///
     /// # Errors

@@ -239,6 +239,36 @@ impl Style {
         Ok(())
     }
 
+    /// Lets all nodes that can be steady over time estimate motion from the pictures themselves.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the library has no such node.
+    pub fn estimate_motion(&mut self) -> Result<()> {
+        let fail = |e: Refusal| e.at("--motion estimate", "name files of motion vectors");
+        let nodes = self.graph.count();
+        for (port, direction) in [("motion", "backward"), ("motion_forward", "forward")] {
+            let mut flow = None;
+            for node in 0..nodes {
+                let spec = self.graph.spec(node).map_err(fail)?;
+                if spec.inputs.iter().all(|input| input.id != port) {
+                    continue;
+                }
+                let from = match flow {
+                    Some(from) => from,
+                    None => {
+                        let from =
+                            self.graph.add(&format!("estimated {port}"), "optical_flow").map_err(fail)?;
+                        self.graph.set(from, "direction", direction).map_err(fail)?;
+                        self.graph.connect_input("color", from).map_err(fail)?;
+                        *flow.insert(from)
+                    }
+                };
+                self.graph.connect(from, node, port).map_err(fail)?;
+            }
+        }
+        Ok(())
+    }
+
     /// [`Style::set`], where `place` says in messages who wants it.
     fn put(&self, setting: &Setting, place: &str) -> Result<(u32, Node)> {
         let fail = |e: Refusal| e.at(place, "see the graph's nodes");

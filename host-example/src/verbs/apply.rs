@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::apply::backend::Backend;
 use crate::apply::dry_run::DryRun;
-use crate::apply::exr::{Convention, GuideChoice, Selection};
+use crate::apply::exr::{Convention, Guide, GuideChoice, Selection};
 use crate::apply::filter::{self, Filter, Planner};
 use crate::apply::memory::{self, Budget, Bytes, too_large};
 use crate::apply::read::{self, Opened};
@@ -24,6 +24,9 @@ use crate::loader::Library;
 use crate::stop::Stop;
 use crate::stylize::style::{Setting, Style};
 use crate::video;
+
+/// The word for motion that is estimated.
+const ESTIMATE: &str = "estimate";
 
 /// Options of `apply`.
 #[derive(Args, Debug)]
@@ -90,7 +93,7 @@ pub struct ApplyArgs {
     /// the style decides anything. Needs motion vectors in the EXR files, or --motion [default: what the style says].
     #[arg(long, value_name = "S")]
     pub steadiness: Option<f32>,
-    /// EXR files with motion vectors, one for each frame: mv.####.exr.
+    /// EXR files with motion vectors, one for each frame: mv.####.exr; or estimate, for optical flow of the pictures.
     #[arg(long, value_name = "FILES")]
     pub motion: Option<PathBuf>,
     /// What motion vectors mean: isophote, arnold, blender, renderman, vray or unreal, and after commas what differs, of
@@ -238,7 +241,7 @@ impl ApplyArgs {
         let others = [
             ("--frames", self.frames.is_some()),
             ("--dry-run", self.dry_run),
-            ("--motion", self.motion.is_some()),
+            ("--motion", self.motion.is_some() && !self.estimates_motion()),
             ("--into", self.into.is_some()),
         ];
         if let Some((option, _)) = others.iter().find(|(_, given)| *given) {
@@ -269,7 +272,15 @@ impl ApplyArgs {
         if let Some(steadiness) = self.steadiness {
             style.steady(steadiness)?;
         }
+        if self.estimates_motion() {
+            style.estimate_motion()?;
+        }
         Ok(style)
+    }
+
+    /// Whether motion is to be found in the pictures themselves.
+    fn estimates_motion(&self) -> bool {
+        self.motion.as_deref() == Some(Path::new(ESTIMATE))
     }
 
     /// The files of motion vectors.
@@ -281,6 +292,9 @@ impl ApplyArgs {
         let wrong = |problem: &str, fix: &str| Err(Error::input("--motion", problem, fix));
         if !tasks.is_sequence() {
             return wrong("a picture by itself has no neighbours", "name a sequence such as shot.####.exr");
+        }
+        if self.estimates_motion() {
+            return Ok(None);
         }
         if selection.wanted.iter().all(|guide| !guide.is_motion()) {
             return wrong("the style reads no motion", "give --steadiness 0.5, or another style");
@@ -337,6 +351,13 @@ impl ApplyArgs {
         Ok(opened)
     }
 
+    /// Guides that are looked for.
+    fn wanted(&self, library: &Library, style: &Style) -> Result<Vec<Guide>> {
+        let mut wanted = filter::usable_guides(library, style)?;
+        wanted.retain(|guide| !(self.estimates_motion() && guide.is_motion()));
+        Ok(wanted)
+    }
+
     /// What is read of EXR files.
     fn selection(&self, library: &Library, style: &Style, format: Format) -> Result<Selection> {
         if self.into.is_some() && format != Format::Exr {
@@ -362,7 +383,7 @@ impl ApplyArgs {
             alpha: self.alpha.clone(),
             into: self.into.clone(),
             guides: self.guide.clone(),
-            wanted: filter::usable_guides(library, style)?,
+            wanted: self.wanted(library, style)?,
             convention: self.motion_convention,
         })
     }

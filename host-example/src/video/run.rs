@@ -1,5 +1,6 @@
 //! A video from end to end: decoded, filtered and encoded at the same time.
 
+use std::collections::VecDeque;
 use std::io::{self, Read, Write};
 use std::path::Path;
 use std::process::Stdio;
@@ -108,17 +109,29 @@ impl Job<'_> {
         report: &Report,
     ) -> Result<i64> {
         let name = self.input.display().to_string();
-        let (mut encoder, mut count) = (None, 0);
-        for pixels in decoded {
-            if self.stop.is_requested() {
-                return Err(Error::failure(format!("stopped after {count} frames"), "start again"));
-            }
-            count += 1;
+        let [past, future] = filter.frames()?;
+        let hold = |(pixels, number)| {
             let picture = Picture { pixels, guides: Vec::new(), chromaticities: None, origin: [0; 2] };
             let state = ImageState::DisplayReferred;
             let source = Source { pictures: vec![picture], state, profile: None, exr: None };
-            let own = Arc::new(Held::new(Some(count), source, false, budget.share()));
-            let window = Window { own: Arc::clone(&own), frames: vec![own] };
+            Arc::new(Held::new(Some(number), source, false, budget.share()))
+        };
+        let mut decoded = decoded.into_iter().zip(1..).map(hold);
+        let mut frames: VecDeque<Arc<Held<'_>>> = VecDeque::new();
+        let (mut encoder, mut count) = (None, 0);
+        loop {
+            if self.stop.is_requested() {
+                return Err(Error::failure(format!("stopped after {count} frames"), "start again"));
+            }
+            let number = count + 1;
+            while frames.back().and_then(|last| last.number).is_none_or(|last| last < number + future) {
+                let Some(next) = decoded.next() else { break };
+                frames.push_back(next);
+            }
+            frames.retain(|held| held.number >= Some(number - past));
+            let Some(own) = frames.iter().find(|held| held.number == Some(number)) else { break };
+            count = number;
+            let window = Window { own: Arc::clone(own), frames: frames.iter().cloned().collect() };
             let filtered = filter.run(&name, &window, None, Format::Png, &mut |_| {})?;
             let Some(result) = filtered.results.into_iter().next() else { return Err(broken("filtering")) };
             let result = result.converted(Precision::U16);

@@ -20,6 +20,8 @@ pub(crate) struct Scratch {
     lights: Vec<Option<ImageId>>,
     /// By frame and port of the node that is described.
     inputs: Vec<Option<ImageId>>,
+    /// By node: whether it is described at frames whose stages are handed in, too.
+    besides: Vec<bool>,
 }
 
 /// Stages that a node may keep.
@@ -38,13 +40,14 @@ pub(crate) fn describe(
     scratch.results.resize(frames * graph.len(), None);
     scratch.lights.clear();
     scratch.lights.resize(graph.len(), None);
+    find_besides(graph, &mut scratch.besides);
     for index in graph.order() {
         let Some([first, last]) = scratch.needs[*index] else { continue };
         let mut describing = Describing { graph, request, builder, scratch };
         describing.find_inputs(*index);
         // The frame at hand comes first: the others ask for stages of its shapes.
         for frame in std::iter::once(0).chain((first..=last).filter(|frame| *frame != 0)) {
-            if !request.frames.is_handed(frame) {
+            if !request.frames.is_handed(frame) || describing.scratch.besides[*index] {
                 describing.describe(*index, frame);
             }
         }
@@ -87,18 +90,20 @@ impl Describing<'_> {
             let is_read = from - window <= frame && frame <= to + window;
             self.builder.set_frame(frame);
             for source in &node.inputs {
-                let image = source.filter(|_| is_read).and_then(|source| self.source(source, frame));
+                let image = source.filter(|_| is_read).and_then(|source| self.source(source, frame, index));
                 self.scratch.inputs.push(image);
             }
         }
         self.builder.set_frame(0);
     }
 
-    fn source(&mut self, source: Source, frame: i32) -> Option<ImageId> {
+    /// What the node `reader` reads at a frame.
+    fn source(&mut self, source: Source, frame: i32, reader: usize) -> Option<ImageId> {
+        let is_besides = |input| is_read_besides(input) || self.scratch.besides[reader];
         match source {
             Source::Node(n) => self.scratch.results[self.place(frame, n)],
             // What is handed in was made from the rest.
-            Source::Input(input) if self.request.frames.is_handed(frame) && !is_read_besides(input) => None,
+            Source::Input(input) if self.request.frames.is_handed(frame) && !is_besides(input) => None,
             Source::Input(input) if self.request.guides.has(input) => {
                 Some(graph_input(self.builder, input, self.request))
             }
@@ -145,6 +150,19 @@ impl Describing<'_> {
         let result = if filters { result(self.builder, node, inputs, alone, self.request) } else { light };
         inputs[color] = color_itself;
         self.scratch.lights[index] = Some(result);
+    }
+}
+
+/// Finds the nodes that make motion and all that they depend on: no stage holds what they find.
+fn find_besides(graph: &Graph, besides: &mut Vec<bool>) {
+    besides.clear();
+    besides.resize(graph.len(), false);
+    for index in graph.order().iter().rev() {
+        let node = graph.node_at(*index);
+        if besides[*index] || node.spec.makes_motion() {
+            besides[*index] = true;
+            node.sources().for_each(|source| besides[source] = true);
+        }
     }
 }
 

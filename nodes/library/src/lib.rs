@@ -37,6 +37,7 @@ pub use graph::{Graph, NodeId};
 pub use isophote_engine as engine;
 pub use picture::Request;
 pub use request::Planned;
+pub use stages::optical_flow;
 pub use value::Value;
 
 /// The README's example, compiled with the documentation tests.

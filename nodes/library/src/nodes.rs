@@ -50,6 +50,7 @@ nodes! {
         coherence_enhancing,
     }
     time {
+        optical_flow,
         steady,
     }
     smoothing {

@@ -204,8 +204,16 @@ impl NodeSpec {
         self.own_params.iter().any(|p| p.id == STEADINESS.id)
     }
 
+    /// True for nodes that find motion between neighbouring frames.
+    pub(crate) fn makes_motion(&self) -> bool {
+        self.output.kind == ImageKind::Motion
+    }
+
     /// Frames before and after its own that a node of these values reads.
     pub(crate) fn window(&self, values: &[Value]) -> i32 {
+        if self.makes_motion() {
+            return 1;
+        }
         let value = |id| self.param(id).map(|(index, _)| values[index]);
         match (value(STEADINESS.id), value(WINDOW.id)) {
             (Some(Value::Float(steadiness)), Some(Value::Int(window))) if steadiness > 0.0 => window,

@@ -8,6 +8,7 @@
 
 pub(crate) mod abstraction;
 pub(crate) mod lines;
+pub mod optical_flow;
 pub(crate) mod quantization;
 pub(crate) mod steady;
 pub(crate) mod tone;

@@ -1,0 +1,28 @@
+//! Brightness of a colour over black, which optical flow compares: its luma, not below 0 and not above 4.
+//!
+//! Cost: 6 operations.
+
+use crate::kernels::simd::pixels::map_pixels;
+use isophote_engine::fearless_simd::{dispatch, prelude::*};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+
+/// Highlights beyond it would outweigh all else that moves.
+const BRIGHTEST: f32 = 4.0;
+
+crate::kernel!(brightness {
+    cpu: run,
+    cost: |_| 6.0,
+    tolerance: Tolerance { absolute: 1e-6, relative: 1e-6, outliers: 0.0, reason: "a sum of three products" },
+});
+
+/// Adds the pass.
+pub fn pass(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
+    plan.pass(&KERNEL, &[color], &(), Class::Field, Support::Pixels(0))
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |[r, g, b, a]| {
+        let luma = (r * 0.2126 + g * 0.7152 + b * 0.0722) * a;
+        [luma.max(0.0f32).min(BRIGHTEST)]
+    }));
+}

@@ -1,0 +1,101 @@
+//! The derivatives that the variational refinement needs (Kroeger et al. 2016, 3.3; Brox et al. 2004, 3.1): x, y, z of
+//! the brightness, where z is from here to there, and of its gradient, by central differences.
+//!
+//! Cost: 25 operations.
+
+use crate::kernels::simd::pixels::{BLOCK, Block, read};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+
+/// Levels of brightness to 1.
+const LEVELS: f32 = 255.0;
+
+crate::kernel!(brightness_derivatives {
+    cpu: run,
+    cost: |_| 25.0,
+    tolerance: Tolerance {
+        absolute: 1e-3,
+        relative: 1e-6,
+        outliers: 0.0,
+        reason: "differences in the same order, of brightness up to 4 in levels of 1/255: one in its last bit",
+    },
+});
+
+/// The derivatives x, y, z and xx, and xy, yy, xz and yz, in levels of brightness; of what
+/// [`brightness_warp`](super::brightness_warp) gives.
+pub fn pass(plan: &mut PlanBuilder, warped: [ImageId; 2]) -> [ImageId; 2] {
+    let level = plan.desc(warped[0]).level;
+    let first = plan.pass_at(&KERNEL, &warped, &(), &[Class::Field; 2], Support::Pixels(1), level);
+    [first, plan.sibling(first, 1)]
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    dispatch!(pass.level, simd => derivatives(simd, pass, band));
+}
+
+#[inline(always)]
+fn derivatives<S: Simd>(simd: S, pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    let window = band.window;
+    let (first, last) = (window.x0 - 1, window.x1 + 1);
+    let mut scratch: [Vec<f32>; 6] = Default::default();
+    for y in window.y0..window.y1 {
+        let [s0, s1, s2, s3, s4, s5] = &mut scratch;
+        let [mean, difference] = [&pass.inputs[0], &pass.inputs[1]];
+        let means = [(y - 1, s0), (y, s1), (y + 1, s2)].map(|(y, s)| mean.padded_row(y, first, last, s));
+        let differences =
+            [(y - 1, s3), (y, s4), (y + 1, s5)].map(|(y, s)| difference.padded_row(y, first, last, s));
+        for x in (window.x0..window.x1).step_by(BLOCK) {
+            let block = Block::until(window.x1, x, y);
+            let around = Around { rows: means, at: (x - window.x0) as usize, len: block.len };
+            let other = Around { rows: differences, ..around };
+            let [left, right] = [around.value(simd, -1, 0), around.value(simd, 1, 0)];
+            let [up, down] = [around.value(simd, 0, -1), around.value(simd, 0, 1)];
+            let twice = around.value(simd, 0, 0) * 2.0;
+            let falling = around.value(simd, 1, 1) + around.value(simd, -1, -1);
+            let rising = around.value(simd, 1, -1) + around.value(simd, -1, 1);
+            let xz = other.value(simd, 1, 0) - other.value(simd, -1, 0);
+            let yz = other.value(simd, 0, 1) - other.value(simd, 0, -1);
+            let (xx, yy) = (right - twice + left, down - twice + up);
+            let z = other.value(simd, 0, 0);
+            let first = [(right - left) * 0.5, (down - up) * 0.5, z, xx];
+            let second = [(falling - rising) * 0.25, yy, xz * 0.5, yz * 0.5];
+            block.write(
+                first.map(
+                    #[inline(always)]
+                    |v| v * LEVELS,
+                ),
+                band,
+                0,
+            );
+            block.write(
+                second.map(
+                    #[inline(always)]
+                    |v| v * LEVELS,
+                ),
+                band,
+                1,
+            );
+        }
+    }
+}
+
+/// A block of a one-channel image and what surrounds it.
+#[derive(Clone, Copy)]
+struct Around<'a> {
+    /// The row above, its own and the one below, from the pixel to the left of the band's first.
+    rows: [&'a [f32]; 3],
+    /// Index of the pixel to the left of the block.
+    at: usize,
+    /// Pixels of the block.
+    len: usize,
+}
+
+impl Around<'_> {
+    /// The block's neighbours at (dx, dy), -1..=1.
+    #[inline(always)]
+    fn value<S: Simd>(&self, simd: S, dx: i32, dy: i32) -> f32x8<S> {
+        let at = (self.at as i32 + 1 + dx) as usize;
+        let [value] = read(simd, &self.rows[(dy + 1) as usize][at..at + self.len]);
+        value
+    }
+}

@@ -1,0 +1,21 @@
+// What a motion field makes of the other picture: the mean of a pixel's brightness and that of the place it moves
+// to, and their difference, that there less that here. Cost: 6 loads.
+#import shared/sampling
+
+@group(0) @binding(2) var here: texture_2d<f32>;
+@group(0) @binding(3) var there: texture_2d<f32>;
+@group(0) @binding(4) var motion: texture_2d<f32>;
+@group(0) @binding(5) var mean_image: texture_storage_2d<r32float, write>;
+@group(0) @binding(6) var difference_image: texture_storage_2d<r32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let p = pixel(id);
+    let origin = fetch(here, 0u, p).x;
+    let moved = sample_linear(there, 1u, centre(id) + fetch(motion, 2u, p).xy).x;
+    textureStore(mean_image, vec2i(id.xy), vec4f((origin + moved) * 0.5));
+    textureStore(difference_image, vec2i(id.xy), vec4f(moved - origin));
+}

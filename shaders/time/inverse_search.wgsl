@@ -1,0 +1,150 @@
+// Dense inverse search (Kroeger et al. 2016, 3.1): the motion of patches of 8 x 8 pixels, one for every four pixels
+// in x and y, so that an output pixel is a patch. Each starts from the best of some motions and goes down the sum of
+// squared differences, which both patches' means do not count in, by Gauss-Newton steps with the gradients of the
+// patch that does not move. Cost: 100 loads, and 81 for each start and step.
+#import shared/sampling
+
+struct Params {
+    /// How much longer motions are here than in `start`, and how much farther apart its patches lie: 2 for the field
+    /// of the coarser level, 1 for patches of this one.
+    scale: f32,
+    /// Longest motion along x and along y.
+    reach: f32,
+    /// Starts in `start`: that at the patch and those at its four neighbours; 0 at the coarsest level, where all
+    /// start from rest and `start` is not read.
+    starts: u32,
+    /// Whether rest is tried too.
+    rest: u32,
+    /// Gauss-Newton steps.
+    steps: u32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var here: texture_2d<f32>;
+@group(0) @binding(3) var there: texture_2d<f32>;
+@group(0) @binding(4) var start: texture_2d<f32>;
+@group(0) @binding(5) var target_image: texture_storage_2d<rg32float, write>;
+
+// Added to the Hessian's diagonal, brightness squared per pixel: two of 255 levels for every pixel of a patch. Where
+// there is less texture a patch stays where it starts.
+const TEXTURE = 0.0039;
+// Share by which a motion must be better than the one before it, beyond that which is due to rounding.
+const BETTER = 0.98;
+const ROUNDING = 1e-6;
+// Pixels that a patch may move away from its start, in x and in y (3.1: its own size).
+const FARTHEST = 8.0;
+
+// The patch and one pixel around it.
+var<private> patch_here: array<f32, 100>;
+
+// Sums over the patch of the difference, its square and its products with the gradients.
+struct Fit {
+    difference: f32,
+    square: f32,
+    slope: vec2f,
+}
+
+// Row y of the patch, -1..8, between pixels.
+fn at(x: i32, y: i32) -> f32 {
+    return patch_here[10 * y + x + 11];
+}
+
+fn gradient(x: i32, y: i32) -> vec2f {
+    return 0.5 * vec2f(at(x + 1, y) - at(x - 1, y), at(x, y + 1) - at(x, y - 1));
+}
+
+fn fit(corner: vec2i, motion: vec2f) -> Fit {
+    let whole = floor(motion);
+    let share = motion - whole;
+    let first = corner + vec2i(whole);
+    var sums = Fit(0.0, 0.0, vec2f(0.0));
+    var above: array<f32, 8>;
+    for (var y = 0; y < 9; y++) {
+        var left = fetch(there, 1u, first + vec2i(0, y)).x;
+        for (var x = 0; x < 8; x++) {
+            let right = fetch(there, 1u, first + vec2i(x + 1, y)).x;
+            let value = left + (right - left) * share.x;
+            left = right;
+            if y > 0 {
+                let difference = above[x] + (value - above[x]) * share.y - at(x, y - 1);
+                sums.difference += difference;
+                sums.square += difference * difference;
+                sums.slope += difference * gradient(x, y - 1);
+            }
+            above[x] = value;
+        }
+    }
+    return sums;
+}
+
+// Sum of the squared differences, without that of their mean.
+fn error(sums: Fit) -> f32 {
+    return sums.square - sums.difference * sums.difference / 64.0;
+}
+
+fn within_reach(motion: vec2f) -> vec2f {
+    return clamp(motion, vec2f(-params.reach), vec2f(params.reach));
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let corner = 4 * pixel(id) - 2;
+    for (var i = 0; i < 100; i++) {
+        patch_here[i] = fetch(here, 0u, corner + vec2i(i % 10 - 1, i / 10 - 1)).x;
+    }
+    var mean = vec2f(0.0);
+    var squares = vec3f(0.0);
+    for (var i = 0; i < 64; i++) {
+        let g = gradient(i % 8, i / 8);
+        mean += g;
+        squares += vec3f(g.x * g.x, g.x * g.y, g.y * g.y);
+    }
+    mean /= 64.0;
+    // The Hessian of 3.1, of gradients without their mean.
+    let xx = squares.x - 64.0 * mean.x * mean.x + TEXTURE;
+    let xy = squares.y - 64.0 * mean.x * mean.y;
+    let yy = squares.z - 64.0 * mean.y * mean.y + TEXTURE;
+    let determinant = xx * yy - xy * xy;
+
+    var first = vec2f(0.0);
+    if params.starts > 0u {
+        first = within_reach(params.scale * sample_linear(start, 2u, params.scale * centre(id)).xy);
+    }
+    var best = fit(corner, first);
+    let neighbours = array(vec2f(-1.0, 0.0), vec2f(1.0, 0.0), vec2f(0.0, -1.0), vec2f(0.0, 1.0), vec2f(0.0));
+    for (var i = 0u; i < 5u; i++) {
+        var motion = vec2f(0.0);
+        if i < 4u {
+            if i + 1u >= params.starts {
+                continue;
+            }
+            motion = params.scale * sample_linear(start, 2u, params.scale * (centre(id) + neighbours[i])).xy;
+            motion = within_reach(motion);
+        } else if params.rest == 0u {
+            continue;
+        }
+        let other = fit(corner, motion);
+        if error(other) < BETTER * error(best) - ROUNDING {
+            best = other;
+            first = motion;
+        }
+    }
+
+    var motion = first;
+    var result = first;
+    var sums = best;
+    for (var step = 0u; step < params.steps; step++) {
+        let slope = sums.slope - mean * sums.difference;
+        motion -= vec2f(yy * slope.x - xy * slope.y, xx * slope.y - xy * slope.x) / determinant;
+        motion = within_reach(clamp(motion, first - FARTHEST, first + FARTHEST));
+        sums = fit(corner, motion);
+        if error(sums) < error(best) {
+            best = sums;
+            result = motion;
+        }
+    }
+    textureStore(target_image, vec2i(id.xy), vec4f(result, 0.0, 0.0));
+}
