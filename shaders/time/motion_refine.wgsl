@@ -19,7 +19,7 @@ struct Params {
 
 // Weights of the gradient's constancy and of smoothness against that of the brightness.
 const GRADIENT = 2.0;
-const SMOOTHNESS = 4.0;
+const SMOOTHNESS = 3.0;
 // Squares of what tells an outlier: of distances in pixels, and of differences of motions in pixels per pixel.
 const OUTLIER = 1e-6;
 const BREAK = 1e-4;

@@ -220,8 +220,8 @@ pub fn has_optional_field(spec: &NodeSpec) -> bool {
     spec.inputs.iter().any(|p| p.optional && GraphInput::from_id(p.kind.id()).is_none())
 }
 
-/// True when the node takes guides.
+/// True when the node takes guides, or finds motion from the frames around.
 pub fn has_guides(spec: &NodeSpec) -> bool {
     let is_guide = |k| matches!(k, ImageKind::Normal | ImageKind::Depth | ImageKind::ObjectId);
-    spec.inputs.iter().any(|p| is_guide(p.kind))
+    spec.inputs.iter().any(|p| is_guide(p.kind)) || spec.output.kind == ImageKind::Motion
 }

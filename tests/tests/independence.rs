@@ -77,7 +77,8 @@ fn apply(graph: &Graph, picture: &Image) -> Image {
 fn main() -> ExitCode {
     let mut trials = Trials::new();
     for spec in isophote::registry::nodes() {
-        if spec.output.kind != ImageKind::Tensor {
+        // Tensors and motion turn with the picture.
+        if !matches!(spec.output.kind, ImageKind::Tensor | ImageKind::Motion) {
             trials.add("independence", spec.id, || turned_pictures_give_turned_results(spec));
         }
     }

