@@ -10,7 +10,8 @@ struct Params {
     sigma: f32,
     /// 0: Euler; 1: second-order Runge-Kutta; 2: two-step.
     integrator: u32,
-    /// How the response becomes an edge image: 0 not at all, 1 binary (4.6), 2 tanh (4.8), 3 smoothstep.
+    /// How the response becomes an edge image: 0 not at all, 1 binary (4.6), 2 tanh (4.8), 3 smoothstep,
+    /// 4 not at all but for what is not covered.
     threshold: u32,
     /// Response from which on there is no line, units of L.
     epsilon: f32,

@@ -3,9 +3,13 @@
 // From the response of a difference of Gaussians to an edge image: 1 is paper, 0 is line.
 // Twin of kernels/shared/edge_threshold.rs.
 
-// Kinds: 0 the response itself; 1 binary (4.6); 2 tanh (4.8); 3 smoothstep.
+// A response far beyond all others, which is paper for every threshold.
+const NOT_COVERED = 1e6;
+
+// Kinds: 0 the response itself; 1 binary (4.6); 2 tanh (4.8); 3 smoothstep; 4 the response, NOT_COVERED where no
+// covered pixel contributes.
 fn edge_threshold(u: f32, kind: u32, epsilon: f32, phi: f32) -> f32 {
-    if kind == 0u {
+    if kind == 0u || kind == 4u {
         return u;
     }
     if u >= epsilon {
@@ -25,6 +29,9 @@ fn edge_threshold(u: f32, kind: u32, epsilon: f32, phi: f32) -> f32 {
 
 // The edge image where no covered pixel contributes: paper.
 fn edge_uncovered(kind: u32) -> f32 {
+    if kind == 4u {
+        return NOT_COVERED;
+    }
     return select(1.0, 0.0, kind == 0u);
 }
 

@@ -1,4 +1,4 @@
-//! Experiment 16: how steady the styles are over time, on the demo scene along its camera's path, on a running fox
+//! Experiment 16: how steady the styles are over time, from colour and motion alone, on the demo scene along its camera's path, on a running fox
 //! and on a static shot with noise, without and with `steadiness`.
 //!
 //! `ISOPHOTE_STYLES=cartoon,ink` runs those styles alone, `ISOPHOTE_PICTURES=FOLDER` writes what they draw.
@@ -34,11 +34,11 @@ fn measured(shot: &Shot) -> Vec<Pair> {
     let styles = STYLES.into_iter().filter(|name| is_chosen(name));
     styles
         .map(|name| {
-            let steady = Style::new(name, &[STEADINESS]).play(shot, AROUND);
+            let steady = Style::new(name, &[STEADINESS]).without_guides().play(shot, AROUND);
             let mut rows = table(
                 shot,
                 vec![
-                    Entry::new(name, Style::new(name, &[]).play(shot, AROUND)),
+                    Entry::new(name, Style::new(name, &[]).without_guides().play(shot, AROUND)),
                     Entry::new(format!("{name} steady"), steady).against(name),
                 ],
             );
@@ -74,7 +74,7 @@ fn steady_styles_exaggerate_less_along_the_path_of_the_camera() {
         let [before, after] = [still.steadiness.ratio, steady.steadiness.ratio];
         assert!(after <= MOST[0] * before, "{name}: {before:.3} -> {after:.3}");
         let kept = steady.steadiness.energy_of_still;
-        assert!(kept >= 0.97, "{name} keeps {kept:.3} of its energy");
+        assert!(kept >= 0.95, "{name} keeps {kept:.3} of its energy");
     }
 }
 

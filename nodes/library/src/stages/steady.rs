@@ -5,6 +5,7 @@
 //! kept from frame to frame. A neighbour counts by a Gaussian over time, times the agreement of its smoothed colour, of
 //! depth, of object numbers, and of forward with backward motion, where there are such.
 
+use crate::kernels::lines::edge_area::Shares;
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::time::carried_share::{self, Neighbour};
 use crate::kernels::time::guide_agreement::{self, Guide, Way};
@@ -41,6 +42,15 @@ pub(crate) const COLOUR_AGREEMENT: f32 = 8.0;
 /// Standard deviation of the smoothing of pictures before they are compared, pixels: noise must not look like change.
 const SMOOTHING: f32 = 1.5;
 
+/// What [`steadied`] gives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Steadied<const N: usize> {
+    /// The stages, in the order in which they are described.
+    pub stages: [ImageId; N],
+    /// How much of them is of other frames; none where the frame is by itself.
+    pub shares: Option<Shares>,
+}
+
 /// What `describe` finds on the frame that is described, steadied by what it finds on its neighbours as the parameters
 /// `steadiness` and `window` say.
 ///
@@ -50,16 +60,16 @@ pub(crate) fn steadied<const N: usize>(
     scope: &mut Scope<'_>,
     by: Agreement,
     describe: impl Fn(&mut Scope<'_>) -> [ImageId; N],
-) -> [ImageId; N] {
+) -> Steadied<N> {
     let own = describe(scope);
     let steadiness = scope.float(STEADINESS.id);
     let moves = scope.input("motion").is_some() || scope.input("motion_forward").is_some();
     let window = if steadiness > 0.0 && moves { scope.int(WINDOW.id) } else { 0 };
     if window == 0 {
-        return own;
+        return Steadied { stages: own, shares: None };
     }
     let stages = kept(scope, own);
-    let (mut average, mut shares) = (own, None);
+    let (mut average, mut shares, mut nearest, mut most) = (own, None, None, 0.0);
     for offset in scope.neighbours(window) {
         let Some(way) = way_to(scope, offset) else { continue };
         let theirs = if scope.is_handed(offset) {
@@ -96,13 +106,16 @@ pub(crate) fn steadied<const N: usize>(
             };
         }
         shares = Some(share);
+        nearest.get_or_insert(way.motion);
+        most += neighbour.gain;
     }
-    average
+    let shares = shares.zip(nearest).map(|(image, motion)| Shares { image, motion, most });
+    Steadied { stages: average, shares }
 }
 
 /// The node's picture, gamma-encoded, steadied before the filter sees it.
 pub(crate) fn steadied_picture(scope: &mut Scope<'_>) -> ImageId {
-    let [_, color] = steadied(scope, Agreement::rgb(COLOUR_AGREEMENT), |scope| {
+    let Steadied { stages: [_, color], .. } = steadied(scope, Agreement::rgb(COLOUR_AGREEMENT), |scope| {
         let color = scope.required("color");
         [compared(scope, color), color]
     });

@@ -48,11 +48,17 @@ impl Xdog {
     }
 }
 
+/// In place of a threshold: the response itself, [`NOT_COVERED`] where no covered pixel contributes.
+pub const UNDECIDED: u32 = 4;
+
+/// A response far beyond all others, which is paper for every threshold.
+pub const NOT_COVERED: f32 = 1e6;
+
 /// The edge image of response `u`; see [`Threshold`].
 #[inline(always)]
 pub fn edge_threshold<S: Simd>(u: f32x8<S>, kind: u32, epsilon: f32, phi: f32) -> f32x8<S> {
     let (zero, one) = (f32x8::splat(u.simd, 0.0), f32x8::splat(u.simd, 1.0));
-    if kind == Threshold::None as u32 {
+    if kind == Threshold::None as u32 || kind == UNDECIDED {
         return u;
     }
     let paper = u.simd_ge(epsilon);
@@ -76,7 +82,11 @@ pub fn edge_threshold<S: Simd>(u: f32x8<S>, kind: u32, epsilon: f32, phi: f32) -
 /// The edge image where no covered pixel contributes: paper.
 #[inline(always)]
 pub fn edge_uncovered(kind: u32) -> f32 {
-    if kind == Threshold::None as u32 { 0.0 } else { 1.0 }
+    match kind {
+        UNDECIDED => NOT_COVERED,
+        _ if kind == Threshold::None as u32 => 0.0,
+        _ => 1.0,
+    }
 }
 
 /// The edge image of weighted sums of (u alpha, alpha); paper where no covered pixel contributes.

@@ -12,7 +12,9 @@ use crate::nodes::structure::flow_map::Flow;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
 use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
-use crate::stages::steady::steadied_picture;
+use crate::stages::steady::{
+    Agreement, COLOUR_AGREEMENT, Steadied, compared, steadied, steadied_picture,
+};
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -194,10 +196,16 @@ impl Filter {
         }
     }
 
-    /// Smoothing and sharpening in turn; the picture and the last tensor.
-    pub(crate) fn iterate(&self, plan: &mut PlanBuilder, mut color: ImageId) -> (ImageId, Option<ImageId>) {
-        let mut tensor = None;
-        for _ in 0..self.iterations {
+    /// Smoothing and sharpening in turn, from a picture and the tensor of the round before; the picture and the last
+    /// tensor.
+    fn iterate(
+        &self,
+        plan: &mut PlanBuilder,
+        mut color: ImageId,
+        mut tensor: Option<ImageId>,
+        rounds: i32,
+    ) -> (ImageId, Option<ImageId>) {
+        for _ in 0..rounds {
             let along = self.tensor(plan, color, tensor);
             color = line_integral_convolution::pass(plan, color, along, &self.smoothing);
             let mut across = self.tensor(plan, color, Some(along));
@@ -232,9 +240,31 @@ impl Filter {
     }
 }
 
+/// The filtered picture and its last tensor, for filters as `filter` reads them from the parameters of a node.
+///
+/// Pictures are steadied before the last round, which makes edges sharp again that averages have softened.
+pub(crate) fn filtered(
+    scope: &mut Scope<'_>,
+    filter: impl Fn(&mut Scope<'_>) -> Filter,
+) -> (ImageId, Option<ImageId>) {
+    let last = filter(scope);
+    let rounds = last.iterations - 1;
+    if rounds < 1 {
+        let color = steadied_picture(scope);
+        return last.iterate(scope.plan, color, None, last.iterations);
+    }
+    let by = Agreement::rgb(COLOUR_AGREEMENT);
+    let Steadied { stages: [_, color, tensor], .. } = steadied(scope, by, |scope| {
+        let filter = filter(scope);
+        let color = scope.required("color");
+        let (filtered, tensor) = filter.iterate(scope.plan, color, None, rounds);
+        // Every round has its tensor.
+        [compared(scope, color), filtered, tensor.unwrap_or(filtered)]
+    });
+    last.iterate(scope.plan, color, Some(tensor), 1)
+}
+
 fn build(scope: &mut Scope<'_>) -> ImageId {
-    let color = steadied_picture(scope);
-    let filter = Filter::of(scope);
-    let (filtered, tensor) = filter.iterate(scope.plan, color);
-    filter.finish(scope.plan, filtered, tensor)
+    let (filtered, tensor) = filtered(scope, Filter::of);
+    Filter::of(scope).finish(scope.plan, filtered, tensor)
 }

@@ -3,10 +3,11 @@
 
 use crate::choice::choice;
 use crate::kernels::colour::lightness;
+use crate::kernels::lines::edge_area::Shares;
 use crate::kernels::lines::flow_dog_two_dimensional::{self, Stepping};
 use crate::kernels::lines::{
-    darken_by_lines, dog_columns, flow_dog_cabral_leedom, flow_dog_gradient, flow_dog_tangent, guide_lines,
-    orientation_field,
+    darken_by_lines, dog_columns, edge_area, flow_dog_cabral_leedom, flow_dog_gradient, flow_dog_tangent,
+    guide_lines, orientation_field,
 };
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::shared::stream::Integrator;
@@ -14,7 +15,7 @@ use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::structure::structure_tensor::{Guides, TensorOptions, of_color_and_guides};
 use crate::ports;
 use crate::spec::{ImageKind, NodeSpec, Param, Port, STEADINESS, Scope, WINDOW};
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, compared, steadied};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, compared, steadied};
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
@@ -172,9 +173,20 @@ impl FlowDog {
         self.across(plan, source, field, guides, self.xdog)
     }
 
-    /// The edge image of a response, along the stream lines of `tensor`.
-    pub(crate) fn decided(&self, plan: &mut PlanBuilder, response: ImageId, tensor: ImageId) -> ImageId {
+    /// The edge image of a response, along the stream lines of `tensor`; over areas where it is steadied.
+    pub(crate) fn decided(
+        &self,
+        plan: &mut PlanBuilder,
+        response: ImageId,
+        tensor: ImageId,
+        shares: Option<Shares>,
+    ) -> ImageId {
         let field = orientation_field::pass(plan, tensor);
+        if let (Some(shares), Stepping::Along(integrator)) = (shares, self.stepping) {
+            let options = flow_dog_tangent::Options { sigma: self.sigma_m, integrator, xdog: self.xdog };
+            let smooth = flow_dog_tangent::pass_undecided(plan, response, field, &options);
+            return edge_area::pass(plan, smooth, shares, &self.xdog);
+        }
         self.along(plan, response, field, &self.xdog)
     }
 
@@ -288,7 +300,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let guides_of = |scope: &Scope<'_>| guides(scope, lines.guide_weight);
     let guides = guides_of(scope);
     let by = Agreement::rgb(COLOUR_AGREEMENT);
-    let [_, color, tensor] = steadied(scope, by, |scope| {
+    let Steadied { stages: [_, color, tensor], .. } = steadied(scope, by, |scope| {
         let color = scope.required("color");
         let guides = guides_of(scope);
         let found = scope.input("tensor").unwrap_or_else(|| tensor(scope, color, &guides));

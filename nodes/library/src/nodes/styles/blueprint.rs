@@ -8,7 +8,7 @@ use crate::nodes::structure::flow_map;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::{ADVANCED, LOOK, lines};
 use isophote_engine::ImageId;
 
@@ -70,7 +70,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let abstraction = Abstraction::of(scope);
     let n_e = scope.int("n_e");
     let flow = lines::flow_dog(scope, guide_weight);
-    let [smooth, tensor, response] = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
+    let Steadied { stages: [smooth, tensor, response], shares } = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
         let color = scope.required("color");
         let guides = flow_dog::guides(scope, guide_weight);
         let tensor = flow_dog::tensor(scope, color, &guides);
@@ -81,7 +81,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         [smooth, tensor, flow.response(scope.plan, lightness, tensor, &guides)]
     });
     let lightness = lightness::pass_lab(scope.plan, smooth);
-    let edges = flow.decided(scope.plan, response, tensor);
+    let edges = flow.decided(scope.plan, response, tensor, shares);
     let sheet = Sheet {
         line: scope.color("line_color"),
         paper: scope.color("paper_color"),

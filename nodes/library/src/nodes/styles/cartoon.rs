@@ -13,7 +13,7 @@ use crate::nodes::structure::flow_map;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::{ADVANCED, LOOK, lines, quantization as levels, tone};
 use isophote_engine::ImageId;
 
@@ -114,7 +114,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let flow = lines::flow_dog(scope, guide_weight);
     let line_filter = scope.option("line_filter");
     let by = Agreement::lab(COLOUR_AGREEMENT);
-    let [mut flat, tensor, undecided] = steadied(scope, by, |scope| {
+    let Steadied { stages: [mut flat, tensor, undecided], shares } = steadied(scope, by, |scope| {
         let color = scope.required("color");
         let guides = flow_dog::guides(scope, guide_weight);
         let tensor = flow_dog::tensor(scope, color, &guides);
@@ -131,7 +131,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         [flat, tensor, undecided]
     });
     let edges = match line_filter {
-        LineFilter::Flow => flow.decided(scope.plan, undecided, tensor),
+        LineFilter::Flow => flow.decided(scope.plan, undecided, tensor, shares),
         LineFilter::Isotropic => flow.isotropic(scope.plan, undecided),
     };
 

@@ -2,12 +2,11 @@
 
 use crate::kernels::colour::quantize_luminance::{self, Steepness};
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
-use crate::nodes::coherence::coherence_enhancing::{self as filter, Filter};
+use crate::nodes::coherence::coherence_enhancing::{self as filter, Filter, filtered};
 use crate::nodes::coherence::shock;
 use crate::nodes::colour::quantize_luminance as quantization;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
-use crate::stages::steady::steadied_picture;
 use crate::stages::{ADVANCED, LOOK, abstraction, quantization as levels, tone};
 use crate::value::Value;
 use isophote_engine::ImageId;
@@ -57,16 +56,21 @@ const DETAIL: Param = abstraction::DETAIL
 const SHARPNESS: Param = Param::float("sharpness", "Sharpness", 0.5, [0.0, 1.0])
     .group(LOOK)
     .doc("How wide a soft edge may be to become a sharp one: scales `radius` from 0 to 2 times.");
+
 fn build(scope: &mut Scope<'_>) -> ImageId {
-    let color = steadied_picture(scope);
+    let (filtered, tensor) = filtered(scope, of);
+    let toned = toned(scope, filtered);
+    of(scope).finish(scope.plan, toned, tensor)
+}
+
+/// The filter under the controls of artists.
+fn of(scope: &mut Scope<'_>) -> Filter {
     let mut filter = Filter::of(scope);
     let [scale, _] = abstraction::detail_factors(scope.float("detail"));
     filter.smoothing.sigma *= scale;
     filter.directed.sigma_g *= scale;
     filter.directed.radius *= scope.float("sharpness") / SHARPNESS.default_float();
-    let (filtered, tensor) = filter.iterate(scope.plan, color);
-    let toned = toned(scope, filtered);
-    filter.finish(scope.plan, toned, tensor)
+    filter
 }
 
 /// Tones, levels and saturation, in CIELAB.

@@ -3,6 +3,7 @@
 use crate::choice::choice;
 use crate::kernels::colour::ink_sheet::{self, Sheet};
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
+use crate::kernels::lines::edge_area;
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::shared::stream::Integrator;
@@ -18,7 +19,7 @@ use crate::ports;
 use crate::spec::{HOLD, NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::lines::{length_factor, width_factor};
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::{ADVANCED, LOOK, lines, tone};
 use isophote_engine::{Class, ImageId};
 
@@ -344,7 +345,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         kernel: Kernel::Separable,
         guide_weight,
     };
-    let [smooth, tensor, response] = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
+    let Steadied { stages: [smooth, tensor, response], shares } = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
         let color = scope.required("color");
         let guides = flow_dog::guides(scope, guide_weight);
         let tensor = of_color_and_guides(scope.plan, color, &guides, &options);
@@ -354,7 +355,11 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         let lightness = lightness::pass_lab(scope.plan, smooth);
         [smooth, tensor, flow.response(scope.plan, lightness, tensor, &guides)]
     });
-    let response = flow.decided(scope.plan, response, tensor);
+    let mut response = flow.decided(scope.plan, response, tensor, None);
+    if let Some(shares) = shares {
+        let xdog = Xdog { epsilon: drawing.epsilon, phi: drawing.phi, ..flow.xdog };
+        response = edge_area::pass_undecided(scope.plan, response, shares, &xdog);
+    }
     let tinted = lab_to_rgb::pass(scope.plan, smooth, scope.float("saturation"));
     // Which passes there are is a matter of the style alone: the trims only change numbers.
     let carved = if own.stroke[1] > 0.0 { strokes(scope, tensor, own.stroke) } else { tinted };

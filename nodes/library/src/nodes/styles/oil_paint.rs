@@ -12,7 +12,7 @@ use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
 use crate::spec::{HOLD, NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::{ADVANCED, LOOK, tone};
 use isophote_engine::{Class, ImageId};
 
@@ -118,7 +118,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     };
     let abstraction = Abstraction::of(scope);
     let n_a = scope.int("n_a");
-    let [flat, tensors] = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
+    let Steadied { stages: [flat, tensors], .. } = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
         let color = scope.required("color");
         let tensors = structure_tensor::of_color(scope.plan, color, &options);
         let tensors = flow_map::bent(scope, tensors);

@@ -11,7 +11,7 @@ use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
 use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::{ADVANCED, LOOK, tone};
 use isophote_engine::ImageId;
 
@@ -98,7 +98,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let options = TensorOptions::at_scale(scope.scale());
     let abstraction = Abstraction::of(scope);
     let n_a = scope.int("n_a");
-    let [mut flat, tensors] = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
+    let Steadied { stages: [mut flat, tensors], .. } = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
         let color = scope.required("color");
         let tensors = structure_tensor::of_color(scope.plan, color, &options);
         let tensors = flow_map::bent(scope, tensors);

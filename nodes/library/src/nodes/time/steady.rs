@@ -2,7 +2,7 @@
 
 use crate::ports;
 use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, compared, steadied};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, compared, steadied};
 use crate::value::Value;
 use isophote_engine::ImageId;
 
@@ -31,7 +31,7 @@ const COLOR_AGREEMENT: Param =
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let by = Agreement::rgb(scope.float(COLOR_AGREEMENT.id));
-    let [_, color] = steadied(scope, by, |scope| {
+    let Steadied { stages: [_, color], .. } = steadied(scope, by, |scope| {
         let color = scope.required("color");
         [compared(scope, color), color]
     });
