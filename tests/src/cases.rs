@@ -222,6 +222,7 @@ pub fn has_optional_field(spec: &NodeSpec) -> bool {
 
 /// True when the node takes guides.
 pub fn has_guides(spec: &NodeSpec) -> bool {
-    let is_guide = |k| matches!(k, ImageKind::Normal | ImageKind::Depth | ImageKind::ObjectId);
+    let is_guide =
+        |k| matches!(k, ImageKind::Normal | ImageKind::Depth | ImageKind::ObjectId | ImageKind::Position);
     spec.inputs.iter().any(|p| is_guide(p.kind))
 }

@@ -345,6 +345,7 @@ pub fn usable_guides(library: &Library, style: &Style) -> Result<Vec<Guide>> {
                 Kind::Normal => guides.push(Guide::Normal),
                 Kind::Depth => guides.push(Guide::Depth),
                 Kind::ObjectId => guides.push(Guide::ObjectId),
+                Kind::Position => guides.push(Guide::RestPosition),
                 Kind::Motion if is_steady && port.id == "motion" => guides.push(Guide::Motion),
                 Kind::Motion if is_steady => guides.push(Guide::MotionForward),
                 _ => {}
