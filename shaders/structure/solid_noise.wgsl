@@ -62,6 +62,10 @@ fn noise(p: vec3f, octave: i32) -> f32 {
     return sum * inverseSqrt(dot(wx, wx) * dot(wy, wy) * dot(wz, wz) / 12.0);
 }
 
+// What the coarse octave's variance counts against the fine one's, the root of 1/2: lines along which marks are smoothed
+// keep more of it.
+const COARSE: f32 = 0.7071;
+
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
@@ -77,8 +81,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let farthest = max(max(abs(point.x), abs(point.y)), max(abs(point.z), 1e-20));
     let level = clamp(max(scale + params.spacing, log2(farthest) - 22.0), -60.0, 60.0);
     let octave = floor(level);
-    let coarse = level - octave;
-    let fine = 1.0 - coarse;
+    // Where the shares of the variance go evenly from one octave to the next, the width of marks stays.
+    let coarse = sqrt(COARSE * (level - octave));
+    let fine = sqrt(1.0 - (level - octave));
     let sum = fine * noise(point.xyz, i32(octave)) + coarse * noise(point.xyz, i32(octave) + 1);
     let even = sum * inverseSqrt(fine * fine + coarse * coarse);
     let value = clamp(0.5 + params.deviation * even, 0.0, 1.0);

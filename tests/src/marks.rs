@@ -34,13 +34,13 @@ const SQUARE: i32 = 32;
 /// Farthest that marks are looked for, pixels on each axis.
 pub const FARTHEST: i32 = 4;
 
-/// How far the marks of a frame slide against the surface that they lie on, pixels: for every square of the picture that
+/// How far the marks of a frame slide against the surface that they lie on, pixels to the right and down: for every square of the picture that
 /// shows one surface, the place of the greatest correlation of the marks with those of the frame before, carried along the
 /// motion. [`FARTHEST`] or more where they do not move with it at all.
 ///
 /// # Panics
 /// As [`carried`].
-pub fn slides(shot: &Shot, frame: usize, [before, now]: [&Image; 2]) -> Vec<f64> {
+pub fn slides(shot: &Shot, frame: usize, [before, now]: [&Image; 2]) -> Vec<[f64; 2]> {
     let (w, h) = (now.width() as i32, now.height() as i32);
     let carried = carried(shot, frame, before);
     let then = |x: i32, y: i32| f64::from(carried[(y * w + x) as usize].color[1]);
@@ -70,16 +70,16 @@ pub fn slides(shot: &Shot, frame: usize, [before, now]: [&Image; 2]) -> Vec<f64>
     slides
 }
 
-/// How far from (0, 0) a function is greatest, between whole places by parabolas.
-fn peak(of: impl Fn(i32, i32) -> f64) -> f64 {
+/// Where a function is greatest, between whole places by parabolas.
+fn peak(of: impl Fn(i32, i32) -> f64) -> [f64; 2] {
     let side = 2 * FARTHEST + 1;
     let at = |dx: i32, dy: i32| ((dy + FARTHEST) * side + dx + FARTHEST) as usize;
     let places = (-FARTHEST..=FARTHEST).flat_map(|dy| (-FARTHEST..=FARTHEST).map(move |dx| (dx, dy)));
     let values: Vec<f64> = places.clone().map(|(dx, dy)| of(dx, dy)).collect();
     let best = places.max_by(|a, b| values[at(a.0, a.1)].total_cmp(&values[at(b.0, b.1)]));
-    let Some((dx, dy)) = best else { return 0.0 };
+    let Some((dx, dy)) = best else { return [0.0; 2] };
     if dx.abs() == FARTHEST || dy.abs() == FARTHEST {
-        return f64::from(FARTHEST);
+        return [f64::from(dx), f64::from(dy)];
     }
     let vertex = |low: f64, middle: f64, high: f64| {
         let bend = low - 2.0 * middle + high;
@@ -88,7 +88,7 @@ fn peak(of: impl Fn(i32, i32) -> f64) -> f64 {
     let middle = values[at(dx, dy)];
     let x = f64::from(dx) + vertex(values[at(dx - 1, dy)], middle, values[at(dx + 1, dy)]);
     let y = f64::from(dy) + vertex(values[at(dx, dy - 1)], middle, values[at(dx, dy + 1)]);
-    x.hypot(y)
+    [x, y]
 }
 
 /// What marks look like.

@@ -248,7 +248,7 @@ impl Style {
         let plan = self.plan(library, request, frames as usize)?;
         let textures = plan.textures().map_err(refused)?;
         let inputs = textures.iter().filter(|t| t.role == Role::Input).map(|t| t.name);
-        Ok(Past::of(frames as usize, inputs))
+        Ok(Past::of(inputs))
     }
 }
 

@@ -14,7 +14,7 @@ use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::nodes::structure::flow_map;
 use crate::nodes::structure::structure_tensor::{TensorOptions, of_color_and_guides};
 use crate::ports;
-use crate::spec::{HOLD, NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::lines::{length_factor, width_factor};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
@@ -81,6 +81,7 @@ pub static NODE: NodeSpec = NodeSpec {
         STEADINESS,
         WINDOW,
         HOLD,
+        RENEWAL,
     ],
     build,
 };

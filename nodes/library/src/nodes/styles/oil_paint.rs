@@ -9,7 +9,7 @@ use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::nodes::structure::flow_map;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
-use crate::spec::{HOLD, NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::{ADVANCED, LOOK, marks, tone};
@@ -87,6 +87,7 @@ pub static NODE: NodeSpec = NodeSpec {
         STEADINESS,
         WINDOW,
         HOLD,
+        RENEWAL,
     ],
     build,
 };

@@ -9,7 +9,7 @@ use crate::nodes::smoothing::{line_integral_convolution as lic, morphology};
 use crate::nodes::structure::flow_map;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
-use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::spec::{NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::{ADVANCED, LOOK, marks, tone};
@@ -82,6 +82,7 @@ pub static NODE: NodeSpec = NodeSpec {
             .doc("Size of the paper's grain, in pixels of the full-size picture."),
         STEADINESS,
         WINDOW,
+        RENEWAL,
     ],
     build,
 };
