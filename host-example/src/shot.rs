@@ -36,7 +36,7 @@ pub struct Options {
     pub fps: f32,
     /// Whether pictures are scene-referred, as they are before exposure and tone mapping.
     pub scene_referred: bool,
-    /// Whether rest positions are rendered too.
+    /// Whether rest positions are rendered whatever the style.
     pub rest_positions: bool,
 }
 
@@ -64,15 +64,16 @@ impl Shot {
     pub fn new(scene: Scene, style: Option<(&Library, Style)>, options: Options) -> Result<Self> {
         let gpu = Gpu::open()?;
         let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &scene, options.size)?;
-        if options.rest_positions {
-            renderer.add_rest_positions();
-        }
-        gpu.check()?;
         let mut stylizer = None;
         if let Some((library, style)) = style {
             let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
             stylizer = Some(Stylizer::new(&kernels, library, style, options.size)?);
         }
+        let wants_rest = stylizer.as_ref().map_or(Ok(false), Stylizer::wants_rest_positions)?;
+        if options.rest_positions || wants_rest {
+            renderer.add_rest_positions();
+        }
+        gpu.check()?;
         let pose = Pose::at_rest(&scene);
         let mut shot = Self {
             look: Look::for_scene(&scene, &pose),

@@ -138,6 +138,25 @@ fn frames_are_applied_with_their_guides() {
 }
 
 #[test]
+fn marks_stick_to_things_in_what_is_rendered_and_in_what_is_applied() {
+    let folder = folder();
+    render(folder.path(), "shot.exr", &[]);
+    render(folder.path(), "ours.exr", &["--style", "watercolor", "--set", "clouds=1"]);
+    apply(folder.path(), &["watercolor", "shot.exr", "theirs.exr", "--set", "clouds=1"]);
+    let none = ["--guide", "rest_position=none"];
+    apply(
+        folder.path(),
+        &[&["watercolor", "shot.exr", "blind.exr", "--set", "clouds=1"], &none[..]].concat(),
+    );
+    let [ours, theirs, blind] = ["ours", "theirs", "blind"]
+        .map(|name| channel(&read(&folder.path().join(format!("{name}.exr"))), "G"));
+    let far = |a: &[f32], b: &[f32]| a.iter().zip(b).filter(|(a, b)| (*a - *b).abs() > 0.01).count();
+    let (apart, anchored) = (far(&ours, &theirs), far(&theirs, &blind));
+    assert!(apart * 100 <= ours.len(), "{apart} of {} differ", ours.len());
+    assert!(anchored > 4 * apart && anchored * 20 > ours.len(), "rest positions change {anchored} pixels");
+}
+
+#[test]
 fn any_frames_of_a_sequence_are_rendered_as_in_the_whole() {
     let folder = folder();
     let names = |start: &str| -> Vec<String> {

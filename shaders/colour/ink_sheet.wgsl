@@ -1,7 +1,7 @@
 // Lays ink, graphite, charcoal or chalk on paper (section 4.3, 4.4): the response of a difference of
 // Gaussians, roughened by strokes, is thresholded to lines and masses; shading is hatched or rubbed in; both
 // catch on the paper's grain. Cells of grain and hatching are those of the full-size picture.
-// Cost: three loads, 36 hashes and about 150 multiply-adds.
+// Cost: five loads, 36 hashes and about 150 multiply-adds.
 #import gpu/grid
 #import shared/value_noise
 
@@ -36,13 +36,17 @@ struct Params {
     follow: f32,
     /// Where the picture stands in the canonical one, pixels.
     origin: vec2f,
+    /// Nonzero: hatching is that of the last two images.
+    given: u32,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var response: texture_2d<f32>;
 @group(0) @binding(3) var source: texture_2d<f32>;
 @group(0) @binding(4) var strokes: texture_2d<f32>;
-@group(0) @binding(5) var target_image: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(5) var first_hatching: texture_2d<f32>;
+@group(0) @binding(6) var second_hatching: texture_2d<f32>;
+@group(0) @binding(7) var target_image: texture_storage_2d<rgba32float, write>;
 
 // Noise whose values fill 0..1.
 fn even(v: f32) -> f32 {
@@ -80,8 +84,14 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let dark = 1.0 - clamp(dot(v.rgb, vec3f(0.2126, 0.7152, 0.0722)), 0.0, 1.0);
     let tone = clamp(params.shading * (1.06 * dark - 0.06), 0.0, 1.0);
     let deep = clamp(params.shading * (1.7 * dark - 0.9), 0.0, 1.0);
-    let first = mix(tooth, hatch(q, vec2f(0.8, -0.6), 301u), params.hatching);
-    let second = mix(tooth, hatch(q, vec2f(0.96, 0.28), 701u), params.hatching);
+    var first = fetch(first_hatching, 3u, pixel(id)).x;
+    var second = fetch(second_hatching, 4u, pixel(id)).x;
+    if params.given == 0u {
+        first = hatch(q, vec2f(0.8, -0.6), 301u);
+        second = hatch(q, vec2f(0.96, 0.28), 701u);
+    }
+    first = mix(tooth, first, params.hatching);
+    second = mix(tooth, second, params.hatching);
     // Strokes leave the paper between them; what is rubbed in follows the grain only a little.
     let depth = 0.4 + 1.2 * params.hatching;
     let shade = max(catches(tone * tone, first, depth), catches(deep, second, depth));

@@ -1,7 +1,7 @@
 // Thin paint on paper: pigment that gathers at the borders of dark regions, in clouds and in the grain
 // of the paper (Bousseau et al. 2006). Clouds and grain belong to the full-size picture, so that tiles
 // and proxies show the same paper.
-// Cost: two loads, 16 hashes and about 150 multiply-adds.
+// Cost: three loads, 16 hashes and about 150 multiply-adds.
 #import shared/value_noise
 #import gpu/grid
 
@@ -20,12 +20,15 @@ struct Params {
     grain_frequency: f32,
     /// Where the picture stands in the canonical one, pixels.
     origin: vec2f,
+    /// Nonzero: clouds are those of the third image.
+    given: u32,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var blurred: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(4) var given_clouds: texture_2d<f32>;
+@group(0) @binding(5) var target_image: texture_storage_2d<rgba32float, write>;
 
 // Luma within the range of paper.
 fn luma(c: vec3f) -> f32 {
@@ -39,7 +42,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let v = fetch(source, 0u, pixel(id));
     let q = (centre(id) + params.origin) * params.inverse_scale;
-    let cloud = 0.6 * value_noise(q * 0.017, 11u) + 0.4 * value_noise(q * 0.043, 503u);
+    var cloud = fetch(given_clouds, 2u, pixel(id)).x;
+    if params.given == 0u {
+        cloud = 0.6 * value_noise(q * 0.017, 11u) + 0.4 * value_noise(q * 0.043, 503u);
+    }
     let g = q * params.grain_frequency;
     let grain = 0.6 * value_noise(g, 1013u) + 0.4 * value_noise(g * 2.3, 2027u);
     let excess = luma(fetch(blurred, 1u, pixel(id)).rgb) - luma(v.rgb);

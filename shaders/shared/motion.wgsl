@@ -22,6 +22,26 @@ fn bounded_motion(motion: vec2f, limit: f32) -> vec2f {
     return select(vec2f(UNKNOWN_MOTION), motion, known);
 }
 
+// The motion at a place, as far as it is no longer than `limit`: interpolated where neighbours agree to a pixel, else
+// that of the nearest.
+fn motion_at(steps: texture_2d<f32>, slot: u32, place: vec2f, limit: f32) -> vec2f {
+    let q = min(max(place - 0.5, vec2f(-2.0)), vec2f(grid.inputs[slot].zw) + 2.0);
+    let corner = floor(q);
+    let f = q - corner;
+    let i = vec2i(corner);
+    let a = bounded_motion(fetch(steps, slot, i).xy, limit);
+    let b = bounded_motion(fetch(steps, slot, i + vec2i(1, 0)).xy, limit);
+    let c = bounded_motion(fetch(steps, slot, i + vec2i(0, 1)).xy, limit);
+    let d = bounded_motion(fetch(steps, slot, i + vec2i(1, 1)).xy, limit);
+    let top = a + (b - a) * f.x;
+    let bottom = c + (d - c) * f.x;
+    let mean = top + (bottom - top) * f.y;
+    // Across the border of a thing the motions on both sides have no mean: the nearest one holds.
+    let spread = max(max(a, b), max(c, d)) - min(min(a, b), min(c, d));
+    let near = bounded_motion(fetch(steps, slot, vec2i(floor(place))).xy, limit);
+    return select(near, mean, max(spread.x, spread.y) <= 1.0);
+}
+
 // Weights of the four pixels around a share of the way from the second to the third: the cubic of Catmull and Rom.
 fn catmull_rom(f: f32) -> vec4f {
     let g = 1.0 - f;

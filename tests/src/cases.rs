@@ -215,6 +215,21 @@ pub fn request(kind: Kind, width: u32, height: u32, guides: bool) -> Request {
     }
 }
 
+/// For nodes whose marks motion carries where no rest positions are known: values by which it does so.
+pub fn carrying(spec: &NodeSpec) -> Option<Setting> {
+    spec.param("renewal")?;
+    // Not all styles of a node draw marks; the last one does.
+    let style = spec.param("style").map(|(_, p)| ("style", extreme(p, 1, false)));
+    let values = [("steadiness", Value::Float(0.5))].into_iter().chain(style).collect();
+    Some(Setting { label: "carrying marks".into(), values })
+}
+
+/// As [`request`] with all guides but rest positions, between two renewals of marks.
+pub fn request_without_rest(kind: Kind, width: u32, height: u32) -> Request {
+    let request = request(kind, width, height, true);
+    Request { guides: Guides { rest_position: false, ..request.guides }, frame: 3, ..request }
+}
+
 /// True when the node has an optional input that is not a picture of the graph's own.
 pub fn has_optional_field(spec: &NodeSpec) -> bool {
     spec.inputs.iter().any(|p| p.optional && GraphInput::from_id(p.kind.id()).is_none())
@@ -222,6 +237,7 @@ pub fn has_optional_field(spec: &NodeSpec) -> bool {
 
 /// True when the node takes guides, or finds motion from the frames around.
 pub fn has_guides(spec: &NodeSpec) -> bool {
-    let is_guide = |k| matches!(k, ImageKind::Normal | ImageKind::Depth | ImageKind::ObjectId);
+    let is_guide =
+        |k| matches!(k, ImageKind::Normal | ImageKind::Depth | ImageKind::ObjectId | ImageKind::Position);
     spec.inputs.iter().any(|p| is_guide(p.kind)) || spec.output.kind == ImageKind::Motion
 }

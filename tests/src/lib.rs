@@ -9,6 +9,7 @@ pub mod compare;
 pub mod device;
 pub mod imports;
 pub mod library;
+pub mod marks;
 pub mod ofx;
 pub mod pictures;
 pub mod plans;

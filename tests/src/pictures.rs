@@ -168,7 +168,9 @@ pub fn field(kind: ImageKind, width: u32, height: u32) -> Image {
                 return [0.0; 4];
             }
             let wall = if x > 20 { 1.0 } else { 0.0 };
-            [0.02 * x as f32 - 3.0 * wall, 0.015 * y as f32, 0.3 * wall + 0.002 * (x + y) as f32, 1.0]
+            // Leaves and grass: points that are hardly those of one surface.
+            let leaf = if y % 16 > 9 { random.range(0.0, 0.06) } else { 0.0 };
+            [0.02 * x as f32 - 3.0 * wall, 0.015 * y as f32 + leaf, 0.3 * wall + 0.002 * (x + y) as f32, 1.0]
         }),
     }
 }

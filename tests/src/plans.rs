@@ -41,6 +41,8 @@ struct Variant {
     wired: bool,
     kind: Kind,
     guides: bool,
+    /// Whether guides are rest positions, too.
+    rest: bool,
     scale: f32,
 }
 
@@ -61,7 +63,7 @@ fn variants(spec: &'static NodeSpec) -> Vec<Variant> {
     let (fields, guides) = (cases::has_optional_field(spec), cases::has_guides(spec));
     let mut all = Vec::new();
     let mut add = |setting: &Setting, wired, kind, guides, scale| {
-        all.push(Variant { setting: setting.clone(), wired, kind, guides, scale });
+        all.push(Variant { setting: setting.clone(), wired, kind, guides, rest: true, scale });
     };
     let settings = cases::settings(spec, RANDOM_SETS);
     let Some((default, others)) = settings.split_first() else { return all };
@@ -78,6 +80,17 @@ fn variants(spec: &'static NodeSpec) -> Vec<Variant> {
     for kind in Kind::ALL {
         add(default, false, kind, false, 0.5);
     }
+    let carrying = cases::carrying(spec).into_iter();
+    all.extend(carrying.flat_map(|setting| {
+        Kind::ALL.map(|kind| Variant {
+            setting: setting.clone(),
+            wired: false,
+            kind,
+            guides: true,
+            rest: false,
+            scale: 1.0,
+        })
+    }));
     all
 }
 
@@ -86,7 +99,10 @@ fn planned(spec: &'static NodeSpec, variant: &Variant, size: [u32; 2]) -> Option
     let ([width, height], &Variant { wired, kind, guides, scale, .. }) = (size, variant);
     let mut setup = cases::setup(spec, wired);
     variant.setting.apply(&mut setup.graph, setup.node);
-    let full = cases::request(kind, width, height, guides);
+    let full = match variant.rest {
+        true => cases::request(kind, width, height, guides),
+        false => cases::request_without_rest(kind, width, height),
+    };
     let request = Request { scale, ..full };
     let plan = run::planned(&setup.graph, request).plan().clone();
     let kernels = |plan: &Plan| plan.passes().iter().map(|p| p.kernel.name).collect::<BTreeSet<_>>();

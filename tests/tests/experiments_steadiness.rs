@@ -1,5 +1,5 @@
-//! Experiment 16: how steady the styles are over time, from colour and motion alone, on the demo scene along its camera's path, on a running fox
-//! and on a static shot with noise, without and with `steadiness`.
+//! Experiment 16: how steady the styles are over time, from colour and motion alone: on the demo scene along its camera's
+//! path, on a running fox and on a static shot with noise, without and with `steadiness`.
 //!
 //! `ISOPHOTE_STYLES=cartoon,ink` runs those styles alone, `ISOPHOTE_PICTURES=FOLDER` writes what they draw.
 

@@ -77,6 +77,10 @@ fn runs(spec: &'static NodeSpec, size: [u32; 2]) -> Vec<Run> {
             all.push(run);
         }
     }
+    if let Some(setting) = cases::carrying(spec) {
+        let request = cases::request_without_rest(Kind::Steps, size[0], size[1]);
+        all.push(planned(spec, &setting, false, Kind::Steps, request));
+    }
     all
 }
 
@@ -88,12 +92,18 @@ fn one(
     guides: bool,
     size: [u32; 2],
 ) -> Run {
+    let request = cases::request(kind, size[0], size[1], guides);
+    let run = planned(spec, setting, wired, kind, request);
+    Run { label: format!("{} guides={guides}", run.label), ..run }
+}
+
+fn planned(spec: &'static NodeSpec, setting: &Setting, wired: bool, kind: Kind, request: Request) -> Run {
     let mut setup = cases::setup(spec, wired);
     setting.apply(&mut setup.graph, setup.node);
-    let planned = run::planned(&setup.graph, cases::request(kind, size[0], size[1], guides));
-    let names = planned.plan().inputs().iter().map(|port| port.name.clone());
+    let planned = run::planned(&setup.graph, request);
+    let (names, size) = (planned.plan().inputs().iter().map(|port| port.name.clone()), planned.plan().size());
     let inputs = names.map(|name| (name.clone(), sweep::input(&name, kind, size))).collect();
-    Run { label: format!("{} ({}) {kind:?} guides={guides}", spec.id, setting.label), planned, inputs }
+    Run { label: format!("{} ({}) {kind:?}", spec.id, setting.label), planned, inputs }
 }
 
 /// True for nodes that read more than their picture where there is more.

@@ -20,6 +20,7 @@ use crate::loader::contract::{
 use crate::loader::plan::{Role, Texture};
 use crate::loader::{Answer, Control, Device, Input, Library, Sequence};
 use crate::pixels::{Pixels, Precision};
+use crate::stylize::history::{is_stage, split};
 use crate::stylize::style::Style;
 
 /// A style with what it runs on.
@@ -317,7 +318,7 @@ fn history(past: u32) -> IsophoteHistory {
     IsophoteHistory { past, max_motion: 0.0 }
 }
 
-/// Bytes of the stages of so many frames before and after a frame, and of itself.
+/// Bytes of the stages that a frame reads of those before and after it, which are at most so many, and of its own.
 fn stages(library: &Library, style: &Style, request: &IsophoteRequest, frames: [u32; 2]) -> Answer<u64> {
     let [past, future] = frames;
     if past + future == 0 {
@@ -325,8 +326,11 @@ fn stages(library: &Library, style: &Style, request: &IsophoteRequest, frames: [
     }
     let plan = library.plan_in_order(&style.graph, request, &history(past))?;
     let textures = plan.textures()?;
-    let kept = textures.iter().filter(|t| t.role == Role::Output && t.name.starts_with("stage"));
-    Ok(kept.map(Texture::bytes).sum::<u64>() * u64::from(past + future + 1))
+    let kept = textures.iter().filter(|t| t.role == Role::Output && is_stage(t.name));
+    // Of farther frames only inputs are read.
+    let read = textures.iter().filter_map(|t| split(t.name)).filter(|(name, _)| is_stage(name));
+    let past = read.map(|(_, before)| before as u64).max().unwrap_or(0);
+    Ok(kept.map(Texture::bytes).sum::<u64>() * (past + u64::from(future) + 1))
 }
 
 /// Guides that a style can use, whether or not they are connected.
@@ -345,6 +349,7 @@ pub fn usable_guides(library: &Library, style: &Style) -> Result<Vec<Guide>> {
                 Kind::Normal => guides.push(Guide::Normal),
                 Kind::Depth => guides.push(Guide::Depth),
                 Kind::ObjectId => guides.push(Guide::ObjectId),
+                Kind::Position => guides.push(Guide::RestPosition),
                 Kind::Motion if is_steady && port.id == "motion" => guides.push(Guide::Motion),
                 Kind::Motion if is_steady => guides.push(Guide::MotionForward),
                 _ => {}

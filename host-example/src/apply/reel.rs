@@ -81,6 +81,7 @@ pub fn guide_bit(input: &str) -> u32 {
         "object_id" => contract::ISOPHOTE_GUIDE_OBJECT_ID,
         "motion" => contract::ISOPHOTE_GUIDE_MOTION,
         "motion_forward" => contract::ISOPHOTE_GUIDE_MOTION_FORWARD,
+        "rest_position" => contract::ISOPHOTE_GUIDE_REST_POSITION,
         _ => 0,
     }
 }

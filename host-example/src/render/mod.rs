@@ -163,6 +163,9 @@ impl Renderer {
 
     /// Renders rest positions too from now on, in a pass of their own.
     pub fn add_rest_positions(&mut self) {
+        if self.targets.rest.is_some() {
+            return;
+        }
         let size = (self.targets.width, self.targets.height);
         self.targets.rest = Some(Target::new(&self.device, "rest position", REST_FORMAT, 1, size));
     }

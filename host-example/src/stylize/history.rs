@@ -9,22 +9,44 @@ use crate::error::{Error, Result};
 /// What later frames will read of a frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Past {
-    /// Frames before the one at hand that plans know at most.
+    /// Frames before the one at hand that plans read at most.
     pub frames: usize,
-    /// Inputs of the host's, such as `depth`, that are read of them.
-    pub inputs: Vec<String>,
+    /// Stages and inputs of the host's, such as `depth`, that are read of them, and of how many frames before at most.
+    depths: Vec<(String, usize)>,
 }
 
 impl Past {
-    /// Of a plan that knows so many frames before, by the names of its inputs.
-    pub fn of<'n>(frames: usize, names: impl Iterator<Item = &'n str>) -> Self {
-        let mut inputs: Vec<String> = Vec::new();
-        for (base, _) in names.filter_map(split).filter(|(base, _)| !is_stage(base)) {
-            if inputs.iter().all(|known| known != base) {
-                inputs.push(base.to_owned());
+    /// Of a plan that knows as many frames before as may count, by the names of its inputs.
+    pub fn of<'n>(names: impl Iterator<Item = &'n str>) -> Self {
+        let mut depths: Vec<(String, usize)> = Vec::new();
+        for (base, before) in names.filter_map(split) {
+            match depths.iter_mut().find(|(known, _)| known == base) {
+                Some((_, most)) => *most = before.max(*most),
+                None => depths.push((base.to_owned(), before)),
             }
         }
-        Self { frames, inputs }
+        let frames = depths.iter().map(|(_, depth)| *depth).max().unwrap_or(0);
+        Self { frames, depths }
+    }
+
+    /// Inputs of the host's that are read of frames before.
+    pub fn inputs(&self) -> impl Iterator<Item = &str> {
+        self.depths.iter().map(|(name, _)| name.as_str()).filter(|name| !is_stage(name))
+    }
+
+    /// How many textures of a name take turns, where there are so many turns: one for each frame that it is read of and
+    /// one for the frame at hand, and no number that does not go into the turns.
+    fn textures(&self, name: &str, turns: usize) -> usize {
+        let depth = self.depths.iter().find(|(known, _)| known == name).map_or(0, |(_, depth)| *depth);
+        (depth + 1..turns).find(|count| turns.is_multiple_of(*count)).unwrap_or(turns)
+    }
+
+    /// How many turns take the fewest textures.
+    fn turns(&self) -> usize {
+        let least = self.frames + 1;
+        let all =
+            |turns: usize| self.depths.iter().map(|(name, _)| self.textures(name, turns)).sum::<usize>();
+        (least..2 * least).min_by_key(|turns| all(*turns)).unwrap_or(least)
     }
 }
 
@@ -39,7 +61,7 @@ pub fn is_stage(name: &str) -> bool {
     name.strip_prefix("stage").is_some_and(|number| number.parse::<u32>().is_ok())
 }
 
-/// The textures of one stage or input.
+/// The textures of one stage or input, as many as go into the turns.
 #[derive(Debug)]
 struct Ring {
     name: String,
@@ -52,21 +74,22 @@ struct Ring {
 #[derive(Debug, Default)]
 pub struct Rings {
     rings: Vec<Ring>,
-    /// Frames of which textures are held.
-    frames: usize,
-    /// Which of a ring's textures belongs to the frame at hand.
+    past: Past,
+    /// After so many frames all rings begin anew.
+    turns: usize,
+    /// Which of them it is.
     turn: usize,
 }
 
 impl Rings {
     /// None yet, for plans that read `past`.
     pub fn new(past: &Past) -> Self {
-        Self { rings: Vec::new(), frames: past.frames + 1, turn: 0 }
+        Self { rings: Vec::new(), past: past.clone(), turns: past.turns(), turn: 0 }
     }
 
     /// How many turns there are.
     pub fn turns(&self) -> usize {
-        self.frames
+        self.turns
     }
 
     /// Which turn it is.
@@ -77,8 +100,8 @@ impl Rings {
     /// The textures of a name by turns, as they are written or, so many frames later, read.
     pub fn views(&self, name: &str, later: usize) -> Option<Vec<wgpu::TextureView>> {
         let ring = self.rings.iter().find(|ring| ring.name == name)?;
-        let at = |turn: usize| ring.views[(turn + self.frames - later) % self.frames].clone();
-        Some((0..self.frames).map(at).collect())
+        let at = |turn: usize| ring.views[(turn + self.turns - later) % ring.views.len()].clone();
+        Some((0..self.turns).map(at).collect())
     }
 
     /// Makes textures for a name, unless it has them in this format and size; returns how many were made.
@@ -102,13 +125,14 @@ impl Rings {
             return Ok(0);
         }
         self.rings.retain(|ring| ring.name != name);
-        let views = (0..self.frames).map(|_| make()).collect::<Result<Vec<_>>>()?;
+        let count = self.past.textures(name, self.turns);
+        let views = (0..count).map(|_| make()).collect::<Result<Vec<_>>>()?;
         if views.is_empty() {
             let problem = format!("no frames are held of '{name}'");
             return Err(Error::failure(problem, "this is a mistake in the program; please report it"));
         }
         self.rings.push(Ring { name: name.to_owned(), views, host });
-        Ok(self.frames as u64)
+        Ok(count as u64)
     }
 
     /// Forgets names that are not among these.
@@ -120,7 +144,7 @@ impl Rings {
     pub fn encode_copies(&self, encoder: &mut wgpu::CommandEncoder) {
         for ring in &self.rings {
             if let Some(host) = &ring.host {
-                let to = ring.views[self.turn].texture();
+                let to = ring.views[self.turn % ring.views.len()].texture();
                 encoder.copy_texture_to_texture(host.as_image_copy(), to.as_image_copy(), to.size());
             }
         }
@@ -128,7 +152,7 @@ impl Rings {
 
     /// The next frame begins.
     pub fn advance(&mut self) {
-        self.turn = (self.turn + 1) % self.frames.max(1);
+        self.turn = (self.turn + 1) % self.turns.max(1);
     }
 }
 
@@ -139,10 +163,22 @@ mod tests {
     #[test]
     fn names_tell_what_is_kept() {
         let names = ["color", "stage0@-1", "depth@-1", "motion@-1", "depth@-2", "stage1@-2"];
-        let past = Past::of(2, names.into_iter());
-        assert_eq!(past, Past { frames: 2, inputs: vec!["depth".into(), "motion".into()] });
+        let past = Past::of(names.into_iter());
+        assert_eq!((past.frames, past.inputs().collect::<Vec<_>>()), (2, vec!["depth", "motion"]));
         assert!(is_stage("stage12") && !is_stage("stages") && !is_stage("result"));
         assert_eq!(split("depth@-2"), Some(("depth", 2)));
         assert_eq!(split("depth"), None);
+    }
+
+    #[test]
+    fn what_is_read_of_few_frames_is_kept_of_few() {
+        let few = Past::of(["stage0@-1", "stage0@-2", "depth@-2"].into_iter());
+        assert_eq!((few.turns(), few.textures("stage0", 3), few.textures("stage1", 3)), (3, 3, 1));
+        // Motion of six frames, all else of two.
+        let names = ["stage0@-2", "stage1@-2", "stage2@-2", "depth@-2", "motion@-6"];
+        let past = Past::of(names.into_iter());
+        let turns = past.turns();
+        assert_eq!(turns, 9);
+        assert_eq!((past.textures("stage0", turns), past.textures("motion", turns)), (3, 9));
     }
 }

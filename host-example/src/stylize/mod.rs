@@ -18,7 +18,7 @@ use crate::error::Result;
 use crate::loader::catalogue::Kind;
 use crate::loader::contract::{
     ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
-    ISOPHOTE_SPACE_LINEAR, IsophoteHistory, IsophoteRequest,
+    ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_LINEAR, IsophoteHistory, IsophoteRequest,
 };
 use crate::loader::plan::{Change, Role};
 use crate::loader::{Library, Plan, Refusal};
@@ -61,6 +61,14 @@ impl Stylizer {
     /// Frames before its own that a frame depends on.
     pub fn depth(&self) -> usize {
         self.past.frames
+    }
+
+    /// Whether the renderer must [add rest positions](crate::render::Renderer::add_rest_positions) before targets are bound.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Failure`] when the library fails.
+    pub fn wants_rest_positions(&self) -> Result<bool> {
+        self.style.can_use(Kind::Position)
     }
 
     /// Takes the next frame for the first: those before are of another shot.
@@ -180,12 +188,15 @@ impl Stylizer {
     }
 
     fn bind_with(&mut self, color: &Target, targets: &Targets) -> Result<()> {
+        // Where nobody wants rest positions no plan reads them, and anything may stand for them.
+        let rest = targets.rest.as_ref().unwrap_or(&targets.normal);
         let inputs = [
             ("color", &color.view),
             ("normal", &targets.normal.view),
             ("depth", &targets.depth.view),
             ("object_id", &targets.object_id.view),
             ("motion", &targets.motion.view),
+            ("rest_position", &rest.view),
         ];
         self.runner.bind(&inputs)
     }
@@ -222,7 +233,7 @@ impl Style {
         plan.map_err(|e| {
             e.at(
                 &self.name,
-                "choose a style whose inputs are color, normal, depth, object_id or motion, or another size",
+                "choose a style whose inputs are color, normal, depth, object_id, motion or rest_position, or another size",
             )
         })
     }
@@ -237,7 +248,7 @@ impl Style {
         let plan = self.plan(library, request, frames as usize)?;
         let textures = plan.textures().map_err(refused)?;
         let inputs = textures.iter().filter(|t| t.role == Role::Input).map(|t| t.name);
-        Ok(Past::of(frames as usize, inputs))
+        Ok(Past::of(inputs))
     }
 }
 
@@ -249,7 +260,8 @@ fn request(library: &Library, size: (u32, u32)) -> Result<IsophoteRequest> {
         guides: ISOPHOTE_GUIDE_NORMAL
             | ISOPHOTE_GUIDE_DEPTH
             | ISOPHOTE_GUIDE_OBJECT_ID
-            | ISOPHOTE_GUIDE_MOTION,
+            | ISOPHOTE_GUIDE_MOTION
+            | ISOPHOTE_GUIDE_REST_POSITION,
         ..request
     })
 }

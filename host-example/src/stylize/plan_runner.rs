@@ -217,7 +217,7 @@ impl PlanRunner {
         let is_own = |slot: &Slot| slot.role != Role::Input && !history::is_stage(&slot.name);
         old.retain(|slot| is_own(slot) && wanted.iter().any(|t| slot.is_like(t)));
         let is_written = |name: &str| wanted.iter().any(|t| t.name == name && t.role == Role::Output);
-        rings.retain(|name| is_written(name) || past.inputs.iter().any(|input| input == name));
+        rings.retain(|name| is_written(name) || past.inputs().any(|input| input == name));
         let mut textures = Vec::with_capacity(wanted.len());
         for texture in &wanted {
             let Texture { name, role, format, size } = *texture;
@@ -316,7 +316,7 @@ impl PlanRunner {
             let found = inputs.iter().find(|(given, _)| *given == name).map(|(_, view)| *view);
             found.ok_or_else(|| mistaken(format!("no texture is given for '{name}'")))
         };
-        for name in &self.past.inputs {
+        for name in self.past.inputs() {
             let texture = given(name)?.texture();
             let (format, size) = (texture.format(), [texture.width(), texture.height()]);
             let make = || create_texture(&self.kernels.device, format, size, COPIED);

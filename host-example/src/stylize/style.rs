@@ -239,6 +239,20 @@ impl Style {
         Ok(())
     }
 
+    /// Whether a node of the graph can use pictures of a kind.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the library fails.
+    pub fn can_use(&self, kind: Kind) -> Result<bool> {
+        for node in 0..self.graph.count() {
+            let spec = self.graph.spec(node).map_err(|e| e.at(&self.name, "choose another style"))?;
+            if spec.inputs.iter().any(|port| port.kind == kind) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
     /// Lets all nodes that can be steady over time estimate motion from the pictures themselves.
     ///
     /// # Errors
@@ -403,7 +417,7 @@ fn fed(library: &Library, mut graph: Graph) -> Answer<Graph> {
 
 /// Whether an input takes a picture that enters the graph, by its name.
 fn is_picture(port: &Port) -> bool {
-    ["color", "normal", "depth", "object_id", "motion", "motion_forward"].contains(&port.id)
+    ["color", "normal", "depth", "object_id", "motion", "motion_forward", "rest_position"].contains(&port.id)
 }
 
 #[cfg(test)]

@@ -84,9 +84,9 @@ pub struct ApplyArgs {
     /// Adds the result to the EXR file as a new layer of this name, and keeps the layer that was read.
     #[arg(long, value_name = "NEWLAYER")]
     pub into: Option<String>,
-    /// The layer of an EXR file that guides the filter: normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER or
-    /// motion_forward=LAYER, or none instead of a layer. Without it guides are found by names such as N, normal, Z, depth,
-    /// P, id, backward, Vector and velocity. May be repeated.
+    /// The layer of an EXR file that guides the filter: normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER,
+    /// motion_forward=LAYER or rest_position=LAYER, or none instead of a layer. Without it guides are found by names such as
+    /// N, normal, Z, depth, P, id, backward, Vector, velocity, Pref and rest. May be repeated.
     #[arg(long, value_name = "GUIDE=LAYER")]
     pub guide: Vec<GuideChoice>,
     /// How steady frames of a sequence are, from 0 to 1: neighbouring frames are carried along motion and averaged before

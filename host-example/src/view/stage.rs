@@ -82,6 +82,9 @@ impl Stage {
         let size = (self.config.width, self.config.height);
         let mut stylizer = style.map(|s| Stylizer::new(&self.kernels, library, s, size)).transpose()?;
         if let Some(stylizer) = &mut stylizer {
+            if stylizer.wants_rest_positions()? {
+                self.renderer.add_rest_positions();
+            }
             stylizer.bind(self.renderer.targets())?;
         }
         self.stylizer = stylizer;

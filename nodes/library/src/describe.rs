@@ -87,9 +87,10 @@ impl Describing<'_> {
         let window = node.spec.window(&node.values);
         self.scratch.inputs.clear();
         for frame in first..=last {
-            let is_read = from - window <= frame && frame <= to + window;
             self.builder.set_frame(frame);
-            for source in &node.inputs {
+            for (port, source) in node.spec.ports().zip(&node.inputs) {
+                let past = window.max(node.mark_window(port, *source));
+                let is_read = from - past <= frame && frame <= to + window;
                 let image = source.filter(|_| is_read).and_then(|source| self.source(source, frame, index));
                 self.scratch.inputs.push(image);
             }
@@ -121,6 +122,7 @@ impl Describing<'_> {
             first: -(self.request.frames.past as i32),
             frames: self.request.frames,
             stage: index as u32 * STAGES,
+            is_carrying: node.is_carrying(),
         };
         let inputs = &self.scratch.inputs[first..first + ports];
         self.builder.set_frame(frame);
@@ -145,7 +147,7 @@ impl Describing<'_> {
         let first = self.request.frames.past as usize * ports;
         let inputs = &mut self.scratch.inputs[first..first + ports];
         let color_itself = inputs[color].replace(light);
-        let alone = Around { inputs: &[], first: 0, frames: Frames::NONE, stage: 0 };
+        let alone = Around { inputs: &[], first: 0, frames: Frames::NONE, stage: 0, is_carrying: false };
         let filters = node.spec.filters_light();
         let result = if filters { result(self.builder, node, inputs, alone, self.request) } else { light };
         inputs[color] = color_itself;

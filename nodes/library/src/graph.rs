@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result, nearest};
 use crate::registry;
-use crate::spec::{ImageKind, NodeSpec, Param};
+use crate::spec::{ImageKind, NodeSpec, Param, Port};
 use crate::value::Value;
 
 /// A picture that enters a graph.
@@ -107,6 +107,29 @@ impl Node {
             Some(Source::Node(node)) => Some(*node),
             _ => None,
         })
+    }
+
+    /// Frames before the node's own that it reads by a port to carry marks. Estimated motion does not carry them: that of
+    /// so many frames costs too much.
+    pub fn mark_window(&self, port: &Port, source: Option<Source>) -> i32 {
+        match source {
+            Some(Source::Input(GraphInput::Motion)) if port.id == GraphInput::Motion.id() => {
+                self.spec.mark_window(&self.values)
+            }
+            _ => 0,
+        }
+    }
+
+    /// Whether motion carries marks of the node.
+    pub fn is_carrying(&self) -> bool {
+        self.marks() > 0
+    }
+
+    /// Frames before the node's own that it reads to carry marks.
+    pub fn marks(&self) -> i32 {
+        let windows =
+            self.spec.ports().zip(&self.inputs).map(|(port, source)| self.mark_window(port, *source));
+        windows.max().unwrap_or(0)
     }
 }
 

@@ -1,7 +1,7 @@
 //! How many frames around its own a frame of a graph depends on.
 
 use crate::frames::{Frames, MOST_FRAMES};
-use crate::graph::Graph;
+use crate::graph::{Graph, GraphInput, Source};
 
 impl Graph {
     /// Frames before and after its own that a frame of the graph's output depends on, where all are known; [0, 0] for
@@ -11,9 +11,27 @@ impl Graph {
         needs_of(self, &Frames::around(MOST_FRAMES, MOST_FRAMES), &mut needs);
         let windows = self.nodes().iter().zip(&needs).filter_map(|(node, need)| {
             let window = node.spec.window(&node.values);
-            need.map(|[first, last]| [(window - first) as u32, (window + last) as u32])
+            need.map(|[first, last]| [(window.max(node.marks()) - first) as u32, (window + last) as u32])
         });
         windows.fold([0, 0], |[a, b], [c, d]| [a.max(c), b.max(d)]).map(|n| n.min(MOST_FRAMES))
+    }
+
+    /// Of these, the frames before and after its own whose `input` it reads.
+    pub fn frames_of(&self, input: GraphInput) -> [u32; 2] {
+        let mut needs = Vec::new();
+        needs_of(self, &Frames::around(MOST_FRAMES, MOST_FRAMES), &mut needs);
+        let mut most = [0, 0];
+        for (node, need) in self.nodes().iter().zip(&needs) {
+            let Some([first, last]) = *need else { continue };
+            let window = node.spec.window(&node.values);
+            for (port, source) in node.spec.ports().zip(&node.inputs) {
+                if *source == Some(Source::Input(input)) {
+                    let past = window.max(node.mark_window(port, *source)) - first;
+                    most = [most[0].max(past), most[1].max(window + last)];
+                }
+            }
+        }
+        most.map(|n| (n as u32).min(MOST_FRAMES))
     }
 }
 

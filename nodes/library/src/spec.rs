@@ -127,10 +127,20 @@ pub(crate) const WINDOW: Param = Param::int("window", "Window", 2, [0, 8])
     .group("time")
     .doc("Neighbouring frames that count, to each side as far as they and the motion from them are known.");
 
+/// `renewal` of nodes whose marks motion carries.
+pub(crate) const RENEWAL: Param = Param::int("renewal", "Renewal", 8, [0, 16])
+    .structural()
+    .group("time")
+    .doc(
+        "Frames for which motion carries marks where `steadiness` is above 0 and no rest positions are known, before they \
+         begin anew; two layers take turns. A frame depends on the motion of as many frames before it, less two. 0 or 1 \
+         leaves marks on the screen.",
+    );
+
 impl Param {
     /// Whether it says how neighbouring frames count, and nothing where one frame alone is known.
     pub fn is_of_neighbours(&self) -> bool {
-        self.id == STEADINESS.id || self.id == WINDOW.id
+        [STEADINESS.id, WINDOW.id, RENEWAL.id].contains(&self.id)
     }
 }
 
@@ -221,6 +231,17 @@ impl NodeSpec {
         }
     }
 
+    /// Frames before its own whose motion a node of these values reads to carry marks.
+    pub(crate) fn mark_window(&self, values: &[Value]) -> i32 {
+        let value = |id| self.param(id).map(|(index, _)| values[index]);
+        match (value(STEADINESS.id), value(RENEWAL.id)) {
+            (Some(Value::Float(steadiness)), Some(Value::Int(renewal))) if steadiness > 0.0 => {
+                (even(renewal) - 2).max(0)
+            }
+            _ => 0,
+        }
+    }
+
     /// True for filters, which smooth the light of a picture beyond its coverage as a picture of its own. What other
     /// nodes draw is no light, and they let it pass.
     pub fn filters_light(&self) -> bool {
@@ -247,6 +268,11 @@ impl NodeSpec {
     pub fn input(&self, id: &str) -> Option<(usize, &'static Port)> {
         self.ports().enumerate().find(|(_, p)| p.id == id)
     }
+}
+
+/// `renewal` as a number of frames that has a half.
+fn even(renewal: i32) -> i32 {
+    renewal - renewal % 2
 }
 
 /// What a node sees while it describes its work: its parameter values, its connected inputs and the
@@ -279,6 +305,8 @@ pub(crate) struct Around<'a> {
     pub frames: Frames,
     /// The first number of the stages that the node keeps.
     pub stage: u32,
+    /// Whether motion that carries marks enters the graph.
+    pub is_carrying: bool,
 }
 
 impl Scope<'_> {
@@ -353,6 +381,25 @@ impl Scope<'_> {
     pub(crate) fn neighbours(&self, window: i32) -> impl Iterator<Item = i32> + use<> {
         let (home, frames) = (self.plan.frame(), self.around.frames);
         (1..=window).flat_map(|n| [-n, n]).filter(move |offset| frames.has(home + offset))
+    }
+
+    /// Frames for which motion carries marks, an even number, and the number of the frame that is described; none where
+    /// they stay on the screen.
+    pub(crate) fn renewal(&self) -> Option<(i32, i64)> {
+        let period = even(self.int(RENEWAL.id));
+        (self.float(STEADINESS.id) > 0.0 && period > 0 && self.around.is_carrying)
+            .then_some((period, self.frame))
+    }
+
+    /// The motion of the frame so many before the one that is described, where that is known.
+    pub(crate) fn motion_before(&self, step: i32) -> Option<ImageId> {
+        let at = self.plan.frame() - step;
+        let (port, _) = self.spec.input("motion")?;
+        if step == 0 {
+            return self.inputs[port];
+        }
+        let row = usize::try_from(at - self.around.first).ok()?;
+        self.around.frames.has(at).then(|| self.around.inputs[row * self.inputs.len() + port])?
     }
 
     /// True when the host hands in the stages of the frame so far from the one that is described.

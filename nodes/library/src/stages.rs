@@ -8,6 +8,7 @@
 
 pub(crate) mod abstraction;
 pub(crate) mod lines;
+pub(crate) mod marks;
 pub mod optical_flow;
 pub(crate) mod quantization;
 pub(crate) mod steady;

@@ -49,6 +49,7 @@ impl Style {
                     GraphInput::Normal if self.has_guides => &frame.normal,
                     GraphInput::Depth if self.has_guides => &frame.depth,
                     GraphInput::ObjectId if self.has_guides => &frame.object_id,
+                    GraphInput::RestPosition if self.has_guides => &frame.rest,
                     _ => return None,
                 };
                 Some(image.clone())

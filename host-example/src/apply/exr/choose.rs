@@ -6,7 +6,7 @@ use isophote_exr_edit::{File, Sample};
 
 use super::fault::Fault;
 use super::motion::{self, Convention, Rule};
-use super::names::{Group, Model, groups, is_matte, rank};
+use super::names::{Group, Model, REST, groups, is_matte, rank};
 
 /// What is read of a file, and where the result goes.
 #[derive(Clone, Debug, Default)]
@@ -55,11 +55,14 @@ pub enum Guide {
     Motion,
     /// Where things are in the frame after.
     MotionForward,
+    /// Where surfaces are before anything moves.
+    RestPosition,
 }
 
 impl Guide {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::Normal, Self::Depth, Self::ObjectId, Self::Motion, Self::MotionForward];
+    pub const ALL: [Self; 6] =
+        [Self::Normal, Self::Depth, Self::ObjectId, Self::Motion, Self::MotionForward, Self::RestPosition];
 
     /// The name of the graph's input.
     pub fn id(self) -> &'static str {
@@ -69,6 +72,7 @@ impl Guide {
             Self::ObjectId => "object_id",
             Self::Motion => "motion",
             Self::MotionForward => "motion_forward",
+            Self::RestPosition => "rest_position",
         }
     }
 
@@ -76,10 +80,15 @@ impl Guide {
     pub fn is_motion(self) -> bool {
         matches!(self, Self::Motion | Self::MotionForward)
     }
+
+    /// Whether it has three components, of which all are 0 where there is no surface.
+    pub fn is_of_surfaces(self) -> bool {
+        matches!(self, Self::Normal | Self::RestPosition)
+    }
 }
 
 /// How to write a guide.
-const FIX: &str = "write normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER or motion_forward=LAYER";
+const FIX: &str = "write normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER, motion_forward=LAYER or rest_position=LAYER";
 
 /// One `--guide`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -358,14 +367,14 @@ fn source(exr: &File, group: &Group, guide: Guide, name: Option<&str>) -> Option
     };
     if let Some(name) = name {
         let channel = group.members.iter().find(|(_, at)| part.channels[*at].name == name).map(|m| m.1);
-        if guide != Guide::Normal && channel.is_some() {
+        if !guide.is_of_surfaces() && channel.is_some() {
             return channel.map(|c| found(vec![c]));
         }
         if !is_named(exr, group, name) {
             return None;
         }
         return match guide {
-            Guide::Normal => xyz(group),
+            Guide::Normal | Guide::RestPosition => xyz(group),
             Guide::Depth => single(&["Z", "depth", "Y", "V", "R"]).map(|c| vec![c]),
             Guide::ObjectId => single(&["id", "object_id", "Y", "R"]).map(|c| vec![c]),
             Guide::Motion | Guide::MotionForward => None,
@@ -393,7 +402,8 @@ fn source(exr: &File, group: &Group, guide: Guide, name: Option<&str>) -> Option
             "id" | "object_id" | "objectid" => vec![single(&["id", "Y", "R", "X"])?],
             _ => vec![["id", "object_id", "objectid"].iter().find_map(|c| group.member(c))?],
         },
-        Guide::Motion | Guide::MotionForward => return None,
+        Guide::RestPosition if REST.contains(&word.as_str()) => xyz(group)?,
+        Guide::RestPosition | Guide::Motion | Guide::MotionForward => return None,
     };
     Some(found(channels))
 }

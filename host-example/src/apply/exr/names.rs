@@ -122,10 +122,13 @@ fn own_name(part: &Part) -> String {
     bare.map_or(part.name.as_str(), |name| name.trim_end_matches(['.', '_', '-'])).to_owned()
 }
 
+/// Layers of points of undeformed objects, in lower case: RenderMan's and Arnold's names, Houdini's, and words.
+pub const REST: [&str; 6] = ["pref", "__pref", "p_ref", "rest", "restposition", "rest_position"];
+
 /// How likely a layer is the picture that an artist means when naming none: less is more likely.
 pub fn rank(group: &Group) -> Option<u32> {
     const MAIN: [&str; 9] = ["rgba", "rgb", "beauty", "combined", "color", "colour", "main", "c", "image"];
-    const DATA: [&str; 28] = [
+    const DATA: [&str; 26] = [
         "n",
         "normal",
         "normals",
@@ -144,8 +147,6 @@ pub fn rank(group: &Group) -> Option<u32> {
         "finalimagemotionvectors",
         "motionback",
         "motionfore",
-        "pref",
-        "rest",
         "uv",
         "st",
         "z",
@@ -160,7 +161,7 @@ pub fn rank(group: &Group) -> Option<u32> {
         Some(0)
     } else if let Some(at) = MAIN.iter().position(|m| *m == word) {
         Some(1 + at as u32)
-    } else if DATA.contains(&word.as_str()) || is_matte(&group.layer) {
+    } else if DATA.contains(&word.as_str()) || REST.contains(&word.as_str()) || is_matte(&group.layer) {
         None
     } else {
         Some(100)

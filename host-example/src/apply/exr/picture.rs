@@ -2,7 +2,7 @@
 
 use isophote_exr_edit::{Channel, Decoded, Edit, Error, File, Part, Plane, Window};
 
-use super::choose::{Chosen, Guide, Meaning, Selection, Source};
+use super::choose::{Chosen, Meaning, Selection, Source};
 use super::fault::Fault;
 use super::names::{Model, components};
 use crate::apply::primaries;
@@ -200,11 +200,11 @@ pub fn guide(
         });
         return Ok(Pixels::new(size.0, size.1, 1, Samples::F32(depth.collect())));
     }
-    if source.guide == Guide::Normal {
-        // A normal of no length is no surface: renderers leave their backgrounds so.
-        let valid = |n: &[f32; 3]| [n[0], n[1], n[2], f32::from(*n != [0.0; 3])];
-        let normals = all.as_chunks::<3>().0.iter().flat_map(valid).collect();
-        return Ok(Pixels::new(size.0, size.1, 4, Samples::F32(normals)));
+    if source.guide.is_of_surfaces() {
+        // Three zeros are no surface: renderers leave their backgrounds so.
+        let valid = |v: &[f32; 3]| [v[0], v[1], v[2], f32::from(*v != [0.0; 3])];
+        let vectors = all.as_chunks::<3>().0.iter().flat_map(valid).collect();
+        return Ok(Pixels::new(size.0, size.1, 4, Samples::F32(vectors)));
     }
     Ok(Pixels::new(size.0, size.1, 1, Samples::F32(all)))
 }

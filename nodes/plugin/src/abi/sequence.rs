@@ -284,16 +284,22 @@ impl Job<'_> {
     /// # Safety
     /// As [`Job::run`].
     unsafe fn known(&mut self, state: &State) -> Outcome<[u32; 2]> {
-        let wanted = self.graph.frames();
+        let (wanted, seen) = (self.graph.frames(), self.graph.frames_of(GraphInput::Color));
         let whole = Rect::of_size(self.request.width, self.request.height);
         let mut known = [0; 2];
         for (side, towards) in [-1, 1].into_iter().enumerate() {
             for n in 1..=i64::from(wanted[side]) {
                 let frame = self.request.frame.saturating_add(towards * n);
+                // Farther frames lend their motion alone.
+                let is_seen = n <= i64::from(seen[side]);
+                if !is_seen && !self.request.guides.motion {
+                    break;
+                }
+                let input = if is_seen { GraphInput::Color } else { GraphInput::Motion };
                 // What is kept of a frame shows that there is one.
                 // SAFETY: as the caller promised.
                 let is_there = state.sequence.knows(frame)
-                    || unsafe { self.pulled.image(GraphInput::Color, frame, whole)?.is_some() };
+                    || unsafe { self.pulled.image(input, frame, whole)?.is_some() };
                 if !is_there {
                     break;
                 }

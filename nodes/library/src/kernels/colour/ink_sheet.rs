@@ -59,13 +59,18 @@ pub struct Sheet {
     pub origin: [f32; 2],
 }
 
+/// Directions of the pencil strokes of light and of deep shades, of length 1.
+pub const HATCHING: [[f32; 2]; 2] = [[0.8, -0.6], [0.96, 0.28]];
+
 /// Draws a `response` (units of L) on a sheet, shaded and tinted after `color`; the first channel of
-/// `strokes`, 0..=1, roughens it.
+/// `strokes`, 0..=1, roughens it. Pencil strokes stay on the screen unless their heights are given, 0..=1, in light and in
+/// deep shades.
 pub fn pass(
     plan: &mut PlanBuilder,
     response: ImageId,
     color: ImageId,
     strokes: ImageId,
+    hatching: Option<[ImageId; 2]>,
     sheet: &Sheet,
 ) -> ImageId {
     let params = Params {
@@ -84,9 +89,12 @@ pub fn pass(
         cover: sheet.cover.into(),
         follow: sheet.follow,
         origin: sheet.origin,
+        given: hatching.is_some().into(),
         padding: Default::default(),
     };
-    plan.pass(&KERNEL, &[response, color, strokes], &params, Class::Colour, Support::Pixels(0))
+    let [first, second] = hatching.unwrap_or([strokes; 2]);
+    let inputs = [response, color, strokes, first, second];
+    plan.pass(&KERNEL, &inputs, &params, Class::Colour, Support::Pixels(0))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
@@ -97,7 +105,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 
 #[inline(always)]
 fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
-    let [response, source, strokes] = pass.inputs else { return };
+    let [response, source, strokes, first_hatching, second_hatching] = pass.inputs else { return };
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     for_blocks::<4>(
         band,
@@ -126,8 +134,16 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             let (mut first, mut second) = (tooth, tooth);
             if params.hatching > 0.0 {
                 let share = f32x8::splat(simd, params.hatching);
-                first = mix(tooth, hatch(simd, [x, y], [0.8, -0.6], 301), share);
-                second = mix(tooth, hatch(simd, [x, y], [0.96, 0.28], 701), share);
+                let mut heights = [zero; 2];
+                if params.given != 0 {
+                    let given: [[f32x8<S>; 4]; 2] =
+                        [block.read(simd, first_hatching), block.read(simd, second_hatching)];
+                    heights = [given[0][0], given[1][0]];
+                } else {
+                    heights[0] = hatch(simd, [x, y], HATCHING[0], 301);
+                    heights[1] = hatch(simd, [x, y], HATCHING[1], 701);
+                }
+                (first, second) = (mix(tooth, heights[0], share), mix(tooth, heights[1], share));
             }
             let tone = ((dark * 1.06 - 0.06) * params.shading).max(zero).min(one);
             let deep = ((dark * 1.7 - 0.9) * params.shading).max(zero).min(one);

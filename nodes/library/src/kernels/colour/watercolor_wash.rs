@@ -1,6 +1,6 @@
 //! Thin paint on paper: pigment that gathers at the borders of dark regions, in clouds and in the grain
 //! of the paper (Bousseau et al. 2006): C - (C - C^2) d with the density d above its mean. Clouds and
-//! grain belong to the full-size picture, so that tiles and proxies show the same paper.
+//! grain belong to the full-size picture, so that tiles and proxies show the same paper; clouds may be given, too.
 //!
 //! Cost: 16 hashes and about 150 multiply-adds.
 
@@ -41,8 +41,18 @@ pub struct Wash {
     pub origin: [f32; 2],
 }
 
-/// Paints `color`; `blurred` is the same, smoothed by the width of the dark borders.
-pub fn pass(plan: &mut PlanBuilder, color: ImageId, blurred: ImageId, wash: &Wash) -> ImageId {
+/// Clouds that stay on the screen, in two layers: cells per pixel of the full-size picture, share and seed.
+pub const CLOUDS: [(f32, f32, u32); 2] = [(0.017, 0.6, 11), (0.043, 0.4, 503)];
+
+/// Paints `color`; `blurred` is the same, smoothed by the width of the dark borders, and `clouds` are grey and of mean
+/// 0.5 where they are not to be [`CLOUDS`].
+pub fn pass(
+    plan: &mut PlanBuilder,
+    color: ImageId,
+    blurred: ImageId,
+    clouds: Option<ImageId>,
+    wash: &Wash,
+) -> ImageId {
     let params = Params {
         inverse_scale: 1.0 / wash.scale,
         pigment: wash.pigment,
@@ -51,8 +61,11 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, blurred: ImageId, wash: &Was
         grain: wash.grain,
         grain_frequency: 1.0 / wash.grain_size.max(0.5),
         origin: wash.origin,
+        given: clouds.is_some().into(),
+        padding: Default::default(),
     };
-    plan.pass(&KERNEL, &[color, blurred], &params, Class::Colour, Support::Pixels(0))
+    let inputs = [color, blurred, clouds.unwrap_or(color)];
+    plan.pass(&KERNEL, &inputs, &params, Class::Colour, Support::Pixels(0))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
@@ -70,8 +83,13 @@ fn washed<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
             let columns: f32x8<S> = block.columns(simd).to_float();
             let x = (columns + 0.5 + params.origin[0]) * params.inverse_scale;
             let y = f32x8::splat(simd, (block.y as f32 + 0.5 + params.origin[1]) * params.inverse_scale);
-            let cloud =
-                noise(simd, x * 0.017, y * 0.017, 11) * 0.6 + noise(simd, x * 0.043, y * 0.043, 503) * 0.4;
+            let cloud = if params.given != 0 {
+                let [given, ..]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[2]);
+                given
+            } else {
+                let [(f, a, s), (g, b, t)] = CLOUDS;
+                noise(simd, x * f, y * f, s) * a + noise(simd, x * g, y * g, t) * b
+            };
             let (gx, gy) = (x * params.grain_frequency, y * params.grain_frequency);
             let grain = noise(simd, gx, gy, 1013) * 0.6 + noise(simd, gx * 2.3, gy * 2.3, 2027) * 0.4;
             let v: [f32x8<S>; 4] = block.read(simd, &pass.inputs[0]);

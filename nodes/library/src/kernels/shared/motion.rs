@@ -191,6 +191,31 @@ pub fn fetch2<S: Simd>(simd: S, view: &View<'_>, x: i32x8<S>, y: i32x8<S>) -> [f
     [f32x8::simd_from(simd, first), f32x8::simd_from(simd, second)]
 }
 
+/// The motion at positions, as far as it is no longer than `limit`: interpolated where neighbours agree to a pixel,
+/// else that of the nearest.
+#[inline(always)]
+pub fn motion_at<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>, limit: f32) -> [f32x8<S>; 2] {
+    let [w, h] = view.full();
+    let place = |p: f32x8<S>, full: i32| (p - 0.5).max(-2.0f32).min(full as f32 + 2.0);
+    let (px, py) = (place(x, w), place(y, h));
+    let (left, top) = (px.floor(), py.floor());
+    let (fx, fy) = (px - left, py - top);
+    let (left, top): (i32x8<S>, i32x8<S>) = (left.to_int(), top.to_int());
+    let [a, b] = [left, left + 1].map(|column| bounded(fetch2(simd, view, column, top), limit));
+    let [c, d] = [left, left + 1].map(|column| bounded(fetch2(simd, view, column, top + 1), limit));
+    let near = |p: f32x8<S>, full: i32| p.floor().max(-2.0f32).min(full as f32 + 2.0).to_int::<i32x8<S>>();
+    let nearest = bounded(fetch2(simd, view, near(x, w), near(y, h)), limit);
+    let spread = |i: usize| a[i].max(b[i]).max(c[i].max(d[i])) - a[i].min(b[i]).min(c[i].min(d[i]));
+    let alike = spread(0).max(spread(1)).simd_le(1.0);
+    let mut motion = nearest;
+    for i in 0..2 {
+        let above = (b[i] - a[i]).mul_add(fx, a[i]);
+        let below = (d[i] - c[i]).mul_add(fx, c[i]);
+        motion[i] = alike.select((below - above).mul_add(fy, above), nearest[i]);
+    }
+    motion
+}
+
 /// The motions beside those of a block.
 #[inline(always)]
 pub fn beside<S: Simd>(simd: S, view: &View<'_>, block: Block, [dx, dy]: [i32; 2]) -> [f32x8<S>; 2] {

@@ -92,6 +92,16 @@ fn channels<S: Simd, const N: usize>(simd: S, values: &[f32]) -> [f32x8<S>; N] {
     out
 }
 
+/// The pixels of a four-channel image that lie (dx, dy) from those of a block, clamped to the picture.
+#[inline(always)]
+pub fn pixels_beside<S: Simd>(simd: S, view: &View<'_>, block: Block, [dx, dy]: [i32; 2]) -> [f32x8<S>; 4] {
+    let (held, x, y) = (view.window(), block.x + dx, block.y + dy);
+    if held.x0 <= x && x + BLOCK as i32 <= held.x1 {
+        return Block { x, y, len: BLOCK }.read(simd, view);
+    }
+    fetch4(simd, view, offsets(view, block.columns(simd) + dx, i32x8::splat(simd, y)))
+}
+
 /// Eight values from index `at` on.
 #[inline(always)]
 pub fn eight<S: Simd>(simd: S, values: &[f32], at: usize) -> f32x8<S> {

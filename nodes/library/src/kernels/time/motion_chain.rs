@@ -5,10 +5,10 @@
 //! Cost: one bilinear sample of two channels and about 40 operations.
 
 pub use crate::kernels::shaders::motion_chain::Params;
-use crate::kernels::shared::motion::{UNKNOWN, bounded, fetch2, is_inside, is_known};
+use crate::kernels::shared::motion::{UNKNOWN, bounded, is_inside, is_known, motion_at};
 use crate::kernels::simd::pixels::{Block, for_blocks, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(motion_chain {
     cpu: run,
@@ -49,29 +49,4 @@ fn chained<S: Simd>(simd: S, pass: &CpuPass<'_>, block: Block, params: &Params) 
     let known = known & is_known(second) & is_inside(x, y, pass.inputs[1].full());
     let unknown = f32x8::splat(simd, UNKNOWN);
     whole.map(|v| known.select(v, unknown))
-}
-
-/// The motion at positions, as far as it is no longer than `limit`: interpolated where neighbours agree to a pixel,
-/// else that of the nearest.
-#[inline(always)]
-fn motion_at<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>, limit: f32) -> [f32x8<S>; 2] {
-    let [w, h] = view.full();
-    let place = |p: f32x8<S>, full: i32| (p - 0.5).max(-2.0f32).min(full as f32 + 2.0);
-    let (px, py) = (place(x, w), place(y, h));
-    let (left, top) = (px.floor(), py.floor());
-    let (fx, fy) = (px - left, py - top);
-    let (left, top): (i32x8<S>, i32x8<S>) = (left.to_int(), top.to_int());
-    let [a, b] = [left, left + 1].map(|column| bounded(fetch2(simd, view, column, top), limit));
-    let [c, d] = [left, left + 1].map(|column| bounded(fetch2(simd, view, column, top + 1), limit));
-    let near = |p: f32x8<S>, full: i32| p.floor().max(-2.0f32).min(full as f32 + 2.0).to_int::<i32x8<S>>();
-    let nearest = bounded(fetch2(simd, view, near(x, w), near(y, h)), limit);
-    let spread = |i: usize| a[i].max(b[i]).max(c[i].max(d[i])) - a[i].min(b[i]).min(c[i].min(d[i]));
-    let alike = spread(0).max(spread(1)).simd_le(1.0);
-    let mut motion = nearest;
-    for i in 0..2 {
-        let above = (b[i] - a[i]).mul_add(fx, a[i]);
-        let below = (d[i] - c[i]).mul_add(fx, c[i]);
-        motion[i] = alike.select((below - above).mul_add(fy, above), nearest[i]);
-    }
-    motion
 }

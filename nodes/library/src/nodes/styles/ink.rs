@@ -1,27 +1,26 @@
 //! Ink and its relatives: the extended difference of Gaussians as drawing (§ 4.3, 4.4, Figure 4.1).
 
 use crate::choice::choice;
-use crate::kernels::colour::ink_sheet::{self, Sheet};
+use crate::kernels::colour::ink_sheet::{self, HATCHING, Sheet};
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::lines::edge_area;
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::shared::stream::Integrator;
-use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
-use crate::kernels::structure::{contrast, noise};
+use crate::kernels::structure::contrast;
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::lines::flow_dog::{self, FlowDog, Kernel};
 use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::nodes::structure::flow_map;
 use crate::nodes::structure::structure_tensor::{TensorOptions, of_color_and_guides};
 use crate::ports;
-use crate::spec::{HOLD, NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::lines::{length_factor, width_factor};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
-use crate::stages::{ADVANCED, LOOK, lines, tone};
-use isophote_engine::{Class, ImageId};
+use crate::stages::{ADVANCED, LOOK, lines, marks, tone};
+use isophote_engine::ImageId;
 
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
@@ -33,7 +32,7 @@ pub static NODE: NodeSpec = NodeSpec {
           hatching, carved strokes and the paper's grain, at five sets of values; `advanced` trims them. \
           Normals, depth and object ids, where given, draw lines of their own.",
     section: "4.3-4.5",
-    inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID],
+    inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID, ports::REST_POSITION],
     output: ports::color_output("The drawing."),
     own_params: &[
         Param::choice("style", "Style", Style::Ink.selected())
@@ -83,6 +82,7 @@ pub static NODE: NodeSpec = NodeSpec {
         STEADINESS,
         WINDOW,
         HOLD,
+        RENEWAL,
     ],
     build,
 };
@@ -311,15 +311,13 @@ impl Preset {
 /// Strokes along the flow, 0..=1 about middle grey: noise, `width` pixels wide and smoothed along the stream
 /// lines by `length`, lengths in pixels of the full-size picture.
 fn strokes(scope: &mut Scope<'_>, tensor: ImageId, [width, length]: [f32; 2]) -> ImageId {
-    let (scale, origin, seed) = (scope.scale(), scope.origin(), scope.renewed(19));
-    let plan = &mut *scope.plan;
-    let white = noise::pass(plan, scale, origin, seed);
-    let soft = gaussian_blur::pass(plan, white, width * scale, Class::Colour);
+    let (scale, seed) = (scope.scale(), scope.renewed(19));
+    let soft = marks::grains(scope, width * scale, seed);
     // Noise is about as fine as pixels: none may be left out.
     let options = Lic { sigma: length * scale, adapt: Adapt::None, ..lic::options() };
-    let long = line_integral_convolution::pass(plan, soft, tensor, &options);
+    let long = line_integral_convolution::pass(scope.plan, soft, tensor, &options);
     // Averages of noise are faint: a Gaussian of this width leaves 1 / (2 sqrt(pi) width) of its deviation.
-    contrast::pass(plan, long, 7.0 * width)
+    contrast::pass(scope.plan, long, 7.0 * width)
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
@@ -382,7 +380,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         texture: drawing.texture,
         cover: scope.bool("cover"),
     };
-    let drawn = ink_sheet::pass(scope.plan, response, tinted, carved, &sheet);
+    let hatching = if own.hatching > 0.0 { marks::hatching(scope, HATCHING, scope.renewed(301)) } else { None };
+    let drawn = ink_sheet::pass(scope.plan, response, tinted, carved, hatching, &sheet);
     if own.sigma_a > 0.0 {
         let options = Lic { sigma: drawing.sigma_a * scale, ..lic::options() };
         return line_integral_convolution::pass(scope.plan, drawn, tensor, &options);

@@ -4,17 +4,16 @@
 use crate::kernels::colour::paint_relief::{self, Relief};
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
-use crate::kernels::smoothing::{flow_dilation, gaussian_blur};
-use crate::kernels::structure::noise;
+use crate::kernels::smoothing::flow_dilation;
 use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::nodes::structure::flow_map;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
-use crate::spec::{HOLD, NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
-use crate::stages::{ADVANCED, LOOK, tone};
-use isophote_engine::{Class, ImageId};
+use crate::stages::{ADVANCED, LOOK, marks, tone};
+use isophote_engine::ImageId;
 
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
@@ -25,7 +24,7 @@ pub static NODE: NodeSpec = NodeSpec {
           along the local orientation and smoothed along it; noise smoothed the same way gives the marks \
           of bristles, and the light on them.",
     section: "1.2",
-    inputs: &[ports::COLOR],
+    inputs: &[ports::COLOR, ports::REST_POSITION],
     output: ports::color_output("The painting."),
     own_params: &[
         STROKE_LENGTH,
@@ -88,6 +87,7 @@ pub static NODE: NodeSpec = NodeSpec {
         STEADINESS,
         WINDOW,
         HOLD,
+        RENEWAL,
     ],
     build,
 };
@@ -126,10 +126,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         [abstraction.apply(scope.plan, lab, tensors, n_a), tensors]
     });
     let (scale, seed) = (scope.scale(), scope.renewed(scope.int("seed") as u32));
-    let origin = scope.origin();
-    let white = noise::pass(scope.plan, scale, origin, seed);
     let sigma_n = scope.float("sigma_n") * width;
-    let grains = gaussian_blur::pass(scope.plan, white, sigma_n, Class::Colour);
+    let grains = marks::grains(scope, sigma_n, seed);
 
     let dilation_length = scope.float("dilation_length") * length;
     let strokes = flow_dilation::pass(scope.plan, flat, tensors, grains, dilation_length, true);

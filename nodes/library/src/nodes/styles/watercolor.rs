@@ -1,6 +1,6 @@
 //! Watercolour (§ 1.2, 5.1): flat washes with dark borders on grained paper, after Bousseau et al. 2006.
 
-use crate::kernels::colour::watercolor_wash::{self, Wash};
+use crate::kernels::colour::watercolor_wash::{self, CLOUDS, Wash};
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
@@ -9,10 +9,10 @@ use crate::nodes::smoothing::{line_integral_convolution as lic, morphology};
 use crate::nodes::structure::flow_map;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
-use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::spec::{NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
-use crate::stages::{ADVANCED, LOOK, tone};
+use crate::stages::{ADVANCED, LOOK, marks, tone};
 use isophote_engine::ImageId;
 
 /// The node.
@@ -24,7 +24,7 @@ pub static NODE: NodeSpec = NodeSpec {
           an opening simplify the picture, outlines waver, pigment gathers at the borders, in clouds and in \
           the grain of the paper.",
     section: "1.2, 5.1",
-    inputs: &[ports::COLOR],
+    inputs: &[ports::COLOR, ports::REST_POSITION],
     output: ports::color_output("The watercolour."),
     own_params: &[
         Param::float("wash_size", "Wash size", 1.5, [0.0, 30.0])
@@ -82,6 +82,7 @@ pub static NODE: NodeSpec = NodeSpec {
             .doc("Size of the paper's grain, in pixels of the full-size picture."),
         STEADINESS,
         WINDOW,
+        RENEWAL,
     ],
     build,
 };
@@ -131,5 +132,6 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         grain_size: scope.float("grain_size"),
         origin,
     };
-    watercolor_wash::pass(scope.plan, drawn, blurred, &wash)
+    let clouds = marks::clouds(scope, CLOUDS);
+    watercolor_wash::pass(scope.plan, drawn, blurred, clouds, &wash)
 }

@@ -1,0 +1,172 @@
+//! How much of an object a pixel covers: by how much the point of the undeformed object changes from pixel to pixel
+//! of the same surface. Marks on objects keep their size on screen by it.
+//!
+//! Let J be the 3 x 2 matrix of the point's derivatives by pixels and a >= b its singular values, the square roots of
+//! the eigenvalues of the first fundamental form J^T J. A pixel covers a b of the surface, so that sqrt(a b) is the
+//! mean width of its footprint: marks on inclined surfaces keep their area. Beyond an inclination of 4 : 1 it is a / 2,
+//! or marks would be too narrow for the pixels across them.
+//!
+//! Cost: five loads and about 60 operations.
+
+use crate::kernels::shared::rest_position::{NO_FOOTPRINT, is_at_rest};
+use crate::kernels::simd::pixels::{Block, for_blocks, pixels_beside, write};
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, mask32x8, prelude::*};
+use isophote_engine::math::Elementary;
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use std::f32::consts::LOG2_E;
+
+crate::kernel!(rest_footprint {
+    cpu: run,
+    cost: |_| 90.0,
+    tolerance: Tolerance {
+        absolute: 1e-3,
+        relative: 0.0,
+        outliers: 2e-3,
+        reason: "the rounding of a difference of points against its length, and of two sides with almost the same \
+                 change the last bit decides which holds",
+    },
+});
+
+/// Logarithms, to base 2, of the mean width of a pixel on the object and of its longest, in the units of `points`; both
+/// [`NO_FOOTPRINT`] where there is no object or no neighbour on it.
+pub fn pass(plan: &mut PlanBuilder, points: ImageId) -> ImageId {
+    plan.pass(&KERNEL, &[points], &(), Class::Field, Support::Pixels(1))
+}
+
+fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
+    dispatch!(pass.level, simd => for_blocks::<2>(band, #[inline(always)] |block, target| {
+        write(footprint(simd, pass, block), target);
+    }));
+}
+
+/// Change of the points per pixel along an axis, and where it is known.
+#[derive(Clone, Copy)]
+struct Change<S: Simd> {
+    by: [f32x8<S>; 3],
+    is_known: mask32x8<S>,
+}
+
+impl<S: Simd> Change<S> {
+    #[inline(always)]
+    fn dot(&self, other: &Self) -> f32x8<S> {
+        self.by[2].mul_add(other.by[2], self.by[1].mul_add(other.by[1], self.by[0] * other.by[0]))
+    }
+}
+
+/// Across a silhouette another object lies beside, so that of both sides the one with less change holds.
+#[inline(always)]
+fn change<S: Simd>(
+    simd: S,
+    pass: &CpuPass<'_>,
+    block: Block,
+    here: [f32x8<S>; 4],
+    [dx, dy]: [i32; 2],
+) -> Change<S> {
+    let points = &pass.inputs[0];
+    let [width, height] = points.full();
+    let columns = block.columns(simd);
+    let rows_before = block.y - dy >= 0;
+    let rows_after = block.y + dy < height;
+    let mut sides = [Change { by: [f32x8::splat(simd, 0.0); 3], is_known: columns.simd_lt(0) }; 2];
+    for side in 0..2 {
+        let sign = 2 * side as i32 - 1;
+        let there = pixels_beside(simd, points, block, [sign * dx, sign * dy]);
+        let in_rows = if side == 0 { rows_before } else { rows_after };
+        let inside = if side == 0 { columns.simd_ge(dx) } else { columns.simd_lt(width - dx) };
+        let is_known = is_at_rest(there) & if in_rows { inside } else { columns.simd_lt(0) };
+        let zero = f32x8::splat(simd, 0.0);
+        for c in 0..3 {
+            let difference = if side == 0 { here[c] - there[c] } else { there[c] - here[c] };
+            sides[side].by[c] = is_known.select(difference, zero);
+        }
+        sides[side].is_known = is_known;
+    }
+    let [back, ahead] = sides;
+    let is_less = ahead.dot(&ahead).simd_lt(back.dot(&back));
+    let takes_ahead = ahead.is_known & (is_less | !back.is_known);
+    let mut by = back.by;
+    for c in 0..3 {
+        by[c] = takes_ahead.select(ahead.by[c], back.by[c]);
+    }
+    Change { by, is_known: back.is_known | ahead.is_known }
+}
+
+#[inline(always)]
+fn footprint<S: Simd>(simd: S, pass: &CpuPass<'_>, block: Block) -> [f32x8<S>; 2] {
+    let here = block.read(simd, &pass.inputs[0]);
+    let x = change(simd, pass, block, here, [1, 0]);
+    let y = change(simd, pass, block, here, [0, 1]);
+    let (xx, yy, zero) = (x.dot(&x), y.dot(&y), f32x8::splat(simd, 0.0));
+    // The first fundamental form (E, F, G), relative to its trace.
+    let (e, g) = (x.is_known.select(xx, yy), y.is_known.select(yy, xx));
+    let trace = e + g;
+    let is_known = is_at_rest(here) & trace.simd_gt(1e-30);
+    let divisor = is_known.select(trace, f32x8::splat(simd, 1.0));
+    let f = (x.is_known & y.is_known).select(x.dot(&y), zero) / divisor;
+    let area = ((e / divisor) * (g / divisor) - f * f).max(zero).sqrt();
+    let half = (e - g) / divisor * 0.5;
+    let longest = (half * half + f * f).sqrt() + 0.5;
+    let mean = area.max(longest * 0.25);
+    let none = f32x8::splat(simd, NO_FOOTPRINT);
+    let halved = 0.5 * LOG2_E;
+    [
+        is_known.select((divisor * mean).ln() * halved, none),
+        is_known.select((divisor * longest).ln() * halved, none),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isophote_engine::cpu::{CallingThread, Control, CpuExecutor};
+    use isophote_engine::{Image, Rect};
+
+    /// The footprints of 24 x 12 points.
+    fn footprints(point: impl Fn(f32, f32) -> [f32; 4]) -> Image {
+        let (width, height) = (24, 12);
+        let values = (0..width * height).flat_map(|i| point((i % width) as f32, (i / width) as f32));
+        let points = Image::from_vec(width, height, 4, values.collect()).unwrap();
+        let mut plan = PlanBuilder::new(width, height).unwrap();
+        let input = plan.input("points", 4, Class::Field);
+        let output = pass(&mut plan, input);
+        plan.output("output", output);
+        let region = Rect::of_size(width, height);
+        let plan = plan.finish().unwrap();
+        let inputs = [("points", &points)];
+        CpuExecutor::new().run(&plan, &inputs, region, &CallingThread, Control::default()).unwrap().remove(0)
+    }
+
+    #[test]
+    fn a_footprint_is_the_mean_width_of_a_pixel() {
+        let flat = footprints(|x, y| [0.25 * x, 7.0, -0.25 * y, 1.0]);
+        let inclined = footprints(|x, y| [0.5 * x, 0.0, 0.25 * y, 1.0]);
+        let grazing = footprints(|x, y| [8.0 * x, 0.25 * y, 0.0, 1.0]);
+        for (image, mean, longest) in [(&flat, -2.0, -2.0), (&inclined, -1.5, -1.0), (&grazing, 2.0, 3.0)] {
+            for pixel in image.data().chunks_exact(2) {
+                assert!((pixel[0] - mean).abs() < 1e-5 && (pixel[1] - longest).abs() < 1e-5, "{pixel:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn silhouettes_do_not_count_and_no_object_has_no_footprint() {
+        // Two walls, far from each other, and nothing at the right.
+        let seen = footprints(|x, y| match x as i32 {
+            0..=11 => [0.5 * x, 0.5 * y, 0.0, 1.0],
+            12..=19 => [0.5 * x, 0.5 * y, 900.0, 1.0],
+            20..=21 => [f32::NAN, 0.0, 0.0, 1.0],
+            _ => [0.0; 4],
+        });
+        for y in 0..12 {
+            for x in 0..20 {
+                assert_eq!(seen.pixel(x, y)[0], -1.0, "{x}, {y}");
+            }
+            for x in 20..24 {
+                assert_eq!(seen.pixel(x, y), [NO_FOOTPRINT; 2], "{x}, {y}");
+            }
+        }
+        // A background of zeros.
+        let nothing = footprints(|_, _| [0.0, 0.0, 0.0, 1.0]);
+        assert!(nothing.data().iter().all(|v| *v == NO_FOOTPRINT));
+    }
+}

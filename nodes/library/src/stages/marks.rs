@@ -1,0 +1,119 @@
+//! Marks of hand and brush that belong to things: noise at rest positions, where they are known, else noise that motion
+//! carries, else noise on the screen. Paper stays on the screen.
+
+use crate::kernels::smoothing::gaussian_blur;
+use crate::kernels::smoothing::line_blur::{self, Lines};
+use crate::kernels::structure::smooth_noise::{self, Layer};
+use crate::kernels::structure::solid_noise::{self, Marks};
+use crate::kernels::structure::{noise, rest_footprint, rest_scale};
+use crate::kernels::time::carried_noise::{self, Layers};
+use crate::kernels::time::mark_chain::{self, Step};
+use crate::ports::REST_POSITION;
+use crate::spec::Scope;
+use isophote_engine::{Class, ImageId};
+
+/// White noise, smoothed by `sigma` pixels of the picture that is rendered.
+pub(crate) fn grains(scope: &mut Scope<'_>, sigma: f32, seed: u32) -> ImageId {
+    let (scale, origin) = (scope.scale(), scope.origin());
+    let screen = |scope: &mut Scope<'_>, seed: u32| {
+        let white = noise::pass(scope.plan, scale, origin, seed);
+        gaussian_blur::pass(scope.plan, white, sigma, Class::Colour)
+    };
+    on_things(scope, screen, &Marks::of_smoothed_noise(sigma, scale, seed))
+}
+
+/// Clouds of the size of those of the screen; none where they are to stay there. Of both `layers` together marks on
+/// things have one size.
+pub(crate) fn clouds(scope: &mut Scope<'_>, layers: [Layer; 2]) -> Option<ImageId> {
+    if !belong_to_things(scope) {
+        return None;
+    }
+    let (scale, origin) = (scope.scale(), scope.origin());
+    let screen = |scope: &mut Scope<'_>, number: u32| {
+        let layers =
+            layers.map(|(f, share, seed)| (f, share, seed.wrapping_add(number).wrapping_sub(layers[0].2)));
+        smooth_noise::pass(scope.plan, layers, scale, origin)
+    };
+    // Of the smooth step between cells: standard deviations of a value's weights, in cells, and of the noise.
+    const WIDTH: f32 = 0.365;
+    const DEVIATION: f32 = 0.2144;
+    // Standard deviation of the smoothing at silhouettes, pixels of the full-size picture.
+    const BORDER: f32 = 4.0;
+    let [(f, a, seed), (g, b, _)] = layers;
+    let sigma = WIDTH * (a / f + b / g) / (a + b);
+    let marks = Marks { sigma: sigma * scale, deviation: DEVIATION * a.hypot(b), seed };
+    let clouds = on_things(scope, screen, &marks);
+    // Outlines waver, and clouds of things must not end beside them; leaves make no crumbs.
+    Some(gaussian_blur::pass(scope.plan, clouds, BORDER * scale, Class::Colour))
+}
+
+/// Heights of pencil strokes in two directions, 0..=1, as fine as those of the screen; none where they are to stay there.
+pub(crate) fn hatching(scope: &mut Scope<'_>, directions: [[f32; 2]; 2], seed: u32) -> Option<[ImageId; 2]> {
+    // Standard deviations across and along strokes, pixels of the full-size picture, and of the heights.
+    const ACROSS: f32 = 0.45;
+    const ALONG: f32 = 13.0;
+    const DEVIATION: f32 = 0.28;
+    if !belong_to_things(scope) {
+        return None;
+    }
+    let scale = scope.scale();
+    let soft = grains(scope, ACROSS * scale, seed);
+    let Marks { deviation, .. } = Marks::of_smoothed_noise(ACROSS * scale, scale, seed);
+    // A Gaussian along lines leaves this share of the deviation.
+    let left = (ACROSS / ALONG.hypot(ACROSS)).sqrt();
+    let gain = DEVIATION / (deviation * left);
+    let step = (1.5 * scale).max(1.0);
+    Some(directions.map(|direction| {
+        let lines = Lines { direction, step, sigma: ALONG * scale, gain };
+        line_blur::pass(scope.plan, soft, &lines)
+    }))
+}
+
+/// Whether marks move with things.
+fn belong_to_things(scope: &Scope<'_>) -> bool {
+    scope.input(REST_POSITION.id).is_some() || (scope.renewal().is_some() && scope.input("motion").is_some())
+}
+
+/// The noise that `screen` makes of a seed, and noise of the same looks that moves with things where their rest positions
+/// are known.
+fn on_things(
+    scope: &mut Scope<'_>,
+    screen: impl Fn(&mut Scope<'_>, u32) -> ImageId,
+    marks: &Marks,
+) -> ImageId {
+    let Some(points) = scope.input(REST_POSITION.id) else { return carried(scope, screen, marks) };
+    let footprints = rest_footprint::pass(scope.plan, points);
+    let scales = rest_scale::pass(scope.plan, points, footprints);
+    let screen = screen(scope, marks.seed);
+    solid_noise::pass(scope.plan, points, scales, screen, marks)
+}
+
+/// Motions that marks are carried at most, in units of the longest motion from frame to frame: farther ones, which nobody
+/// can follow, would make tiles read much of the picture.
+const FARTHEST: f32 = 2.0;
+
+/// The noise that `screen` makes of a seed, carried along the motion of the frames before: two layers of it, half a period apart, each of which
+/// begins anew when the other one alone is seen. The number of the frame decides when, so that frames in any order show the
+/// same.
+fn carried(scope: &mut Scope<'_>, screen: impl Fn(&mut Scope<'_>, u32) -> ImageId, marks: &Marks) -> ImageId {
+    let common = screen(scope, marks.seed);
+    let Some((period, frame)) = scope.renewal() else { return common };
+    let ages = [0, period / 2].map(|offset| (frame + i64::from(offset)).rem_euclid(i64::from(period)) as i32);
+    let longest = scope.max_motion;
+    let farthest = longest * FARTHEST;
+    let mut chain = None;
+    // All steps are always there, so that another frame is another set of numbers in the same passes.
+    for count in 0..period - 1 {
+        let Some(motion) = scope.motion_before(count) else { break };
+        let advance = ages.map(|age| count < age);
+        let step = Step { longest, farthest, count: count as u32, advance };
+        chain = Some(mark_chain::pass(scope.plan, chain, motion, &step));
+    }
+    let Some(chain) = chain else { return common };
+    // A triangle: 1 in the middle of a layer's life, 0 at its ends.
+    let share = 1.0 - (2.0 * ages[1] as f32 / period as f32 - 1.0).abs();
+    let layers = Layers { share, sigma: marks.sigma, farthest };
+    let [first, second] =
+        [1, 2].map(|n: u32| screen(scope, marks.seed.wrapping_add(n.wrapping_mul(0x9e37_79b9))));
+    carried_noise::pass(scope.plan, [common, first, second], chain, &layers)
+}
