@@ -1,15 +1,19 @@
 //! What an instance says of itself: whether it may be rendered in tiles, and which controls have an effect at the
 //! moment. Both depend on its values, so that they are said when it is created and when values change.
 
-use super::describe::{MASK, SOURCE};
-use super::effects::{Effect, Target, is_local};
+use super::clips::{MASK, SOURCE, is_connected};
+use super::effects::{Effect, Target};
 use super::host::{Host, Outcome};
 use super::image::Clip;
-use super::instance::{Moment, connected_guides, is_connected};
+use super::instance::Moment;
 use super::interface::*;
+use super::known::{Known, connected_guides};
+use super::motion::MotionFrom;
 use super::settings::{Settings, animated};
 use isophote::engine::plan::Pass;
 use isophote::engine::{Plan, Rect};
+use isophote::frames::Frames;
+use isophote::request::Guides;
 use isophote::spec::Param;
 use isophote::{Graph, Planned, Request, Value};
 use std::ffi::CStr;
@@ -21,7 +25,9 @@ const SIDE: u32 = 1024;
 /// Says everything of a new instance, which may have the values of a saved project.
 pub fn created(effect: &Effect, host: &Host, instance: Handle) -> Outcome {
     // Some hosts have no values yet; the descriptor's word and all controls then stand.
-    let _ = refresh(effect, host, instance, 0.0, true);
+    if let Ok(settings) = refresh(effect, host, instance, 0.0, true) {
+        notice(host, instance, &settings, false);
+    }
     Ok(kOfxStatOK)
 }
 
@@ -37,28 +43,49 @@ pub fn changed(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) 
     let args = host.set(in_args);
     let time = Moment::of(args).time;
     let reason = args.string(kOfxPropChangeReason, 0);
-    let of_time = reason.is_some_and(|reason| reason.as_c_str() == kOfxChangeTime);
+    let is_for = |wanted: &CStr| reason.as_deref() == Some(wanted);
+    let of_time = is_for(kOfxChangeTime);
     if of_time && animated(effect, host, instance)?.is_empty() {
         return Ok(kOfxStatOK);
     }
     let what = args.string(kOfxPropType, 0);
     let of_clip = what.is_some_and(|what| what.as_c_str() == kOfxTypeClip);
-    refresh(effect, host, instance, time, !of_time && !of_clip)?;
+    let settings = refresh(effect, host, instance, time, !of_time && !of_clip)?;
+    if is_for(kOfxChangeUserEdited) {
+        notice(host, instance, &settings, true);
+    }
     Ok(kOfxStatOK)
 }
 
+/// Tells the user of a host of single frames that nothing can be steadied by others. `aloud`: even if that stops the user.
+fn notice(host: &Host, instance: Handle, settings: &Settings, aloud: bool) {
+    if host.temporal {
+        return;
+    }
+    if settings.graph.frames() == [0, 0] {
+        host.withdraw_notice(instance);
+    } else if !host.background {
+        host.give_notice(instance, ONE_FRAME, aloud);
+    }
+}
+
+const ONE_FRAME: &str = "This host gives effects one frame at a time. Steadiness needs the frames around it and has no effect here.";
+
 /// Says which controls have an effect and, where `tiles`, whether tiles may be rendered.
-fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: bool) -> Outcome<()> {
+fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: bool) -> Outcome<Settings> {
     let settings = Settings::read(effect, host, instance, time)?;
     if tiles {
-        let local = is_local_at_all_times(effect, host, instance, &settings)?;
+        let local = is_local_at_all_times(effect, host, instance, &settings, time)?;
         host.effect(instance).set_int(kOfxImageEffectPropSupportsTiles, local.into());
     }
     if host.background {
-        return Ok(());
+        return Ok(settings);
     }
-    let guides = connected_guides(effect, host, instance);
-    let plan = |graph: &Graph| Planned::new(graph, Request { guides, ..Request::new(SIDE, SIDE) });
+    let scene = Surroundings::of(effect, host, instance, &settings);
+    let plan = |graph: &Graph| {
+        let Surroundings { guides, frames, .. } = scene;
+        Planned::new(graph, Request { guides, frames, ..Request::new(SIDE, SIDE) })
+    };
     let now = plan(&settings.graph).map_err(|_| kOfxStatFailed)?;
     let params = host.params(instance)?;
     for control in &effect.controls {
@@ -69,11 +96,37 @@ fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: boo
             }),
             Target::ProcessAlpha => has_alpha(host, instance),
             Target::MaskApply => is_connected(host, instance, MASK),
+            Target::MotionFrom => host.temporal && settings.graph.frames() != [0, 0],
+            Target::MotionConvention => scene.reads_vectors && settings.graph.frames() != [0, 0],
             Target::LinesOutput | Target::WorkingSpace => true,
         };
         enable(host, params, &control.name, has_effect);
     }
-    Ok(())
+    Ok(settings)
+}
+
+/// What there is around a picture for its controls to have an effect on.
+#[derive(Clone, Copy)]
+struct Surroundings {
+    guides: Guides,
+    frames: Frames,
+    /// Whether motion is read from clips.
+    reads_vectors: bool,
+}
+
+impl Surroundings {
+    /// By what is connected. One neighbour shows what all show, and vectors what an estimate shows, with less to plan.
+    fn of(effect: &Effect, host: &Host, instance: Handle, settings: &Settings) -> Self {
+        let guides = connected_guides(effect, host, instance);
+        let has_clip = guides.motion || guides.motion_forward;
+        let is_estimated = settings.motion_from.is_estimated(has_clip);
+        let moves = host.temporal && (is_estimated || has_clip);
+        Self {
+            guides: Guides { motion: moves, motion_forward: moves, ..guides },
+            frames: if moves { Frames::around(1, 0) } else { Frames::NONE },
+            reads_vectors: moves && has_clip && settings.motion_from != MotionFrom::Flow,
+        }
+    }
 }
 
 /// Whether a tile needs only the pixels around it, whatever values animated controls take.
@@ -82,12 +135,15 @@ fn is_local_at_all_times(
     host: &Host,
     instance: Handle,
     settings: &Settings,
+    time: f64,
 ) -> Outcome<bool> {
-    if !settings.is_local()? {
+    if !Known::is_local_for(effect, host, instance, settings, time)? {
         return Ok(false);
     }
     let animated = animated(effect, host, instance)?;
     let mut graphs = animated.into_iter().flat_map(|(node, param)| others(settings, node, param));
+    let has = connected_guides(effect, host, instance);
+    let is_local = |graph: &Graph| Known::of(graph, settings.motion_from, has, host.temporal)?.is_local();
     Ok(graphs.all(|graph| is_local(&graph).unwrap_or(false)))
 }
 
