@@ -1,6 +1,6 @@
 //! What all handles of a host lead back to: how it behaves, and what it noted of its plugins.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, c_int};
 use std::sync::atomic::{AtomicI32, AtomicU32};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
@@ -22,6 +22,10 @@ pub struct Behaviour {
     pub refuses_optional: bool,
     /// Whether images may be parts of pictures.
     pub tiles: bool,
+    /// Whether clips give the images of any time.
+    pub temporal: bool,
+    /// Whether an image that there is not is a success without an image.
+    pub null_images: bool,
     /// Whether it has half floats.
     pub half: bool,
     /// Processors of its multi-thread suite; 0 for a host without the suite.
@@ -51,6 +55,8 @@ impl Default for Behaviour {
             refused: Vec::new(),
             refuses_optional: false,
             tiles: true,
+            temporal: true,
+            null_images: false,
             half: true,
             processors: 0,
             returns_early: false,
@@ -91,6 +97,8 @@ pub struct Inner {
     pub(super) late: Mutex<Vec<JoinHandle<()>>>,
     /// Messages that it shows.
     pub messages: Mutex<Vec<String>>,
+    /// Images that it was asked for, by clip and time.
+    pub wanted: Mutex<Vec<(String, f64)>>,
     /// What its plugins did against the standard.
     faults: Mutex<Vec<String>>,
     pub(super) suites: OnceLock<Vec<Suite>>,
@@ -103,6 +111,18 @@ thread_local! {
     /// The host whose plugin this thread last called. Some functions of the standard have no argument
     /// for the host.
     static CURRENT: RefCell<Weak<Inner>> = const { RefCell::new(Weak::new()) };
+    /// The time that this thread renders, while it does.
+    static RENDERED: Cell<Option<f64>> = const { Cell::new(None) };
+}
+
+/// Says which time the calling thread renders, if any.
+pub(super) fn render_at(time: Option<f64>) {
+    RENDERED.set(time);
+}
+
+/// The time that the calling thread renders.
+pub(super) fn rendered() -> Option<f64> {
+    RENDERED.get()
 }
 
 impl Inner {
@@ -114,6 +134,7 @@ impl Inner {
             runs: AtomicU32::new(0),
             late: Mutex::default(),
             messages: Mutex::default(),
+            wanted: Mutex::default(),
             faults: Mutex::default(),
             suites: OnceLock::new(),
         }

@@ -34,7 +34,7 @@ pub fn created(effect: &Effect, host: &Host, instance: Handle) -> Outcome {
 /// Says what has become other, by what changed.
 ///
 /// The user, and the host in the user's place (a paste, an undo, a script), may change anything. A clip that is
-/// connected changes only which controls have an effect. Another time changes values that are animated: nothing
+/// connected changes which controls have an effect and, where it stands for an estimate, whether tiles may be rendered. Another time changes values that are animated: nothing
 /// is looked at where there are none, and whether tiles may be rendered holds for all times.
 ///
 /// # Errors
@@ -50,7 +50,9 @@ pub fn changed(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) 
     }
     let what = args.string(kOfxPropType, 0);
     let of_clip = what.is_some_and(|what| what.as_c_str() == kOfxTypeClip);
-    let settings = refresh(effect, host, instance, time, !of_time && !of_clip)?;
+    // A clip of motion makes an estimate, which takes whole pictures, needless.
+    let tiles = !of_time && (effect.temporal || !of_clip);
+    let settings = refresh(effect, host, instance, time, tiles)?;
     if is_for(kOfxChangeUserEdited) {
         notice(host, instance, &settings, true);
     }
@@ -75,7 +77,7 @@ const ONE_FRAME: &str = "This host gives effects one frame at a time. Steadiness
 fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: bool) -> Outcome<Settings> {
     let settings = Settings::read(effect, host, instance, time)?;
     if tiles {
-        let local = is_local_at_all_times(effect, host, instance, &settings, time)?;
+        let local = is_local_at_all_times(effect, host, instance, &settings)?;
         host.effect(instance).set_int(kOfxImageEffectPropSupportsTiles, local.into());
     }
     if host.background {
@@ -135,9 +137,8 @@ fn is_local_at_all_times(
     host: &Host,
     instance: Handle,
     settings: &Settings,
-    time: f64,
 ) -> Outcome<bool> {
-    if !Known::is_local_for(effect, host, instance, settings, time)? {
+    if !Known::is_local_for(effect, host, instance, settings)? {
         return Ok(false);
     }
     let animated = animated(effect, host, instance)?;

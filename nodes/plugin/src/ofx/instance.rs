@@ -47,7 +47,7 @@ pub fn defined(
 ) -> Outcome<Option<OfxRectD>> {
     let clip = Clip::of(host, instance, SOURCE);
     let Some(region) = clip.and_then(|clip| clip.defined(time)) else { return Ok(None) };
-    if !is_endless(&region) || Known::is_local_for(effect, host, instance, settings, time)? {
+    if !is_endless(&region) || Known::is_local_for(effect, host, instance, settings)? {
         return Ok(Some(region));
     }
     let project = extent(host, instance).map(|[x2, y2]| OfxRectD { x1: 0.0, y1: 0.0, x2, y2 });
@@ -118,7 +118,8 @@ pub fn regions_of_interest(
     let order = source.properties.string(kOfxImageClipPropFieldOrder, 0);
     let fields = order.is_some_and(|order| order.as_c_str() != kOfxImageFieldNone);
     let mut interest = Interest { answer, frame, fields, rects: BTreeMap::new() };
-    for known in Known::connected(effect, host, instance, &settings, moment.time)? {
+    for mut known in Known::connected(effect, host, instance, &settings)? {
+        known.limit_to_source(host, instance, moment.time);
         let prepared = Prepared::new(&known, settings.space, &frame, true).map_err(|_| kOfxStatFailed)?;
         let windows = prepared.windows(region);
         for port in prepared.planned.plan().inputs() {

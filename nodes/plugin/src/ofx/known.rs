@@ -61,26 +61,18 @@ impl Known {
         host: &Host,
         instance: Handle,
         settings: &Settings,
-        time: f64,
     ) -> Outcome<Vec<Self>> {
         let has = connected_guides(effect, host, instance);
         let mut all = vec![has];
         if host.quirks.all_connected && (has.motion || has.motion_forward) {
             all.push(Guides { motion: false, motion_forward: false, ..has });
         }
-        let source = Clip::of(host, instance, SOURCE);
-        let mut found = Vec::new();
-        for has in all {
-            let mut known = Self::of(&settings.graph, settings.motion_from, has, host.temporal)?;
-            if let Some(source) = &source {
-                known.limit(|offset| source.has_frame(time + f64::from(offset)));
-            }
-            found.push(known);
-        }
-        Ok(found)
+        let of = |has| Self::of(&settings.graph, settings.motion_from, has, host.temporal);
+        all.into_iter().map(of).collect()
     }
 
-    /// Whether a tile needs only the pixels around it, by the clips that are connected.
+    /// Whether a tile needs only the pixels around it, by the clips that are connected; at all times, since hosts ask
+    /// once for all.
     ///
     /// # Errors
     /// Failed, when no graph comes of it or it cannot be planned.
@@ -89,9 +81,8 @@ impl Known {
         host: &Host,
         instance: Handle,
         settings: &Settings,
-        time: f64,
     ) -> Outcome<bool> {
-        for known in Self::connected(effect, host, instance, settings, time)? {
+        for known in Self::connected(effect, host, instance, settings)? {
             if !known.is_local()? {
                 return Ok(false);
             }
@@ -99,8 +90,15 @@ impl Known {
         Ok(true)
     }
 
+    /// Forgets the frames that the source says it has not around a time.
+    pub fn limit_to_source(&mut self, host: &Host, instance: Handle, time: f64) {
+        if let Some(source) = Clip::of(host, instance, SOURCE) {
+            self.limit(|offset| source.has_frame(time + f64::from(offset)));
+        }
+    }
+
     /// Forgets the neighbours that there are not, and those behind them.
-    pub fn limit(&mut self, exists: impl Fn(i32) -> bool) {
+    fn limit(&mut self, exists: impl Fn(i32) -> bool) {
         let count =
             |most: u32, towards: i32| (1..=most).take_while(|n| exists(towards * *n as i32)).count() as u32;
         self.frames = Frames::around(count(self.frames.past, -1), count(self.frames.future, 1));

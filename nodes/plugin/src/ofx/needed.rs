@@ -33,7 +33,8 @@ pub fn frames(effect: &Effect, host: &Host, instance: Handle, in_args: Handle, o
         return Ok(kOfxStatReplyDefault);
     }
     let mut ranges = Ranges::new();
-    for mut known in Known::connected(effect, host, instance, &settings, time)? {
+    for mut known in Known::connected(effect, host, instance, &settings)? {
+        known.limit_to_source(host, instance, time);
         while let Some(missing) = gather(&known, &settings, host, instance, time, &mut ranges)? {
             known.forget_from(missing);
         }

@@ -85,7 +85,12 @@ impl Prepared {
     pub fn band_rows(&self, region: Rect) -> i32 {
         let plan = self.planned.plan();
         let window = self.plan_window(region);
-        let rows = plan.band_rows(window, WORKING_MEMORY, LEAST_ROWS);
+        let mut rows = plan.band_rows(window, WORKING_MEMORY, LEAST_ROWS);
+        let first = Rect { y1: (window.y0 + rows).min(window.y1), ..window };
+        if plan.peak_bytes(&plan.windows(first)) > WORKING_MEMORY[1] {
+            // No band keeps within the bound: each would be computed from nearly all, again and again.
+            rows = window.height() as i32;
+        }
         if self.square.is_none() {
             return rows;
         }
@@ -106,9 +111,36 @@ fn least_memory(plan: &Plan) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::super::effects::{EFFECTS, Form};
+    use super::super::motion::MotionFrom;
     use super::*;
     use isophote::frames::Frames;
     use isophote::request::Guides;
+
+    #[test]
+    fn what_looks_at_whole_pictures_is_no_band() {
+        let picture = [0, 0, 7680, 4320];
+        let frame = Frame { picture, ratio: [1.0; 2], scale: 1.0, top: None, number: 0 };
+        let whole = Rect::of_size(7680, 4320);
+        for effect in EFFECTS.iter().filter(|effect| effect.temporal) {
+            let (mut graph, ids) = effect.graph(false).unwrap();
+            graph.set(ids[0], "steadiness", isophote::Value::Float(0.5)).unwrap();
+            for vectors in [true, false] {
+                let has = Guides { motion: vectors, ..Guides::default() };
+                let known = Known::of(&graph, MotionFrom::default(), has, true).unwrap();
+                assert_ne!(known.frames, Frames::NONE);
+                let prepared = Prepared::new(&known, ColourSpace::Linear, &frame, true).unwrap();
+                let rows = prepared.band_rows(whole);
+                let bytes = prepared.planned.plan().peak_bytes(&prepared.windows(Rect { y1: rows, ..whole }));
+                let gib = bytes as f64 / (1_u64 << 30) as f64;
+                println!("{:?}, vectors {vectors}: {rows} rows, {gib:.2} GiB", effect.identifier);
+                assert!(
+                    rows == 4320 || (vectors && bytes <= WORKING_MEMORY[1]),
+                    "{rows} rows take {gib:.2} GiB"
+                );
+                assert!(bytes <= 10 << 30, "{gib:.2} GiB");
+            }
+        }
+    }
 
     #[test]
     fn an_8k_frame_of_any_pixels_fits_into_4_gib() {

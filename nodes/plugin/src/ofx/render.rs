@@ -246,9 +246,7 @@ impl Plans {
         let (inputs, settings) = (&job.inputs, &job.settings);
         let has = inputs.available();
         let mut known = Known::of(&settings.graph, settings.motion_from, has, inputs.host.temporal)?;
-        if let Some(source) = Clip::of(inputs.host, inputs.instance, SOURCE) {
-            known.limit(|offset| source.has_frame(inputs.time + f64::from(offset)));
-        }
+        known.limit_to_source(inputs.host, inputs.instance, inputs.time);
         let prepared = Self::prepared(&known, job)?;
         Ok(Self { known, prepared, emissive: None })
     }
