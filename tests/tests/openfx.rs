@@ -64,6 +64,7 @@ const OF_THE_BINARY: &[OfTheBinary] = named! {
     render::the_colour_space_that_a_host_names_counts,
     render::a_host_that_returns_before_its_threads_gets_the_same_pixels,
     render::unknown_depths_are_refused,
+    time::frames_beyond_a_cut_count_for_nothing,
     time::frames_at_once_on_threads_are_the_same,
     time::frames_that_a_host_lacks_count_for_nothing,
     time::hosts_of_single_frames_show_stills_and_say_so_once,

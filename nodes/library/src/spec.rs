@@ -127,13 +127,6 @@ pub(crate) const WINDOW: Param = Param::int("window", "Window", 2, [0, 8])
     .group("time")
     .doc("Neighbouring frames that count, to each side as far as they and the motion from them are known.");
 
-impl Param {
-    /// Whether it says how neighbouring frames count, and nothing where one frame alone is known.
-    pub fn is_of_neighbours(&self) -> bool {
-        self.id == STEADINESS.id || self.id == WINDOW.id
-    }
-}
-
 /// How much of a node's result is used; every node from colour to colour has it.
 pub const MASK: Port = Port {
     id: "mask",

@@ -188,6 +188,33 @@ pub fn frames_that_a_host_lacks_count_for_nothing(binary: &Binary) {
     }
 }
 
+pub fn frames_beyond_a_cut_count_for_nothing(binary: &Binary) {
+    let host = Host::new(Behaviour::default());
+    let described = Described::new(&host, binary.plugin("org.isophote.steady"));
+    for context in [FILTER, GENERAL] {
+        let instance = steadied(&described, context, 2);
+        if context == GENERAL {
+            // A renderer knows nothing of cuts.
+            connect_motion(&instance);
+        }
+        let show = |first: i64| {
+            let other = |n| {
+                film::frame(n).chunks_exact(4).flat_map(|p| [1.0 - p[1], 0.2 * p[2], p[0], 1.0]).collect()
+            };
+            let frames = (first..=RANGE[1]).map(|n| if n < 6 { other(n) } else { film::frame(n) });
+            let layout = Layout::default();
+            let frames = frames.map(|pixels: Vec<f32>| film::picture(layout, &pixels)).collect();
+            instance.connect_film("Source", first as i32, frames);
+            floats(&render(&instance, 6).packed())
+        };
+        let (cut, begun) = (show(3), show(6));
+        let apart = cut.iter().zip(&begun).map(|(a, b)| (a - b).abs()).sum::<f32>() / cut.len() as f32;
+        println!("{context:?}: {apart} from the film that begins there");
+        assert!(apart < 1e-3, "{context:?}: {apart}");
+    }
+    host.no_faults();
+}
+
 pub fn hosts_of_single_frames_show_stills_and_say_so_once(binary: &Binary) {
     let usual = Behaviour { temporal: false, ..Behaviour::default() };
     for (behaviour, when_created, when_edited) in [
