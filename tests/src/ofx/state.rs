@@ -97,8 +97,6 @@ pub struct Inner {
     pub(super) late: Mutex<Vec<JoinHandle<()>>>,
     /// Messages that it shows.
     pub messages: Mutex<Vec<String>>,
-    /// Images that it was asked for, by clip and time.
-    pub wanted: Mutex<Vec<(String, f64)>>,
     /// What its plugins did against the standard.
     faults: Mutex<Vec<String>>,
     pub(super) suites: OnceLock<Vec<Suite>>,
@@ -134,7 +132,6 @@ impl Inner {
             runs: AtomicU32::new(0),
             late: Mutex::default(),
             messages: Mutex::default(),
-            wanted: Mutex::default(),
             faults: Mutex::default(),
             suites: OnceLock::new(),
         }

@@ -368,7 +368,6 @@ unsafe extern "C" fn clip_image(
     nothing(place);
     let clip = thing!(clip, Clip, "clipGetImage");
     let host = &clip.set.host;
-    lock(&host.wanted).push((clip.name.to_string_lossy().into_owned(), time));
     clip.check_access(time);
     let set = Set::new(host, "image");
     if clip.at(time, |picture| picture.describe(&set)).is_none() {
