@@ -52,6 +52,7 @@ const OF_THE_BINARY: &[OfTheBinary] = named! {
     regions::a_bounding_box_shows_the_marks_of_the_project,
     controls::tiles_are_supported_as_saved_values_say,
     controls::another_time_is_no_edit,
+    controls::what_motion_comes_from_decides_about_tiles_and_controls,
     controls::hosts_without_a_window_are_not_told_of_controls,
     describe::every_node_that_can_be_an_effect_is_one,
     describe::the_working_space_follows_the_host,

@@ -242,7 +242,9 @@ pub fn hosts_of_single_frames_show_stills_and_say_so_once(binary: &Binary) {
             render(&instance, 5);
         }
         assert_eq!(said() - told, when_edited);
-        assert_eq!(instance.is_enabled("window"), temporal);
+        for name in ["steadiness", "window"] {
+            assert_eq!(instance.is_enabled(name), temporal, "{name}");
+        }
         assert_eq!(instance.frames_needed(5.0).is_empty(), !temporal);
         assert_eq!(render(&instance, 5).packed() == still(&instance, 5), !temporal);
         instance.set("steadiness", 0.0);

@@ -11,11 +11,12 @@ use super::known::{Known, connected_guides};
 use super::motion::MotionFrom;
 use super::settings::{Settings, animated};
 use isophote::engine::plan::Pass;
-use isophote::engine::{Plan, Rect};
+use isophote::engine::{ImageId, Plan, Rect};
 use isophote::frames::Frames;
 use isophote::request::Guides;
 use isophote::spec::Param;
 use isophote::{Graph, Planned, Request, Value};
+use std::collections::HashMap;
 use std::ffi::CStr;
 use std::ptr::null_mut;
 
@@ -98,7 +99,10 @@ fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: boo
             }),
             Target::ProcessAlpha => has_alpha(host, instance),
             Target::MaskApply => is_connected(host, instance, MASK),
-            Target::MotionFrom => host.temporal && settings.graph.frames() != [0, 0],
+            // Where nothing moves, steadiness is grey until this is another.
+            Target::MotionFrom => {
+                host.temporal && (settings.graph.frames() != [0, 0] || scene.frames == Frames::NONE)
+            }
             Target::MotionConvention => scene.reads_vectors && settings.graph.frames() != [0, 0],
             Target::LinesOutput | Target::WorkingSpace => true,
         };
@@ -169,23 +173,45 @@ fn others(settings: &Settings, node: usize, param: &'static Param) -> impl Itera
 
 /// Whether two plans compute the same, as far as it is needed.
 fn are_same(a: &Plan, b: &Plan) -> bool {
-    let same = |(a, b): (&Pass, &Pass)| {
+    let same = |((a, a_images), (b, b_images)): (&Work, &Work)| {
         std::ptr::eq(a.kernel, b.kernel)
             && a.params == b.params
-            && a.inputs == b.inputs
-            && a.outputs == b.outputs
+            && a.inputs.len() == b.inputs.len()
+            && a_images == b_images
             && a.supports == b.supports
     };
-    let (a_passes, b_passes) = (needed(a), needed(b));
-    a.inputs() == b.inputs()
-        && a.outputs() == b.outputs()
-        && a_passes.len() == b_passes.len()
-        && a_passes.into_iter().zip(b_passes).all(same)
+    let (a, b) = (Needed::of(a), Needed::of(b));
+    a.ports == b.ports && a.passes.len() == b.passes.len() && a.passes.iter().zip(&b.passes).all(same)
 }
 
-fn needed(plan: &Plan) -> Vec<&Pass> {
-    let windows = plan.windows(Rect::of_size(SIDE, SIDE));
-    plan.passes().iter().filter(|pass| !windows[pass.outputs[0].index()].is_empty()).collect()
+/// A pass, with its inputs and its outputs as they are counted.
+type Work<'p> = (&'p Pass, Vec<usize>);
+
+/// What of a plan is needed, its images counted without the others.
+struct Needed<'p> {
+    /// Inputs, then outputs.
+    ports: Vec<(&'p str, usize)>,
+    passes: Vec<Work<'p>>,
+}
+
+impl<'p> Needed<'p> {
+    fn of(plan: &'p Plan) -> Self {
+        let windows = plan.windows(Rect::of_size(SIDE, SIDE));
+        let is_needed = |image: &ImageId| !windows[image.index()].is_empty();
+        let mut numbers = HashMap::new();
+        let mut number = |image: &ImageId| {
+            let next = numbers.len();
+            *numbers.entry(image.index()).or_insert(next)
+        };
+        let inputs = plan.inputs().iter().filter(|port| is_needed(&port.image));
+        let mut ports: Vec<_> = inputs.map(|port| (port.name.as_str(), number(&port.image))).collect();
+        let passes = plan.passes().iter().filter(|pass| is_needed(&pass.outputs[0]));
+        let passes =
+            passes.map(|pass| (pass, pass.inputs.iter().chain(&pass.outputs).map(&mut number).collect()));
+        let passes = passes.collect();
+        ports.extend(plan.outputs().iter().map(|port| (port.name.as_str(), number(&port.image))));
+        Self { ports, passes }
+    }
 }
 
 /// Whether the source has, or may have, an alpha of its own.
