@@ -89,6 +89,8 @@ pub struct Inner {
     pub behaviour: Behaviour,
     /// Images that were lent and not given back.
     pub lent: AtomicI32,
+    /// The most that were lent at once.
+    pub most_lent: AtomicI32,
     /// How often it was asked whether to stop.
     pub asked: AtomicU32,
     /// Runs of its multi-thread suite.
@@ -128,6 +130,7 @@ impl Inner {
         Self {
             behaviour,
             lent: AtomicI32::new(0),
+            most_lent: AtomicI32::new(0),
             asked: AtomicU32::new(0),
             runs: AtomicU32::new(0),
             late: Mutex::default(),

@@ -373,7 +373,8 @@ unsafe extern "C" fn clip_image(
     if clip.at(time, |picture| picture.describe(&set)).is_none() {
         return if host.behaviour.null_images { kOfxStatOK } else { kOfxStatFailed };
     }
-    host.lent.fetch_add(1, Ordering::SeqCst);
+    let lent = host.lent.fetch_add(1, Ordering::SeqCst) + 1;
+    host.most_lent.fetch_max(lent, Ordering::SeqCst);
     // SAFETY: the plugin gave a place; the set comes back by `clip_release`.
     unsafe { place.write(Box::into_raw(set).cast()) };
     kOfxStatOK

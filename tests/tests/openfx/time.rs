@@ -167,6 +167,23 @@ pub fn frames_at_once_on_threads_are_the_same(binary: &Binary) {
     host.no_faults();
 }
 
+pub fn neighbours_are_given_back_before_the_next_is_taken(binary: &Binary) {
+    let host = Host::new(Behaviour::default());
+    let described = Described::new(&host, binary.plugin("org.isophote.cartoon"));
+    for (context, own) in [(FILTER, 2), (GENERAL, 3)] {
+        let instance = steadied(&described, context, 2);
+        if context == GENERAL {
+            connect_motion(&instance);
+        }
+        host.inner.most_lent.store(0, Ordering::SeqCst);
+        render(&instance, 5);
+        // The output, the source, vectors, and one of another frame.
+        assert_eq!(host.inner.most_lent.load(Ordering::SeqCst), own + 1, "{context:?}");
+        assert_eq!(host.inner.lent.load(Ordering::SeqCst), 0);
+    }
+    host.no_faults();
+}
+
 pub fn frames_that_a_host_lacks_count_for_nothing(binary: &Binary) {
     let wanted = {
         let host = Host::new(Behaviour::default());
@@ -224,16 +241,17 @@ pub fn hosts_of_single_frames_show_stills_and_say_so_once(binary: &Binary) {
         (Behaviour { null_functions: true, ..usual.clone() }, 0, 0),
         (Behaviour { without: vec![kOfxMessageSuite], ..usual.clone() }, 0, 0),
         (Behaviour { name: c"DaVinciResolve", ..usual.clone() }, 0, 0),
+        (Behaviour { refused: vec![kOfxImageEffectPropTemporalClipAccess], ..Behaviour::default() }, 1, 1),
         (Behaviour::default(), 0, 0),
     ] {
-        let temporal = behaviour.temporal;
+        // A host that does not say gives single frames.
+        let says = behaviour.refused.is_empty();
+        let temporal = behaviour.temporal && says;
         let host = Host::new(behaviour);
         let said = || host.inner.messages.lock().unwrap().len();
         let described = Described::new(&host, binary.plugin("org.isophote.cartoon"));
-        assert_eq!(
-            described.descriptor.set.int(kOfxImageEffectPropTemporalClipAccess),
-            Some(temporal.into())
-        );
+        let access = described.descriptor.set.int(kOfxImageEffectPropTemporalClipAccess);
+        assert_eq!(access, says.then_some(temporal.into()));
         drop(described.saved_instance(FILTER, &[("steadiness", 0.5.into())]));
         let instance = steadied(&described, FILTER, 2);
         let told = said();
