@@ -10,6 +10,8 @@ mod aspect;
 mod controls;
 #[path = "openfx/describe.rs"]
 mod describe;
+#[path = "openfx/film.rs"]
+mod film;
 #[path = "openfx/memory.rs"]
 mod memory;
 #[path = "openfx/quirks.rs"]
@@ -22,6 +24,10 @@ mod regions;
 mod render;
 #[path = "openfx/scale.rs"]
 mod scale;
+#[path = "openfx/time.rs"]
+mod time;
+#[path = "openfx/vectors.rs"]
+mod vectors;
 
 use isophote_tests::ofx::plugin::{Binary, Lent};
 use isophote_tests::trials::Trials;
@@ -46,6 +52,7 @@ const OF_THE_BINARY: &[OfTheBinary] = named! {
     regions::a_bounding_box_shows_the_marks_of_the_project,
     controls::tiles_are_supported_as_saved_values_say,
     controls::another_time_is_no_edit,
+    controls::what_motion_comes_from_decides_about_tiles_and_controls,
     controls::hosts_without_a_window_are_not_told_of_controls,
     describe::every_node_that_can_be_an_effect_is_one,
     describe::the_working_space_follows_the_host,
@@ -58,6 +65,15 @@ const OF_THE_BINARY: &[OfTheBinary] = named! {
     render::the_colour_space_that_a_host_names_counts,
     render::a_host_that_returns_before_its_threads_gets_the_same_pixels,
     render::unknown_depths_are_refused,
+    time::frames_beyond_a_cut_count_for_nothing,
+    time::frames_at_once_on_threads_are_the_same,
+    time::neighbours_are_given_back_before_the_next_is_taken,
+    time::frames_that_a_host_lacks_count_for_nothing,
+    time::hosts_of_single_frames_show_stills_and_say_so_once,
+    time::hosts_that_call_every_clip_connected_are_estimated_for,
+    vectors::every_convention_means_the_same,
+    vectors::unknown_vectors_leave_the_frame_alone,
+    vectors::vectors_are_in_pixels_of_the_full_size,
 };
 
 /// What holds for every effect.
@@ -91,6 +107,9 @@ const OF_EVERY_EFFECT: &[OfAnEffect] = named! {
     render::twelve_renders_on_four_threads_are_the_same,
     render::a_host_that_wants_to_stop_is_heard,
     scale::half_size_looks_like_full_size_made_smaller,
+    time::frames_are_those_of_the_librarys_sequences,
+    time::frames_are_asked_for_as_the_values_say,
+    time::any_order_and_any_tile_gives_the_same_bits,
 };
 
 fn main() -> ExitCode {

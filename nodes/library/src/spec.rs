@@ -137,13 +137,6 @@ pub(crate) const RENEWAL: Param = Param::int("renewal", "Renewal", 8, [0, 16])
          leaves marks on the screen.",
     );
 
-impl Param {
-    /// Whether it says how neighbouring frames count, and nothing where one frame alone is known.
-    pub fn is_of_neighbours(&self) -> bool {
-        [STEADINESS.id, WINDOW.id, RENEWAL.id].contains(&self.id)
-    }
-}
-
 /// How much of a node's result is used; every node from colour to colour has it.
 pub const MASK: Port = Port {
     id: "mask",

@@ -1,10 +1,11 @@
 //! The OpenFX face: every node as an image effect of its own, for hosts such as Nuke, Resolve and Natron.
 //!
 //! Thin: [`effects`] derives what there is from the nodes' declarations, [`describe`] describes it to hosts,
-//! [`settings`] and [`image`] read what hosts have, [`pixel_aspect`] makes their pixels square, and [`render`]
-//! runs the plan. Nothing is kept between calls but the host's functions, so that any action may come on any
-//! thread, in any number.
+//! [`settings`], [`known`], [`image`] and [`inputs`] read what hosts have, [`pixel_aspect`] makes their pixels square,
+//! and [`render`] runs the plan that is [`prepared`]. Nothing is kept between calls but the host's functions, so that
+//! any action may come on any thread, in any number.
 
+mod clips;
 mod controls;
 mod describe;
 mod effects;
@@ -12,13 +13,19 @@ mod faults;
 mod frame;
 mod host;
 mod image;
+mod inputs;
 mod instance;
 mod interface;
+mod known;
 mod memory;
+mod motion;
+mod needed;
 mod pixel_aspect;
+mod prepared;
 mod quirks;
 mod render;
 mod settings;
+mod stop;
 mod threads;
 
 use crate::abi::guard::lock;
@@ -133,7 +140,7 @@ fn act_on_library(number: usize, action: &CStr) -> Option<Outcome> {
 }
 
 /// Actions on a descriptor or an instance; [`act_on_effect`] knows each.
-const ACTIONS_ON_EFFECTS: [&CStr; 11] = [
+const ACTIONS_ON_EFFECTS: [&CStr; 12] = [
     kOfxActionDescribe,
     kOfxActionCreateInstance,
     kOfxActionDestroyInstance,
@@ -141,6 +148,7 @@ const ACTIONS_ON_EFFECTS: [&CStr; 11] = [
     kOfxImageEffectActionDescribeInContext,
     kOfxImageEffectActionGetRegionOfDefinition,
     kOfxImageEffectActionGetRegionsOfInterest,
+    kOfxImageEffectActionGetFramesNeeded,
     kOfxImageEffectActionGetClipPreferences,
     kOfxImageEffectActionGetOutputColourspace,
     kOfxImageEffectActionIsIdentity,
@@ -160,10 +168,10 @@ fn act_on_effect(
         a if a == kOfxImageEffectActionDescribeInContext => {
             describe::in_context(effect, host, handle, in_args)
         }
-        // Nothing is kept for an instance but whether it shows a message.
+        // Nothing is kept for an instance but its messages.
         a if a == kOfxActionCreateInstance => controls::created(effect, host, handle),
         a if a == kOfxActionDestroyInstance => {
-            host.clear_message(handle);
+            host.forget(handle);
             Ok(kOfxStatOK)
         }
         a if a == kOfxActionInstanceChanged => controls::changed(effect, host, handle, in_args),
@@ -172,6 +180,9 @@ fn act_on_effect(
         }
         a if a == kOfxImageEffectActionGetRegionsOfInterest => {
             instance::regions_of_interest(effect, host, handle, in_args, out_args)
+        }
+        a if a == kOfxImageEffectActionGetFramesNeeded => {
+            needed::frames(effect, host, handle, in_args, out_args)
         }
         a if a == kOfxImageEffectActionGetClipPreferences => {
             instance::clip_preferences(effect, host, handle, out_args)

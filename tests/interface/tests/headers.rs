@@ -36,6 +36,8 @@ compare! {
     kOfxActionInstanceChanged kOfxImageEffectActionDescribeInContext
     kOfxImageEffectActionGetRegionOfDefinition kOfxImageEffectActionGetRegionsOfInterest
     kOfxImageEffectActionGetClipPreferences kOfxImageEffectActionIsIdentity
+    kOfxImageEffectActionGetFramesNeeded kOfxImageEffectPropFrameRange kOfxMessageWarning
+    kOfxMessageMessage
     kOfxImageEffectActionRender kOfxPropertySuite kOfxParameterSuite kOfxImageEffectSuite
     kOfxMultiThreadSuite kOfxMessageSuite kOfxPropName kOfxPropTime kOfxPropLabel kOfxPropShortLabel
     kOfxPropLongLabel kOfxPropVersion kOfxPropVersionLabel kOfxPropPluginDescription kOfxPropIcon

@@ -7,8 +7,8 @@ use super::objects::{Clip, Effect, MAGIC, Param};
 use super::picture::{Layout, Picture};
 use super::plugin::Plugin;
 use super::properties::{Set, Value};
-use super::state::lock;
-use std::ffi::CStr;
+use super::state::{self, lock};
+use std::ffi::{CStr, CString};
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 
@@ -103,6 +103,7 @@ impl<'h> Described<'h> {
                 name: clip.name.clone(),
                 set: Set::new(&self.host.inner, "clip"),
                 picture: Mutex::default(),
+                film: Mutex::default(),
             });
             new.set = clip.set.copy("clip", handle_of(&*new) as usize);
             let connected = i32::from(self.host.inner.behaviour.all_connected);
@@ -231,19 +232,54 @@ impl Instance<'_> {
         lock(&self.effect.params).iter().any(|p| p.name.to_string_lossy() == name)
     }
 
-    /// Connects a picture to a clip.
+    /// Connects a picture to a clip, which has no other frame.
     ///
     /// # Panics
     /// When there is no clip of this name.
     pub fn connect(&self, name: &str, picture: Picture) {
+        self.show(name, picture.layout, [0.0; 2], |clip| {
+            lock(&clip.film).clear();
+            *lock(&clip.picture) = Some(picture);
+        });
+    }
+
+    /// Connects frames to a clip: those of whole numbers from `first` on.
+    ///
+    /// # Panics
+    /// When there is no clip of this name, or no frame.
+    pub fn connect_film(&self, name: &str, first: i32, frames: Vec<Picture>) {
+        let (first, layout) = (f64::from(first), frames.first().expect("a frame").layout);
+        let last = first + frames.len() as f64 - 1.0;
+        self.show(name, layout, [first, last], |clip| {
+            *lock(&clip.picture) = None;
+            *lock(&clip.film) = (0..).map(|n| first + f64::from(n)).zip(frames).collect();
+        });
+    }
+
+    fn show(&self, name: &str, layout: Layout, range: [f64; 2], connect: impl FnOnce(&Clip)) {
         let clips = lock(&self.effect.clips);
         let clip = clips.iter().find(|c| c.name.to_string_lossy() == name).expect("a clip of this name");
         clip.set.put(kOfxImageClipPropConnected, vec![1.into()]);
-        clip.set.put(kOfxImagePropPixelAspectRatio, vec![picture.layout.aspect.into()]);
-        if let Some(alpha) = picture.layout.alpha {
+        clip.set.put(kOfxImagePropPixelAspectRatio, vec![layout.aspect.into()]);
+        clip.set.put(kOfxImageEffectPropFrameRange, range.map(Value::from).to_vec());
+        clip.set.put(kOfxImageEffectPropComponents, vec![layout.components.into()]);
+        if let Some(alpha) = layout.alpha {
             clip.set.put(kOfxImageEffectPropPreMultiplication, vec![alpha.into()]);
         }
-        *lock(&clip.picture) = Some(picture);
+        connect(clip);
+    }
+
+    /// Disconnects a clip.
+    ///
+    /// # Panics
+    /// When there is no clip of this name.
+    pub fn disconnect(&self, name: &str) {
+        self.show(name, Layout::default(), [0.0; 2], |clip| {
+            lock(&clip.film).clear();
+            *lock(&clip.picture) = None;
+            let connected = i32::from(self.host.inner.behaviour.all_connected);
+            clip.set.put(kOfxImageClipPropConnected, vec![connected.into()]);
+        });
     }
 
     /// Renders into a new picture of `layout` and `size` and returns it with the status.
@@ -273,11 +309,21 @@ impl Instance<'_> {
             vec![(wanted.scale * wanted.squeeze).into(), wanted.scale.into()],
         );
         args.put(kOfxImageEffectPropFieldToRender, vec![wanted.field.into()]);
+        self.hold_stills(wanted.time);
+        state::render_at(Some(wanted.time));
         let status = self.act(kOfxImageEffectActionRender, Some(&args), None);
+        state::render_at(None);
         let lent = self.host.inner.lent.load(Ordering::SeqCst);
         // Other threads may hold images of theirs.
         assert!(lent >= 0, "{lent} images were given back too often");
         status
+    }
+
+    /// Stills have no frame but the one that is rendered.
+    fn hold_stills(&self, time: f64) {
+        for clip in lock(&self.effect.clips).iter().filter(|clip| lock(&clip.picture).is_some()) {
+            clip.set.put(kOfxImageEffectPropFrameRange, vec![time.into(); 2]);
+        }
     }
 
     /// Renders a whole picture of `layout` at full size.
@@ -292,10 +338,36 @@ impl Instance<'_> {
         picture
     }
 
+    /// Asks which frames of each clip a frame needs, first and last by the clip's name; nothing for the default.
+    ///
+    /// # Panics
+    /// When the plugin fails.
+    pub fn frames_needed(&self, time: f64) -> Vec<(String, Vec<f64>)> {
+        let (args, answer) = (self.args(), self.args());
+        args.put(kOfxPropTime, vec![time.into()]);
+        let property = |name: &str| CString::new(format!("{FRAME_RANGE_PREFIX}{name}")).expect("a name");
+        let clips = self.effect.clip_names();
+        let inputs = || clips.iter().filter(|name| *name != "Output");
+        inputs().for_each(|name| answer.put(&property(name), vec![time.into(); 2]));
+        let status = self.act(kOfxImageEffectActionGetFramesNeeded, Some(&args), Some(&answer));
+        match status {
+            s if s == kOfxStatOK => {
+                inputs().map(|name| (name.clone(), answer.numbers(&property(name)))).collect()
+            }
+            s if s == kOfxStatReplyDefault => Vec::new(),
+            other => panic!("GetFramesNeeded: {other}"),
+        }
+    }
+
     /// Asks what a canonical region needs of each clip, by the clip's name; `None` for the default.
     pub fn regions(&self, region: [f64; 4], scale: f64) -> Option<Box<Set>> {
+        self.regions_at(0.0, region, scale)
+    }
+
+    /// The same at a time.
+    pub fn regions_at(&self, time: f64, region: [f64; 4], scale: f64) -> Option<Box<Set>> {
         let (args, answer) = (self.args(), self.args());
-        args.put(kOfxPropTime, vec![0.0.into()]);
+        args.put(kOfxPropTime, vec![time.into()]);
         args.put(kOfxImageEffectPropRenderScale, vec![scale.into(); 2]);
         args.put(kOfxImageEffectPropRegionOfInterest, region.map(Value::from).to_vec());
         let status = self.act(kOfxImageEffectActionGetRegionsOfInterest, Some(&args), Some(&answer));

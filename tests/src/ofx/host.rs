@@ -30,6 +30,8 @@ impl Host {
         let properties = Set::new(&inner, "host");
         properties.put(kOfxPropName, vec![inner.behaviour.name.into()]);
         properties.put(kOfxImageEffectPropSupportsTiles, vec![i32::from(inner.behaviour.tiles).into()]);
+        let temporal = i32::from(inner.behaviour.temporal);
+        properties.put(kOfxImageEffectPropTemporalClipAccess, vec![temporal.into()]);
         let mut depths = vec![kOfxBitDepthFloat, kOfxBitDepthShort, kOfxBitDepthByte];
         if inner.behaviour.half {
             depths.push(kOfxBitDepthHalf);

@@ -1,10 +1,10 @@
 //! Descriptors and instances of the test host, with their parameters and clips.
 
 use super::handles::handle_of;
-use super::interface::Handle;
+use super::interface::{Handle, kOfxImageEffectPropFrameRange, kOfxImageEffectPropTemporalClipAccess};
 use super::picture::Picture;
 use super::properties::{Set, Value};
-use super::state::{Inner, lock};
+use super::state::{self, Inner, lock};
 use std::ffi::CString;
 use std::sync::{Arc, Mutex};
 
@@ -33,7 +33,39 @@ pub struct Clip {
     pub name: CString,
     /// Its properties.
     pub set: Box<Set>,
+    /// What it shows at all times, unless it has a film.
     pub(super) picture: Mutex<Option<Picture>>,
+    /// What it shows, by time.
+    pub(super) film: Mutex<Vec<(f64, Picture)>>,
+}
+
+impl Clip {
+    /// Looks at what it shows at a time.
+    pub(super) fn at<T>(&self, time: f64, look: impl FnOnce(&mut Picture) -> T) -> Option<T> {
+        let (mut still, mut film) = (lock(&self.picture), lock(&self.film));
+        let shown = film.iter_mut().find(|(at, _)| *at == time).map(|(_, picture)| picture);
+        still.as_mut().or(shown).map(look)
+    }
+
+    /// Notes a plugin that wants the images of times which it has not announced, or which it has been told that there are
+    /// not.
+    pub(super) fn check_access(&self, time: f64) {
+        let host = &self.set.host;
+        let Some(now) = state::rendered() else {
+            return host.fault(format!("{:?} is asked for an image outside a render", self.name));
+        };
+        if now == time {
+            return;
+        }
+        if !host.behaviour.temporal || self.set.int(kOfxImageEffectPropTemporalClipAccess) != Some(1) {
+            host.fault(format!("{:?} has no access to other times", self.name));
+        }
+        let hidden = host.behaviour.bare || host.behaviour.refused.contains(&kOfxImageEffectPropFrameRange);
+        let range = self.set.numbers(kOfxImageEffectPropFrameRange);
+        if !hidden && !matches!(range[..], [first, last] if first <= time && time <= last) {
+            host.fault(format!("{:?} has no frame {time}", self.name));
+        }
+    }
 }
 
 /// A descriptor or an instance; its address is its handle.

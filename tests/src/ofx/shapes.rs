@@ -20,6 +20,7 @@ const SHAPES: &[(&CStr, char, i32)] = &[
     (kOfxImageEffectPropRenderScale, 'd', 2),
     (kOfxImageEffectPropProjectExtent, 'd', 2),
     (kOfxPropTime, 'd', 1),
+    (kOfxImageEffectPropFrameRange, 'd', 2),
     (kOfxImagePropPixelAspectRatio, 'd', 1),
     (kOfxParamPropIncrement, 'd', 4),
     (kOfxImageEffectPropSupportedContexts, 's', ANY),
@@ -59,6 +60,9 @@ const SHAPES: &[(&CStr, char, i32)] = &[
 pub(super) fn shape(name: &CStr) -> Option<(char, i32)> {
     if name.to_bytes().starts_with(ROI_PREFIX.as_bytes()) {
         return Some(('d', 4));
+    }
+    if name.to_bytes().starts_with(FRAME_RANGE_PREFIX.as_bytes()) {
+        return Some(('d', ANY));
     }
     if name == PIXEL_ORDER || name == PREFERRED_COLOURSPACES_OF_SOURCE {
         return Some(('s', 1));

@@ -1,6 +1,6 @@
 //! What all handles of a host lead back to: how it behaves, and what it noted of its plugins.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, c_int};
 use std::sync::atomic::{AtomicI32, AtomicU32};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
@@ -22,6 +22,10 @@ pub struct Behaviour {
     pub refuses_optional: bool,
     /// Whether images may be parts of pictures.
     pub tiles: bool,
+    /// Whether clips give the images of any time.
+    pub temporal: bool,
+    /// Whether an image that there is not is a success without an image.
+    pub null_images: bool,
     /// Whether it has half floats.
     pub half: bool,
     /// Processors of its multi-thread suite; 0 for a host without the suite.
@@ -51,6 +55,8 @@ impl Default for Behaviour {
             refused: Vec::new(),
             refuses_optional: false,
             tiles: true,
+            temporal: true,
+            null_images: false,
             half: true,
             processors: 0,
             returns_early: false,
@@ -83,6 +89,8 @@ pub struct Inner {
     pub behaviour: Behaviour,
     /// Images that were lent and not given back.
     pub lent: AtomicI32,
+    /// The most that were lent at once.
+    pub most_lent: AtomicI32,
     /// How often it was asked whether to stop.
     pub asked: AtomicU32,
     /// Runs of its multi-thread suite.
@@ -103,6 +111,18 @@ thread_local! {
     /// The host whose plugin this thread last called. Some functions of the standard have no argument
     /// for the host.
     static CURRENT: RefCell<Weak<Inner>> = const { RefCell::new(Weak::new()) };
+    /// The time that this thread renders, while it does.
+    static RENDERED: Cell<Option<f64>> = const { Cell::new(None) };
+}
+
+/// Says which time the calling thread renders, if any.
+pub(super) fn render_at(time: Option<f64>) {
+    RENDERED.set(time);
+}
+
+/// The time that the calling thread renders.
+pub(super) fn rendered() -> Option<f64> {
+    RENDERED.get()
 }
 
 impl Inner {
@@ -110,6 +130,7 @@ impl Inner {
         Self {
             behaviour,
             lent: AtomicI32::new(0),
+            most_lent: AtomicI32::new(0),
             asked: AtomicU32::new(0),
             runs: AtomicU32::new(0),
             late: Mutex::default(),

@@ -185,8 +185,15 @@ unsafe extern "C" fn said(handle: *mut c_void, kind: *const c_char, text: *const
     let effect = thing!(handle, Effect, "message");
     // SAFETY: the C function gives strings with a closing zero.
     let (kind, text) = unsafe { (owned(kind), owned(text)) };
-    if kind.as_deref() != Some(kOfxMessageError) {
-        effect.host.fault(format!("{kind:?} is no kind of message"));
+    match kind.as_deref() {
+        Some(kind) if kind == kOfxMessageError => {}
+        // A notice, for which nobody waits.
+        Some(kind) if kind == kOfxMessageWarning || kind == kOfxMessageMessage => {
+            if state::rendered().is_some() {
+                effect.host.fault("a notice while a frame is rendered");
+            }
+        }
+        _ => effect.host.fault(format!("{kind:?} is no kind of message")),
     }
     lock(&effect.host.messages).push(text.unwrap_or_default().to_string_lossy().into_owned());
     kOfxStatOK
@@ -319,7 +326,8 @@ unsafe extern "C" fn clip_define(effect: Handle, name: *const c_char, place: *mu
     if let Some(place) = unsafe { place.as_mut() } {
         *place = set.handle();
     }
-    lock(&effect.clips).push(Box::new(Clip { magic: MAGIC, name, set, picture: Default::default() }));
+    let (picture, film) = Default::default();
+    lock(&effect.clips).push(Box::new(Clip { magic: MAGIC, name, set, picture, film }));
     kOfxStatOK
 }
 
@@ -353,18 +361,20 @@ unsafe extern "C" fn clip_handle(
 
 unsafe extern "C" fn clip_image(
     clip: Handle,
-    _: OfxTime,
+    time: OfxTime,
     _: *const OfxRectD,
     place: *mut Handle,
 ) -> OfxStatus {
     nothing(place);
     let clip = thing!(clip, Clip, "clipGetImage");
-    let mut picture = lock(&clip.picture);
-    let Some(picture) = picture.as_mut() else { return kOfxStatFailed };
     let host = &clip.set.host;
+    clip.check_access(time);
     let set = Set::new(host, "image");
-    picture.describe(&set);
-    host.lent.fetch_add(1, Ordering::SeqCst);
+    if clip.at(time, |picture| picture.describe(&set)).is_none() {
+        return if host.behaviour.null_images { kOfxStatOK } else { kOfxStatFailed };
+    }
+    let lent = host.lent.fetch_add(1, Ordering::SeqCst) + 1;
+    host.most_lent.fetch_max(lent, Ordering::SeqCst);
     // SAFETY: the plugin gave a place; the set comes back by `clip_release`.
     unsafe { place.write(Box::into_raw(set).cast()) };
     kOfxStatOK
@@ -385,12 +395,11 @@ unsafe extern "C" fn clip_release(image: Handle) -> OfxStatus {
     kOfxStatOK
 }
 
-unsafe extern "C" fn clip_defined(clip: Handle, _: OfxTime, place: *mut OfxRectD) -> OfxStatus {
+unsafe extern "C" fn clip_defined(clip: Handle, time: OfxTime, place: *mut OfxRectD) -> OfxStatus {
     let clip = thing!(clip, Clip, "clipGetRegionOfDefinition");
-    let picture = lock(&clip.picture);
-    let Some(picture) = picture.as_ref() else { return kOfxStatFailed };
+    let Some(defined) = clip.at(time, |picture| picture.defined()) else { return kOfxStatFailed };
     // SAFETY: the plugin gave a place.
-    unsafe { place.write(picture.defined()) };
+    unsafe { place.write(defined) };
     kOfxStatOK
 }
 

@@ -75,6 +75,39 @@ pub fn hosts_without_a_window_are_not_told_of_controls(binary: &Binary) {
     assert_eq!(supports_tiles(&instance), Some(1));
 }
 
+pub fn what_motion_comes_from_decides_about_tiles_and_controls(binary: &Binary) {
+    let host = Host::new(Behaviour::default());
+    let described = Described::new(&host, binary.plugin("org.isophote.oriented_bilateral"));
+    let instance = described.instance(kOfxImageEffectContextGeneral);
+    let changed = |what: &CStr| instance.changed(what, kOfxChangeUserEdited, 0.0);
+    let usable =
+        || ["steadiness", "window", "motion_from", "motion_convention"].map(|name| instance.is_enabled(name));
+    assert_eq!((supports_tiles(&instance), usable()), (Some(1), [true, false, false, false]));
+    instance.set("steadiness", 0.5);
+    changed(kOfxTypeParameter);
+    // An estimate looks at whole pictures.
+    assert_eq!((supports_tiles(&instance), usable()), (Some(0), [true, true, true, false]));
+    connect(&instance, "Motion", Layout::default());
+    assert_eq!((supports_tiles(&instance), usable()), (Some(1), [true; 4]));
+    instance.set("motion_from", 2);
+    changed(kOfxTypeParameter);
+    assert_eq!((supports_tiles(&instance), usable()), (Some(0), [true, true, true, false]));
+    instance.disconnect("Motion");
+    instance.set("motion_from", 1);
+    changed(kOfxTypeParameter);
+    assert_eq!((supports_tiles(&instance), usable()), (Some(1), [false, false, true, false]));
+    // Nothing is grey for ever.
+    instance.set("steadiness", 0.0);
+    changed(kOfxTypeParameter);
+    assert_eq!(usable(), [false, false, true, false]);
+    // What is animated decides for all times.
+    instance.set("motion_from", 0);
+    instance.animate("steadiness", vec![(0.0, 0.0.into()), (10.0, 0.5.into())]);
+    changed(kOfxTypeParameter);
+    assert_eq!(supports_tiles(&instance), Some(0));
+    host.no_faults();
+}
+
 /// The parameters of an instance that are grey, with values that differ from theirs.
 fn grey(instance: &Instance<'_>) -> Vec<(String, Vec<Value>)> {
     let mut grey = Vec::new();

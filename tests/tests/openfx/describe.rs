@@ -1,7 +1,7 @@
 //! Loading and describing: what every effect says of itself.
 
 use crate::reference::{Expected, expected, identifier};
-use isophote::spec::{ImageKind, Param};
+use isophote::spec::Param;
 use isophote_tests::ofx::effect::Described;
 use isophote_tests::ofx::host::Host;
 use isophote_tests::ofx::interface::*;
@@ -51,7 +51,7 @@ pub fn descriptors_say_what_the_standard_asks_for(binary: &Binary, effect: Expec
         assert_eq!(set.text(gpu).unwrap(), "false");
     }
     assert_eq!(set.int(kOfxImageEffectPropSupportsMultiResolution), Some(1));
-    assert_eq!(set.int(kOfxImageEffectPropTemporalClipAccess), Some(0));
+    assert_eq!(set.int(kOfxImageEffectPropTemporalClipAccess), Some(node.is_steady().into()));
     assert_eq!(set.text(kOfxImageEffectPluginRenderThreadSafety).unwrap(), "OfxImageEffectRenderFullySafe");
     host.no_faults();
 }
@@ -64,10 +64,17 @@ pub fn clips_are_source_and_output_and_in_general_a_mask_and_guides(binary: &Bin
     assert_eq!(described.in_context(CONTEXTS[0]).clip_names(), ["Source", "Output"]);
     let first = if node.id == "tensor_view" { "structure_tensor" } else { node.id };
     let first = isophote::registry::find(first).unwrap();
-    let takes = |kind| first.inputs.iter().any(|p| p.kind == kind);
+    let takes = |id: &str| first.ports().any(|port| port.id == id);
     let mut general = vec!["Source", "Output", "Mask"];
-    general.extend(takes(ImageKind::Normal).then_some("Normal"));
-    general.extend(takes(ImageKind::Depth).then_some("Depth"));
+    for (port, clip) in [
+        ("normal", "Normal"),
+        ("depth", "Depth"),
+        ("motion", "Motion"),
+        ("motion_forward", "MotionForward"),
+        ("rest_position", "RestPosition"),
+    ] {
+        general.extend(takes(port).then_some(clip));
+    }
     assert_eq!(described.in_context(CONTEXTS[1]).clip_names(), general, "{}", node.id);
     host.no_faults();
 }
@@ -138,9 +145,12 @@ pub fn controls_are_the_parameters_of_the_nodes(binary: &Binary, effect: Expecte
         let mut names: BTreeSet<String> =
             ["working_space", "process_alpha"].map(str::to_owned).into_iter().collect();
         names.extend(general.then(|| "mask_apply".to_owned()));
+        if general && effect.node.is_steady() {
+            names.extend(["motion_from", "motion_convention"].map(str::to_owned));
+        }
         names.extend(effect.is_lines().then(|| "lines_output".to_owned()));
         for (node, prefix) in members {
-            for param in node.params().filter(|param| !param.is_of_neighbours()) {
+            for param in node.params() {
                 let name = format!("{prefix}{}", param.id);
                 check(&shown, &name, param);
                 names.insert(name);

@@ -29,11 +29,8 @@ pub struct Expected {
 /// The effects of the registry.
 pub fn expected() -> Vec<Expected> {
     let is_effect = |n: &&'static NodeSpec| {
-        // Effects see one frame.
         n.id == "tensor_view"
-            || (n.group != "time"
-                && matches!(n.output.kind, ImageKind::Color | ImageKind::Scalar)
-                && n.reads_colour_alone())
+            || (matches!(n.output.kind, ImageKind::Color | ImageKind::Scalar) && n.reads_colour_alone())
     };
     let nodes = isophote::registry::nodes().iter().copied().filter(is_effect);
     nodes.map(|node| Expected { node }).collect()

@@ -28,7 +28,9 @@ pub fn tiles_from_their_regions_of_interest_equal_the_full_frame(binary: &Binary
     let windows = planned.plan().windows(Rect { x0: 4096, y0: 4096, x1: 4097, y1: 4097 });
     let inputs = || planned.plan().inputs().iter().map(|port| windows[port.image.index()]);
     let local = inputs().all(|w| w.x0 > 0 && w.y0 > 0 && w.x1 < 8192 && w.y1 < 8192);
-    assert_eq!(declared, i32::from(local), "{}", effect.plugin(binary).identifier());
+    // Effects that look at other frames by themselves estimate motion in whole pictures.
+    let alone = effect.graph(false).frames() == [0, 0];
+    assert_eq!(declared, i32::from(local && alone), "{}", effect.plugin(binary).identifier());
     for (origin, aspect) in [([0, 0], 1.0), ([-13, 7], 1.0667), ([4, -3], 2.0)] {
         let layout = Layout { origin, aspect, padding: 6, ..Layout::default() };
         let instance = described.instance(kOfxImageEffectContextFilter);

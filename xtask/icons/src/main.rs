@@ -53,10 +53,6 @@ fn effects(catalogue: &Value) -> Result<Vec<(String, String)>, Error> {
         if id == "tensor_view" {
             return Some(("structure".to_owned(), group.to_owned()));
         }
-        if group == "time" {
-            // Effects see one frame.
-            return None;
-        }
         let inputs = node["inputs"].as_array()?;
         let colour = |port: &Value| port["kind"] == "color";
         let alone = inputs.iter().any(colour) && inputs.iter().all(|p| colour(p) || p["optional"] == true);

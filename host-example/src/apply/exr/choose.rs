@@ -3,9 +3,10 @@
 use std::str::FromStr;
 
 use isophote_exr_edit::{File, Sample};
+use isophote_motion::{Convention, Rule};
 
 use super::fault::Fault;
-use super::motion::{self, Convention, Rule};
+use super::motion;
 use super::names::{Group, Model, REST, groups, is_matte, rank};
 
 /// What is read of a file, and where the result goes.

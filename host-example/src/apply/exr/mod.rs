@@ -12,6 +12,6 @@ mod picture;
 
 pub use self::choose::{Guide, GuideChoice, Selection};
 pub use self::file::{ExrFile, Opened, is_whole, motion_of};
-pub use self::motion::Convention;
 pub use self::names::components;
 pub use self::picture::Picture;
+pub use isophote_motion::Convention;

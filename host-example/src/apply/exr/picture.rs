@@ -4,6 +4,7 @@ use isophote_exr_edit::{Channel, Decoded, Edit, Error, File, Part, Plane, Window
 
 use super::choose::{Chosen, Meaning, Selection, Source};
 use super::fault::Fault;
+use super::motion::applied;
 use super::names::{Model, components};
 use crate::apply::primaries;
 use crate::pixels::{Pixels, Samples};
@@ -189,7 +190,7 @@ pub fn guide(
     }
     let size = (window.width as u32, window.height as u32);
     if let Meaning::Vectors(rule) = source.meaning {
-        return Ok(rule.applied(all, size));
+        return Ok(applied(rule, all, size));
     }
     if let Meaning::Position = source.meaning {
         let Some(camera) = world_to_camera else { return Ok(None) };

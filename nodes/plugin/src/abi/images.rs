@@ -167,6 +167,33 @@ impl Checked {
         Ok((image, replaced))
     }
 
+    /// Two channels of the pixels of a row, which the image must hold, as they are stored.
+    ///
+    /// # Errors
+    /// Out of memory; input when the image has no such channels.
+    ///
+    /// # Safety
+    /// The memory of the image must be readable.
+    pub unsafe fn read_pairs(&self, row: Rect, channels: [usize; 2]) -> Outcome<Vec<f32>> {
+        if channels.iter().any(|c| *c >= self.channels) {
+            return Err(Failure::new(ISOPHOTE_ERROR_INPUT, "an image of vectors has too few channels"));
+        }
+        let mut bytes = self.row_of_bytes(&row)?;
+        // SAFETY: as in `read`.
+        unsafe { bytes.as_mut_ptr().copy_from_nonoverlapping(self.at(&row, row.y0), bytes.len()) };
+        let mut pairs = vec![0.0; row.width() as usize * 2];
+        for (pixel, pair) in
+            bytes.chunks_exact(self.channels * self.sample.size()).zip(pairs.chunks_exact_mut(2))
+        {
+            for (value, channel) in pair.iter_mut().zip(channels) {
+                let from = &pixel[channel * self.sample.size()..][..self.sample.size()];
+                // A vector of one component, whose number is kept whatever it is.
+                read_vectors(from, self.sample, 1, std::slice::from_mut(value), 1, f32::NAN);
+            }
+        }
+        Ok(pairs)
+    }
+
     /// Fails for directions and vectors in samples that cannot hold them.
     fn must_suit(&self, input: GraphInput) -> Outcome<()> {
         let (channels, shown) = match input.kind() {

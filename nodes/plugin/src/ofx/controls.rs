@@ -1,17 +1,22 @@
 //! What an instance says of itself: whether it may be rendered in tiles, and which controls have an effect at the
 //! moment. Both depend on its values, so that they are said when it is created and when values change.
 
-use super::describe::{MASK, SOURCE};
-use super::effects::{Effect, Target, is_local};
+use super::clips::{MASK, SOURCE, is_connected};
+use super::effects::{Effect, Target};
 use super::host::{Host, Outcome};
 use super::image::Clip;
-use super::instance::{Moment, connected_guides, is_connected};
+use super::instance::Moment;
 use super::interface::*;
+use super::known::{Known, connected_guides};
+use super::motion::MotionFrom;
 use super::settings::{Settings, animated};
 use isophote::engine::plan::Pass;
-use isophote::engine::{Plan, Rect};
+use isophote::engine::{ImageId, Plan, Rect};
+use isophote::frames::Frames;
+use isophote::request::Guides;
 use isophote::spec::Param;
 use isophote::{Graph, Planned, Request, Value};
+use std::collections::HashMap;
 use std::ffi::CStr;
 use std::ptr::null_mut;
 
@@ -21,14 +26,16 @@ const SIDE: u32 = 1024;
 /// Says everything of a new instance, which may have the values of a saved project.
 pub fn created(effect: &Effect, host: &Host, instance: Handle) -> Outcome {
     // Some hosts have no values yet; the descriptor's word and all controls then stand.
-    let _ = refresh(effect, host, instance, 0.0, true);
+    if let Ok(settings) = refresh(effect, host, instance, 0.0, true) {
+        notice(host, instance, &settings, false);
+    }
     Ok(kOfxStatOK)
 }
 
 /// Says what has become other, by what changed.
 ///
 /// The user, and the host in the user's place (a paste, an undo, a script), may change anything. A clip that is
-/// connected changes only which controls have an effect. Another time changes values that are animated: nothing
+/// connected changes which controls have an effect and, where it stands for an estimate, whether tiles may be rendered. Another time changes values that are animated: nothing
 /// is looked at where there are none, and whether tiles may be rendered holds for all times.
 ///
 /// # Errors
@@ -37,28 +44,51 @@ pub fn changed(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) 
     let args = host.set(in_args);
     let time = Moment::of(args).time;
     let reason = args.string(kOfxPropChangeReason, 0);
-    let of_time = reason.is_some_and(|reason| reason.as_c_str() == kOfxChangeTime);
+    let is_for = |wanted: &CStr| reason.as_deref() == Some(wanted);
+    let of_time = is_for(kOfxChangeTime);
     if of_time && animated(effect, host, instance)?.is_empty() {
         return Ok(kOfxStatOK);
     }
     let what = args.string(kOfxPropType, 0);
     let of_clip = what.is_some_and(|what| what.as_c_str() == kOfxTypeClip);
-    refresh(effect, host, instance, time, !of_time && !of_clip)?;
+    // A clip of motion makes an estimate, which takes whole pictures, needless.
+    let tiles = !of_time && (effect.temporal || !of_clip);
+    let settings = refresh(effect, host, instance, time, tiles)?;
+    if is_for(kOfxChangeUserEdited) {
+        notice(host, instance, &settings, true);
+    }
     Ok(kOfxStatOK)
 }
 
+/// Tells the user of a host of single frames that nothing can be steadied by others. `aloud`: even if that stops the user.
+fn notice(host: &Host, instance: Handle, settings: &Settings, aloud: bool) {
+    if host.temporal {
+        return;
+    }
+    if settings.graph.frames() == [0, 0] {
+        host.withdraw_notice(instance);
+    } else if !host.background {
+        host.give_notice(instance, ONE_FRAME, aloud);
+    }
+}
+
+const ONE_FRAME: &str = "This host gives effects one frame at a time. Steadiness needs the frames around it and has no effect here.";
+
 /// Says which controls have an effect and, where `tiles`, whether tiles may be rendered.
-fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: bool) -> Outcome<()> {
+fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: bool) -> Outcome<Settings> {
     let settings = Settings::read(effect, host, instance, time)?;
     if tiles {
         let local = is_local_at_all_times(effect, host, instance, &settings)?;
         host.effect(instance).set_int(kOfxImageEffectPropSupportsTiles, local.into());
     }
     if host.background {
-        return Ok(());
+        return Ok(settings);
     }
-    let guides = connected_guides(effect, host, instance);
-    let plan = |graph: &Graph| Planned::new(graph, Request { guides, ..Request::new(SIDE, SIDE) });
+    let scene = Surroundings::of(effect, host, instance, &settings);
+    let plan = |graph: &Graph| {
+        let Surroundings { guides, frames, .. } = scene;
+        Planned::new(graph, Request { guides, frames, ..Request::new(SIDE, SIDE) })
+    };
     let now = plan(&settings.graph).map_err(|_| kOfxStatFailed)?;
     let params = host.params(instance)?;
     for control in &effect.controls {
@@ -69,11 +99,40 @@ fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: boo
             }),
             Target::ProcessAlpha => has_alpha(host, instance),
             Target::MaskApply => is_connected(host, instance, MASK),
+            // Where nothing moves, steadiness is grey until this is another.
+            Target::MotionFrom => {
+                host.temporal && (settings.graph.frames() != [0, 0] || scene.frames == Frames::NONE)
+            }
+            Target::MotionConvention => scene.reads_vectors && settings.graph.frames() != [0, 0],
             Target::LinesOutput | Target::WorkingSpace => true,
         };
         enable(host, params, &control.name, has_effect);
     }
-    Ok(())
+    Ok(settings)
+}
+
+/// What there is around a picture for its controls to have an effect on.
+#[derive(Clone, Copy)]
+struct Surroundings {
+    guides: Guides,
+    frames: Frames,
+    /// Whether motion is read from clips.
+    reads_vectors: bool,
+}
+
+impl Surroundings {
+    /// By what is connected. One neighbour shows what all show, and vectors what an estimate shows, with less to plan.
+    fn of(effect: &Effect, host: &Host, instance: Handle, settings: &Settings) -> Self {
+        let guides = connected_guides(effect, host, instance);
+        let has_clip = guides.motion || guides.motion_forward;
+        let is_estimated = settings.motion_from.is_estimated(has_clip);
+        let moves = host.temporal && (is_estimated || has_clip);
+        Self {
+            guides: Guides { motion: moves, motion_forward: moves, ..guides },
+            frames: if moves { Frames::around(1, 0) } else { Frames::NONE },
+            reads_vectors: moves && has_clip && settings.motion_from != MotionFrom::Flow,
+        }
+    }
 }
 
 /// Whether a tile needs only the pixels around it, whatever values animated controls take.
@@ -83,11 +142,13 @@ fn is_local_at_all_times(
     instance: Handle,
     settings: &Settings,
 ) -> Outcome<bool> {
-    if !settings.is_local()? {
+    if !Known::is_local_for(effect, host, instance, settings)? {
         return Ok(false);
     }
     let animated = animated(effect, host, instance)?;
     let mut graphs = animated.into_iter().flat_map(|(node, param)| others(settings, node, param));
+    let has = connected_guides(effect, host, instance);
+    let is_local = |graph: &Graph| Known::of(graph, settings.motion_from, has, host.temporal)?.is_local();
     Ok(graphs.all(|graph| is_local(&graph).unwrap_or(false)))
 }
 
@@ -112,23 +173,45 @@ fn others(settings: &Settings, node: usize, param: &'static Param) -> impl Itera
 
 /// Whether two plans compute the same, as far as it is needed.
 fn are_same(a: &Plan, b: &Plan) -> bool {
-    let same = |(a, b): (&Pass, &Pass)| {
+    let same = |((a, a_images), (b, b_images)): (&Work, &Work)| {
         std::ptr::eq(a.kernel, b.kernel)
             && a.params == b.params
-            && a.inputs == b.inputs
-            && a.outputs == b.outputs
+            && a.inputs.len() == b.inputs.len()
+            && a_images == b_images
             && a.supports == b.supports
     };
-    let (a_passes, b_passes) = (needed(a), needed(b));
-    a.inputs() == b.inputs()
-        && a.outputs() == b.outputs()
-        && a_passes.len() == b_passes.len()
-        && a_passes.into_iter().zip(b_passes).all(same)
+    let (a, b) = (Needed::of(a), Needed::of(b));
+    a.ports == b.ports && a.passes.len() == b.passes.len() && a.passes.iter().zip(&b.passes).all(same)
 }
 
-fn needed(plan: &Plan) -> Vec<&Pass> {
-    let windows = plan.windows(Rect::of_size(SIDE, SIDE));
-    plan.passes().iter().filter(|pass| !windows[pass.outputs[0].index()].is_empty()).collect()
+/// A pass, with its inputs and its outputs as they are counted.
+type Work<'p> = (&'p Pass, Vec<usize>);
+
+/// What of a plan is needed, its images counted without the others.
+struct Needed<'p> {
+    /// Inputs, then outputs.
+    ports: Vec<(&'p str, usize)>,
+    passes: Vec<Work<'p>>,
+}
+
+impl<'p> Needed<'p> {
+    fn of(plan: &'p Plan) -> Self {
+        let windows = plan.windows(Rect::of_size(SIDE, SIDE));
+        let is_needed = |image: &ImageId| !windows[image.index()].is_empty();
+        let mut numbers = HashMap::new();
+        let mut number = |image: &ImageId| {
+            let next = numbers.len();
+            *numbers.entry(image.index()).or_insert(next)
+        };
+        let inputs = plan.inputs().iter().filter(|port| is_needed(&port.image));
+        let mut ports: Vec<_> = inputs.map(|port| (port.name.as_str(), number(&port.image))).collect();
+        let passes = plan.passes().iter().filter(|pass| is_needed(&pass.outputs[0]));
+        let passes =
+            passes.map(|pass| (pass, pass.inputs.iter().chain(&pass.outputs).map(&mut number).collect()));
+        let passes = passes.collect();
+        ports.extend(plan.outputs().iter().map(|port| (port.name.as_str(), number(&port.image))));
+        Self { ports, passes }
+    }
 }
 
 /// Whether the source has, or may have, an alpha of its own.

@@ -1,28 +1,14 @@
 //! Describing an effect to a host: properties, clips and parameters, all from the effect's controls.
 
+use super::clips::{MASK, OUTPUT, SOURCE, guide_clip, guide_label};
 use super::effects::{Control, Effect, SPACES, Target, WORKING_SPACE};
 use super::host::{Host, Outcome, Properties};
 use super::interface::*;
 use isophote::Value;
-use isophote::graph::GraphInput;
-use isophote::spec::{Param, Unit};
+use isophote::spec::{ImageKind, Param, Unit};
 use isophote::value::decimal;
 use std::ffi::{CStr, c_int};
 use std::ptr::null_mut;
-
-/// Names of the clips.
-pub const SOURCE: &CStr = c"Source";
-pub const OUTPUT: &CStr = c"Output";
-pub const MASK: &CStr = c"Mask";
-
-/// Name of the clip that gives a guide.
-pub fn guide_clip(guide: GraphInput) -> Option<&'static CStr> {
-    match guide {
-        GraphInput::Normal => Some(c"Normal"),
-        GraphInput::Depth => Some(c"Depth"),
-        _ => None,
-    }
-}
 
 const COMPONENTS: [&CStr; 3] = [kOfxImageComponentRGBA, kOfxImageComponentRGB, kOfxImageComponentAlpha];
 
@@ -35,9 +21,7 @@ pub fn describe(effect: &'static Effect, host: &Host, descriptor: Handle) -> Out
     if set.is_null() {
         return Err(kOfxStatFailed);
     }
-    for name in [kOfxPropLabel, kOfxPropShortLabel, kOfxPropLongLabel] {
-        set.set_string(name, 0, &effect.label);
-    }
+    labels(set, &effect.label);
     set.set_string(kOfxImageEffectPluginPropGrouping, 0, &effect.grouping);
     set.set_string(kOfxPropPluginDescription, 0, &effect.description);
     set.set_string(kOfxPropVersionLabel, 0, VERSION);
@@ -58,8 +42,8 @@ pub fn describe(effect: &'static Effect, host: &Host, descriptor: Handle) -> Out
         (kOfxImageEffectPluginPropSingleInstance, 0),
         (kOfxImageEffectPluginPropHostFrameThreading, 0),
         (kOfxImageEffectPropSupportsMultiResolution, 1),
-        (kOfxImageEffectPropSupportsTiles, effect.local.into()),
-        (kOfxImageEffectPropTemporalClipAccess, 0),
+        (kOfxImageEffectPropSupportsTiles, effect.is_local(host.temporal).into()),
+        (kOfxImageEffectPropTemporalClipAccess, (effect.temporal && host.temporal).into()),
         (kOfxImageEffectPluginPropFieldRenderTwiceAlways, 0),
         (kOfxImageEffectPropSupportsMultipleClipDepths, 0),
         (kOfxImageEffectPropSupportsMultipleClipPARs, 0),
@@ -102,21 +86,19 @@ fn set_strings(set: Properties<'_>, name: &CStr, values: &[&'static CStr]) {
 pub fn in_context(effect: &'static Effect, host: &Host, descriptor: Handle, in_args: Handle) -> Outcome {
     let context = host.set(in_args).string(kOfxImageEffectPropContext, 0).unwrap_or_default();
     let general = context.as_c_str() == kOfxImageEffectContextGeneral;
-    for (name, mask, optional) in clips(effect, general) {
-        let set = define_clip(host, descriptor, name)?;
-        set_strings(
-            set,
-            kOfxImageEffectPropSupportedComponents,
-            if mask { &COMPONENTS[2..] } else { &COMPONENTS },
-        );
-        set.set_int(kOfxImageClipPropOptional, optional.into());
-        set.set_int(kOfxImageClipPropIsMask, mask.into());
-        set.set_int(kOfxImageEffectPropSupportsTiles, effect.local.into());
-        set.set_int(kOfxImageEffectPropTemporalClipAccess, 0);
+    for clip in clips(effect, general) {
+        let set = define_clip(host, descriptor, clip.name)?;
+        labels(set, clip.label);
+        set_strings(set, kOfxImageEffectPropSupportedComponents, clip.components);
+        set.set_int(kOfxImageClipPropOptional, clip.optional.into());
+        set.set_int(kOfxImageClipPropIsMask, clip.mask.into());
+        set.set_int(kOfxImageEffectPropSupportsTiles, effect.is_local(host.temporal).into());
+        let temporal = clip.temporal && effect.temporal && host.temporal;
+        set.set_int(kOfxImageEffectPropTemporalClipAccess, temporal.into());
         set.set_string(kOfxImageClipPropFieldExtraction, 0, kOfxImageFieldDoubled);
     }
     let params = host.params(descriptor)?;
-    let shown = || effect.controls.iter().filter(|c| general || !matches!(c.target, Target::MaskApply));
+    let shown = || effect.controls.iter().filter(|c| general || !c.target.is_of_clips());
     let page = define_param(host, params, kOfxParamTypePage, c"Controls")?;
     page.set_string(kOfxPropLabel, 0, c"Controls");
     for (index, control) in shown().enumerate() {
@@ -124,7 +106,8 @@ pub fn in_context(effect: &'static Effect, host: &Host, descriptor: Handle, in_a
     }
     for group in &effect.groups {
         let set = define_param(host, params, kOfxParamTypeGroup, &group.name)?;
-        labels(set, &group.name, &group.label);
+        labels(set, &group.label);
+        set.set_string(kOfxParamPropScriptName, 0, &group.name);
         set.set_int(kOfxParamPropGroupOpen, group.open.into());
     }
     for control in shown() {
@@ -133,12 +116,38 @@ pub fn in_context(effect: &'static Effect, host: &Host, descriptor: Handle, in_a
     Ok(kOfxStatOK)
 }
 
-/// Names of the clips in the order of inputs; whether each is a mask, and whether it may stay open.
-fn clips(effect: &Effect, general: bool) -> Vec<(&'static CStr, bool, bool)> {
-    let mut clips = vec![(SOURCE, false, false), (OUTPUT, false, false)];
+/// A clip as it is described.
+struct Described {
+    name: &'static CStr,
+    label: &'static CStr,
+    components: &'static [&'static CStr],
+    mask: bool,
+    optional: bool,
+    /// Whether it is read at neighbouring frames.
+    temporal: bool,
+}
+
+/// The clips, in the order of inputs.
+fn clips(effect: &Effect, general: bool) -> Vec<Described> {
+    let clip = |name| Described {
+        name,
+        label: name,
+        components: &COMPONENTS,
+        mask: false,
+        optional: false,
+        temporal: false,
+    };
+    let mut clips = vec![Described { temporal: true, ..clip(SOURCE) }, clip(OUTPUT)];
     if general {
-        clips.push((MASK, true, true));
-        clips.extend(effect.guides.iter().filter_map(|g| Some((guide_clip(*g)?, false, true))));
+        clips.push(Described { components: &COMPONENTS[2..], mask: true, optional: true, ..clip(MASK) });
+        clips.extend(effect.guides.iter().filter_map(|guide| {
+            let name = guide_clip(*guide)?;
+            // One channel holds no vector.
+            let vectors = matches!(guide.kind(), ImageKind::Motion | ImageKind::Position);
+            let components = if vectors { &COMPONENTS[..2] } else { &COMPONENTS };
+            let label = guide_label(*guide).unwrap_or(name);
+            Some(Described { label, components, optional: true, temporal: true, ..clip(name) })
+        }));
     }
     clips
 }
@@ -164,11 +173,10 @@ fn define_param<'h>(
     if status == kOfxStatOK { Ok(host.set(set)) } else { Err(kOfxStatFailed) }
 }
 
-fn labels(set: Properties<'_>, name: &'static CStr, label: &'static CStr) {
+fn labels(set: Properties<'_>, label: &'static CStr) {
     for property in [kOfxPropLabel, kOfxPropShortLabel, kOfxPropLongLabel] {
         set.set_string(property, 0, label);
     }
-    set.set_string(kOfxParamPropScriptName, 0, name);
 }
 
 fn define_control(
@@ -186,7 +194,9 @@ fn define_control(
             Value::Choice(default) => choice(define(kOfxParamTypeChoice)?, control, default),
             Value::Color(_) => colour(define(kOfxParamTypeRGBA)?, param),
         },
-        Target::LinesOutput => choice(define(kOfxParamTypeChoice)?, control, 0),
+        Target::LinesOutput | Target::MotionFrom | Target::MotionConvention => {
+            choice(define(kOfxParamTypeChoice)?, control, 0)
+        }
         Target::WorkingSpace => {
             let default = SPACES.iter().position(|(_, space)| *space == host.quirks.space).unwrap_or(0);
             choice(define(kOfxParamTypeChoice)?, control, default)
@@ -194,7 +204,8 @@ fn define_control(
         Target::ProcessAlpha => switch(define(kOfxParamTypeBoolean)?, false),
         Target::MaskApply => switch(define(kOfxParamTypeBoolean)?, !host.quirks.all_connected),
     };
-    labels(set, &control.name, &control.label);
+    labels(set, &control.label);
+    set.set_string(kOfxParamPropScriptName, 0, &control.name);
     set.set_string(kOfxParamPropHint, 0, &control.hint);
     if let Some(group) = control.group {
         set.set_string(kOfxParamPropParent, 0, &effect.groups[group].name);

@@ -5,10 +5,15 @@
 //! the first node under a prefix, so that neither can ever take the other's name) and the few that an
 //! image effect adds itself.
 
+use super::clips::GUIDES;
+use super::motion::{MOTION_OPTIONS, estimate};
 use isophote::engine::Support;
+use isophote::frames::Frames;
 use isophote::graph::GraphInput;
+use isophote::request::Guides;
 use isophote::spec::{ImageKind, NodeSpec, Param, Unit};
 use isophote::{ColourSpace, Graph, NodeId, Planned, Request};
+use isophote_motion::Convention;
 use std::ffi::{CStr, CString};
 use std::sync::LazyLock;
 
@@ -20,6 +25,8 @@ pub const WORKING_SPACE: &CStr = c"working_space";
 pub const PROCESS_ALPHA: &str = "process_alpha";
 pub const MASK_APPLY: &str = "mask_apply";
 pub const LINES_OUTPUT: &str = "lines_output";
+pub const MOTION_FROM: &str = "motion_from";
+pub const MOTION_CONVENTION: &str = "motion_convention";
 
 /// How the nodes of an effect are connected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,6 +67,17 @@ pub enum Target {
     ProcessAlpha,
     /// Whether a connected mask counts. For hosts that call every clip connected.
     MaskApply,
+    /// Where motion between frames comes from.
+    MotionFrom,
+    /// What the vectors of a connected clip mean.
+    MotionConvention,
+}
+
+impl Target {
+    /// Whether it decides nothing where there is no clip but the source.
+    pub fn is_of_clips(&self) -> bool {
+        matches!(self, Self::MaskApply | Self::MotionFrom | Self::MotionConvention)
+    }
 }
 
 /// A control that hosts show.
@@ -104,8 +122,10 @@ pub struct Effect {
     pub controls: Vec<Control>,
     /// Guides that it takes as clips.
     pub guides: Vec<GraphInput>,
-    /// Whether a tile needs only the pixels around it, at the default values.
-    pub local: bool,
+    /// Whether it can look at neighbouring frames.
+    pub temporal: bool,
+    /// Whether a tile needs only the pixels around it, at the default values: in hosts of one frame, and in others.
+    local: [bool; 2],
 }
 
 /// Side of a picture that is larger than a tile, in pixels.
@@ -116,8 +136,8 @@ const LARGE: u32 = 8192;
 ///
 /// # Errors
 /// What planning fails with.
-pub fn is_local(graph: &Graph) -> isophote::Result<bool> {
-    let planned = Planned::new(graph, Request::new(LARGE, LARGE))?;
+pub fn is_local(graph: &Graph, guides: Guides, frames: Frames) -> isophote::Result<bool> {
+    let planned = Planned::new(graph, Request { guides, frames, ..Request::new(LARGE, LARGE) })?;
     Ok(matches!(planned.plan().support(), Support::Pixels(halo) if halo < LARGE / 2))
 }
 
@@ -133,10 +153,6 @@ fn text(text: &str) -> CString {
 impl Effect {
     /// The effect that a node becomes, if it becomes one.
     fn of(node: &'static NodeSpec) -> Option<Self> {
-        if node.group == "time" {
-            // Effects see one frame.
-            return None;
-        }
         let from_colour = node.reads_colour_alone();
         let find = |id| isophote::registry::find(id).ok();
         match node.output.kind {
@@ -167,17 +183,27 @@ impl Effect {
             form,
             groups: Vec::new(),
             controls: Vec::new(),
-            guides: [GraphInput::Normal, GraphInput::Depth]
-                .into_iter()
-                .filter(|g| nodes[0].inputs.iter().any(|p| p.kind == g.kind()))
-                .collect(),
-            local: true,
+            guides: GUIDES.into_iter().filter(|guide| nodes.iter().any(|node| reads(node, *guide))).collect(),
+            temporal: nodes.iter().any(|node| node.is_steady()),
+            local: [true; 2],
             nodes,
         };
         effect.add_controls();
-        let (graph, _) = effect.graph(false).ok()?;
-        effect.local = is_local(&graph).ok()?;
+        let (mut graph, _) = effect.graph(false).ok()?;
+        let alone = is_local(&graph, Guides::default(), Frames::NONE).ok()?;
+        effect.local = [alone; 2];
+        if graph.frames() != [0, 0] {
+            estimate(&mut graph).ok()?;
+            let [past, future] = graph.frames();
+            effect.local[1] = is_local(&graph, Guides::default(), Frames::around(past, future)).ok()?;
+        }
         Some(effect)
+    }
+
+    /// Whether a tile needs only the pixels around it, at the default values, in a host that gives neighbouring frames
+    /// or in one that does not.
+    pub fn is_local(&self, temporal: bool) -> bool {
+        self.local[usize::from(temporal)]
     }
 
     fn add_controls(&mut self) {
@@ -185,7 +211,7 @@ impl Effect {
             self.add(LINES_OUTPUT, "Output", LINES_HINT, "", Target::LinesOutput);
         }
         for (index, node) in self.nodes.clone().into_iter().enumerate() {
-            for param in node.params().filter(|param| !param.is_of_neighbours()) {
+            for param in node.params() {
                 let target = Target::Param(index, param);
                 let hint = match param.unit {
                     Unit::Pixels => format!("{} In pixels of the full-size picture.", param.doc),
@@ -204,6 +230,16 @@ impl Effect {
                     self.add(&format!("{prefix}_{}", param.id), param.label, &hint, group, target);
                 }
             }
+        }
+        if self.temporal {
+            self.add(MOTION_FROM, "Motion from", MOTION_HINT, "time", Target::MotionFrom);
+            self.add(
+                MOTION_CONVENTION,
+                "Motion convention",
+                CONVENTION_HINT,
+                "time",
+                Target::MotionConvention,
+            );
         }
         self.add(
             &WORKING_SPACE.to_string_lossy(),
@@ -224,6 +260,8 @@ impl Effect {
             Target::Param(_, param) => param.options.iter().map(|o| text(o.label)).collect(),
             Target::LinesOutput => LINE_OUTPUTS.map(CStr::to_owned).to_vec(),
             Target::WorkingSpace => SPACES.map(|(label, _)| label.to_owned()).to_vec(),
+            Target::MotionFrom => MOTION_OPTIONS.map(CStr::to_owned).to_vec(),
+            Target::MotionConvention => Convention::PRESETS.iter().map(|c| text(c.label)).collect(),
             _ => Vec::new(),
         };
         let (name, label, hint) = (text(name), text(label), text(hint));
@@ -253,10 +291,8 @@ impl Effect {
         let ids: Vec<NodeId> =
             self.nodes.iter().map(|node| graph.add(node.id, node.id)).collect::<isophote::Result<_>>()?;
         for (node, id) in self.nodes.iter().zip(&ids) {
-            for port in node.inputs {
-                if let Some(input) = GraphInput::from_id(port.kind.id()) {
-                    graph.connect_input(input, *id, port.id)?;
-                }
+            for input in [GraphInput::Color].into_iter().chain(GUIDES).filter(|input| reads(node, *input)) {
+                graph.connect_input(input, *id, input.id())?;
             }
         }
         if let [first, second] = ids[..] {
@@ -271,12 +307,21 @@ impl Effect {
     }
 }
 
+/// Whether a node has a port for an input of the graph.
+fn reads(node: &NodeSpec, input: GraphInput) -> bool {
+    node.ports().any(|port| port.id == input.id() && port.kind == input.kind())
+}
+
 const LINES_HINT: &str = "The edge image alone, 1 = paper and 0 = line, or its lines over the picture.";
 const SPACE_HINT: &str = "What the numbers of the pixels mean. Filters are tuned for gamma-encoded colour; linear \
                           pictures are encoded on the way in and decoded on the way out. 'As is' changes nothing.";
 const ALPHA_HINT: &str =
     "Filters alpha together with the colour. Off, the result has the alpha of the source.";
 const MASK_HINT: &str = "Lets the mask decide where the effect shows.";
+const MOTION_HINT: &str = "Where the motion between frames comes from, along which they are steadied: the clips Motion \
+                           and Motion forward, or an estimate from the pictures.";
+const CONVENTION_HINT: &str = "What the vectors of the clips Motion and Motion forward mean. One of the clips is enough: \
+                               it stands for the other direction, too.";
 
 #[cfg(test)]
 mod tests {
@@ -288,8 +333,7 @@ mod tests {
         let ids: BTreeSet<&CStr> = EFFECTS.iter().map(|e| e.identifier.as_c_str()).collect();
         assert_eq!(ids.len(), EFFECTS.len());
         for node in isophote::registry::nodes() {
-            let is_still = node.has_mix() && node.reads_colour_alone() && node.group != "time";
-            if node.group == "styles" || is_still {
+            if node.group == "styles" || (node.has_mix() && node.reads_colour_alone()) {
                 assert!(ids.contains(text(&format!("{PREFIX}{}", node.id)).as_c_str()), "{}", node.id);
             }
         }

@@ -6,8 +6,8 @@
 use super::interface::*;
 use super::quirks::Quirks;
 use crate::abi::guard::lock;
-use std::collections::BTreeSet;
-use std::ffi::{CStr, CString, c_int, c_void};
+use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::ptr::{null, null_mut};
 use std::sync::atomic::{AtomicPtr, Ordering};
 use std::sync::{Mutex, OnceLock};
@@ -29,11 +29,15 @@ pub struct Host {
     fetch: FetchSuite,
     /// Fetched when there is a message to show: not every host takes the question well.
     messages: OnceLock<Option<OfxMessageSuiteV2>>,
-    /// Addresses of the instances that show a message.
-    showing: Mutex<BTreeSet<usize>>,
+    /// What instances show, by their addresses.
+    showing: Mutex<BTreeMap<usize, Shown>>,
+    /// Addresses of the instances that have been given their notice.
+    noticed: Mutex<BTreeSet<usize>>,
     pub quirks: Quirks,
     /// Whether images may hold only a part of the picture.
     pub tiles: bool,
+    /// Whether clips give the images of any time.
+    pub temporal: bool,
     /// Whether nobody looks at controls.
     pub background: bool,
     /// Whether half floats may be offered.
@@ -74,8 +78,10 @@ impl Host {
                 fetch,
                 messages: OnceLock::new(),
                 showing: Mutex::default(),
+                noticed: Mutex::default(),
                 quirks: Quirks::default(),
                 tiles: true,
+                temporal: false,
                 background: false,
                 half: false,
             }
@@ -83,12 +89,14 @@ impl Host {
         let about = found.set(host.host);
         let quirks = Quirks::of(&about.string(kOfxPropName, 0).unwrap_or_default());
         let tiles = about.int(kOfxImageEffectPropSupportsTiles, 0) != Some(0);
+        // The standard has every host say so; one that does not is asked for nothing that it may not have.
+        let temporal = about.int(kOfxImageEffectPropTemporalClipAccess, 0) == Some(1);
         let background = about.int(kOfxImageEffectHostPropIsBackground, 0) == Some(1);
         let half = (0..8).any(|i| {
             about.string(kOfxImageEffectPropSupportedPixelDepths, i).as_deref() == Some(kOfxBitDepthHalf)
         });
         (found.quirks, found.tiles, found.half) = (quirks, tiles, half);
-        found.background = background;
+        (found.temporal, found.background) = (temporal, background);
         Ok(found)
     }
 
@@ -128,24 +136,35 @@ impl Host {
         self.effects.abort.is_some_and(|abort| unsafe { abort(effect) } != 0)
     }
 
-    /// Shows a message on the effect, where that is known to be safe: once, until it renders again.
-    pub fn show_message(&self, effect: Handle, message: &str) {
-        if !self.quirks.messages {
-            return;
-        }
+    /// Shows a failure on the effect, where that is known to be safe: once, until it renders again.
+    pub fn show_failure(&self, effect: Handle, message: &str) {
         let Some(messages) = self.messages() else { return };
         let Some(show) = messages.setPersistentMessage.or(messages.message) else { return };
-        if !lock(&self.showing).insert(effect.addr()) {
-            return;
+        if lock(&self.showing).insert(effect.addr(), Shown::Failure) != Some(Shown::Failure) {
+            say(show, effect, kOfxMessageError, message);
         }
-        // The text is an argument and not the format, in which a `%` would be one of the host's.
-        let text = CString::new(message.replace('\0', " ")).unwrap_or_default();
-        // SAFETY: strings with a closing zero that live during the call, as the format says.
-        unsafe { show(effect, kOfxMessageError.as_ptr(), null(), c"%s".as_ptr(), text.as_ptr()) };
     }
 
-    /// The message suite, as far as the host has one.
+    /// Tells the user something about an effect that renders all the same, where that is known to be safe: once in the
+    /// life of an instance. It stays until it is withdrawn. `aloud`: also in hosts that stop people to tell them.
+    pub fn give_notice(&self, effect: Handle, message: &str, aloud: bool) {
+        let Some(messages) = self.messages() else { return };
+        let aside = messages.setPersistentMessage.map(|show| (show, kOfxMessageWarning));
+        let spoken = messages.message.filter(|_| aloud).map(|show| (show, kOfxMessageMessage));
+        let Some((show, kind)) = aside.or(spoken) else { return };
+        if lock(&self.noticed).insert(effect.addr()) {
+            if aside.is_some() {
+                lock(&self.showing).insert(effect.addr(), Shown::Notice);
+            }
+            say(show, effect, kind, message);
+        }
+    }
+
+    /// The message suite, as far as the host has one that is known to be safe.
     fn messages(&self) -> Option<OfxMessageSuiteV2> {
+        if !self.quirks.messages {
+            return None;
+        }
         *self.messages.get_or_init(|| {
             let origin = self.origin.load(Ordering::Relaxed);
             // SAFETY: as in `fetch`: the host and its function are constant until the library is unloaded.
@@ -160,15 +179,53 @@ impl Host {
         })
     }
 
-    /// Clears the message of an effect, if there is one.
-    pub fn clear_message(&self, effect: Handle) {
-        if lock(&self.showing).remove(&effect.addr())
-            && let Some(clear) = self.messages().and_then(|m| m.clearPersistentMessage)
-        {
+    /// Takes a failure back, if the effect shows one.
+    pub fn clear_failure(&self, effect: Handle) {
+        self.clear(effect, &[Shown::Failure]);
+    }
+
+    /// Takes the notice of an effect back, if it shows it.
+    pub fn withdraw_notice(&self, effect: Handle) {
+        self.clear(effect, &[Shown::Notice]);
+    }
+
+    /// Forgets an instance that ends, and clears what it shows.
+    pub fn forget(&self, effect: Handle) {
+        lock(&self.noticed).remove(&effect.addr());
+        self.clear(effect, &[Shown::Failure, Shown::Notice]);
+    }
+
+    fn clear(&self, effect: Handle, what: &[Shown]) {
+        let mut showing = lock(&self.showing);
+        if !showing.get(&effect.addr()).is_some_and(|shown| what.contains(shown)) {
+            return;
+        }
+        showing.remove(&effect.addr());
+        drop(showing);
+        if let Some(clear) = self.messages().and_then(|m| m.clearPersistentMessage) {
             // SAFETY: an effect that the host gave, on which a message was set.
             unsafe { clear(effect) };
         }
     }
+}
+
+/// What kind of message an instance shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shown {
+    /// That it did not render.
+    Failure,
+    /// Anything else.
+    Notice,
+}
+
+type Show = unsafe extern "C" fn(*mut c_void, *const c_char, *const c_char, *const c_char, ...) -> OfxStatus;
+
+/// Hands a text to a function of the message suite.
+fn say(show: Show, effect: Handle, kind: &CStr, message: &str) {
+    // The text is an argument and not the format, in which a `%` would be one of the host's.
+    let text = CString::new(message.replace('\0', " ")).unwrap_or_default();
+    // SAFETY: strings with a closing zero that live during the call, as the format says.
+    unsafe { show(effect, kind.as_ptr(), null(), c"%s".as_ptr(), text.as_ptr()) };
 }
 
 /// A property set.

@@ -10,6 +10,9 @@ use isophote::graph::GraphInput;
 use std::ffi::CStr;
 use std::ptr::null_mut;
 
+/// What is less than this share of a frame is rounding.
+const ROUNDING: f64 = 1e-3;
+
 /// How colour stands to alpha in an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alpha {
@@ -40,6 +43,23 @@ impl<'h> Clip<'h> {
     /// Whether it says that nothing is connected.
     pub fn is_open(&self) -> bool {
         self.properties.int(kOfxImageClipPropConnected, 0) == Some(0)
+    }
+
+    /// Whether it has a frame at a time: unless it says that it has not.
+    pub fn has_frame(&self, time: f64) -> bool {
+        let range = self.properties.doubles::<2>(kOfxImageEffectPropFrameRange);
+        // Hosts have been seen to leave the numbers as they found them.
+        let range = range.filter(|[first, last]| first <= last);
+        range.is_none_or(|[first, last]| first - ROUNDING <= time && time <= last + ROUNDING)
+    }
+
+    /// Samples of its pixels, as it says; as many as there may be, where it does not.
+    pub fn channels(&self) -> usize {
+        match self.properties.string(kOfxImageEffectPropComponents, 0) {
+            Some(c) if c.as_c_str() == kOfxImageComponentRGB => 3,
+            Some(c) if c.as_c_str() == kOfxImageComponentAlpha => 1,
+            _ => 4,
+        }
     }
 
     /// Its region of definition, canonical.
@@ -217,6 +237,39 @@ impl<'h> Fetched<'h> {
             }
         }
         Ok(image)
+    }
+
+    /// Two channels of the pixels of `window`, as they are stored; NaN for what the image does not hold.
+    ///
+    /// # Errors
+    /// As [`Fetched::read`].
+    pub fn read_pairs(&self, frame: &Frame, window: Rect, channels: [usize; 2]) -> Outcome<Image> {
+        let checked = self.checked(frame)?;
+        let mut image = Image::with_window(window, 2).map_err(|_| kOfxStatErrMemory)?;
+        image.data_mut().fill(f32::NAN);
+        let held = window.intersection(&checked.window);
+        if held.is_empty() {
+            return Ok(image);
+        }
+        let channels = if self.blue_first { channels.map(|c| [2, 1, 0, 3][c]) } else { channels };
+        for y in held.y0..held.y1 {
+            let row = Rect { y0: y, y1: y + 1, ..held };
+            // SAFETY: the host gave the image, so that its memory may be read until it is released.
+            let pairs = unsafe { checked.read_pairs(row, channels) }.map_err(|_| kOfxStatErrMemory)?;
+            let at = (held.x0 - window.x0) as usize * 2;
+            image.row_mut(y)[at..at + pairs.len()].copy_from_slice(&pairs);
+        }
+        Ok(image)
+    }
+
+    /// Whether it holds what an input needs.
+    pub fn suits(&self, input: GraphInput) -> bool {
+        let is_float = matches!(self.sample, ISOPHOTE_SAMPLE_F16 | ISOPHOTE_SAMPLE_F32);
+        match input {
+            GraphInput::Normal => self.channels >= 3,
+            GraphInput::RestPosition => self.channels >= 3 && is_float,
+            _ => true,
+        }
     }
 
     /// Alpha of an image as a mask: its alpha or, of one without, its first channel. 0 outside.

@@ -1,18 +1,18 @@
 //! What hosts ask of an instance before they render: regions, clip preferences, identity.
 
-use super::describe::{MASK, OUTPUT, SOURCE, guide_clip};
+use super::clips::{MASK, OUTPUT, SOURCE, is_connected};
 use super::effects::Effect;
 use super::frame::{Frame, bounded, is_endless};
 use super::host::{Host, Outcome, Properties};
 use super::image::Clip;
 use super::interface::*;
-use super::memory::{LEAST_ROWS, WORKING_MEMORY};
-use super::pixel_aspect::SquarePixels;
+use super::known::{Known, clip_of};
+use super::prepared::Prepared;
 use super::settings::Settings;
-use isophote::engine::{Plan, Rect};
+use isophote::ColourSpace;
+use isophote::engine::Rect;
 use isophote::graph::GraphInput;
-use isophote::request::Guides;
-use isophote::{ColourSpace, Graph, Planned, Request};
+use std::collections::BTreeMap;
 use std::ffi::{CStr, CString};
 
 /// Time and scale of an action.
@@ -33,120 +33,21 @@ impl Moment {
     }
 }
 
-/// The plan for a frame, over square pixels.
-#[derive(Debug)]
-pub struct Prepared {
-    /// What is run.
-    pub planned: Planned,
-    /// Its pixels, where they are others than the host's. Colour is multiplied by alpha in them.
-    pub square: Option<SquarePixels>,
-}
-
-impl Prepared {
-    /// The plan for the values of an instance. `guides` are those that have a picture.
-    ///
-    /// # Errors
-    /// Memory; failed, when the graph cannot be planned.
-    pub fn new(
-        settings: &Settings,
-        frame: &Frame,
-        premultiplied: bool,
-        guides: Guides,
-    ) -> isophote::Result<Self> {
-        Self::of_graph(&settings.graph, settings.space, frame, premultiplied, guides)
-    }
-
-    fn of_graph(
-        graph: &Graph,
-        space: ColourSpace,
-        frame: &Frame,
-        premultiplied: bool,
-        guides: Guides,
-    ) -> isophote::Result<Self> {
-        let plan = |[width, height]: [u32; 2], scale, premultiplied| {
-            Planned::new(
-                graph,
-                Request {
-                    scale,
-                    space,
-                    premultiplied,
-                    guides,
-                    origin: frame.origin(),
-                    frame: frame.number,
-                    ..Request::new(width, height)
-                },
-            )
-        };
-        let Some(mut square) = SquarePixels::of(frame) else {
-            return Ok(Self { planned: plan(frame.size(), frame.scale, premultiplied)?, square: None });
-        };
-        let mut planned = plan(square.size(), square.scale, true)?;
-        if least_memory(planned.plan()) > WORKING_MEMORY[1] {
-            square = SquarePixels::as_many(frame);
-            planned = plan(square.size(), square.scale, true)?;
-        }
-        Ok(Self { planned, square: Some(square) })
-    }
-
-    /// The same for pictures with light beyond their coverage. It reads no more of them.
-    ///
-    /// # Errors
-    /// As [`Prepared::new`].
-    pub fn emissive(&self, settings: &Settings) -> isophote::Result<Planned> {
-        Planned::new(&settings.graph, Request { emission: true, ..*self.planned.request() })
-    }
-
-    /// The part of the plan's result that `region` of the frame is made from.
-    pub fn plan_window(&self, region: Rect) -> Rect {
-        self.square.map_or(region, |square| square.square_window(region))
-    }
-
-    /// The part of each of the plan's images that `region` of the frame needs.
-    pub fn windows(&self, region: Rect) -> Vec<Rect> {
-        self.planned.plan().windows(self.plan_window(region))
-    }
-
-    /// The host's pixels that a part of an image is made from.
-    pub fn host_window(&self, window: Rect) -> Rect {
-        self.square.map_or(window, |square| square.host_window(window))
-    }
-
-    /// Rows of the host's in one band.
-    pub fn band_rows(&self, region: Rect) -> i32 {
-        let plan = self.planned.plan();
-        let window = self.plan_window(region);
-        let rows = plan.band_rows(window, WORKING_MEMORY, LEAST_ROWS);
-        if self.square.is_none() {
-            return rows;
-        }
-        let share = f64::from(rows) / f64::from(window.height().max(1));
-        ((share * f64::from(region.height())) as i32).max(1)
-    }
-}
-
-/// Bytes that the images of the whole picture take, in the bands that take least.
-fn least_memory(plan: &Plan) -> u64 {
-    let [width, height] = plan.size();
-    let all = Rect::of_size(width, height);
-    let rows = plan.band_rows(all, WORKING_MEMORY, LEAST_ROWS);
-    let middle = (all.y1 - rows) / 2;
-    plan.peak_bytes(&plan.windows(Rect { y0: middle, y1: middle + rows, ..all }))
-}
-
-/// The region of definition of a clip, as far as it can be computed. An effect that looks at the whole picture
+/// The region of definition of the source, as far as it can be computed. An effect that looks at the whole picture
 /// takes the project for it where the clip has no bounds; `None` where the host names none either.
 ///
 /// # Errors
 /// Failed, when the graph cannot be planned.
 pub fn defined(
+    effect: &Effect,
     host: &Host,
     instance: Handle,
-    clip: &Clip<'_>,
     time: f64,
     settings: &Settings,
 ) -> Outcome<Option<OfxRectD>> {
-    let Some(region) = clip.defined(time) else { return Ok(None) };
-    if !is_endless(&region) || settings.is_local()? {
+    let clip = Clip::of(host, instance, SOURCE);
+    let Some(region) = clip.and_then(|clip| clip.defined(time)) else { return Ok(None) };
+    if !is_endless(&region) || Known::is_local_for(effect, host, instance, settings)? {
         return Ok(Some(region));
     }
     let project = extent(host, instance).map(|[x2, y2]| OfxRectD { x1: 0.0, y1: 0.0, x2, y2 });
@@ -174,7 +75,7 @@ pub fn region_of_definition(
     let region = match source.defined(moment.time).filter(is_endless) {
         Some(_) => {
             let settings = Settings::read(effect, host, instance, moment.time)?;
-            defined(host, instance, &source, moment.time, &settings)?
+            defined(effect, host, instance, moment.time, &settings)?
         }
         None => source.defined(moment.time),
     };
@@ -198,7 +99,7 @@ pub fn regions_of_interest(
     let moment = Moment::of(args);
     let Some(source) = Clip::of(host, instance, SOURCE) else { return Ok(kOfxStatReplyDefault) };
     let settings = Settings::read(effect, host, instance, moment.time)?;
-    let defined = defined(host, instance, &source, moment.time, &settings)?;
+    let defined = defined(effect, host, instance, moment.time, &settings)?;
     let frame = Frame::new(host, defined, moment.scale, source.aspect(), None)
         .map(|frame| frame.in_project(extent(host, instance).map(|[_, top]| top), moment.time));
     let wanted = args.doubles::<4>(kOfxImageEffectPropRegionOfInterest).map(|[x1, y1, x2, y2]| OfxRectD {
@@ -213,56 +114,54 @@ pub fn regions_of_interest(
     if region.is_empty() || settings.is_identity(frame.scale) {
         return Ok(kOfxStatReplyDefault);
     }
-    let guides = connected_guides(effect, host, instance);
-    let prepared = Prepared::new(&settings, &frame, true, guides).map_err(|_| kOfxStatFailed)?;
-    let windows = prepared.windows(region);
     // The first and last line of a field have neighbours in the other field.
     let order = source.properties.string(kOfxImageClipPropFieldOrder, 0);
     let fields = order.is_some_and(|order| order.as_c_str() != kOfxImageFieldNone);
-    let mut interest = Interest { answer, frame, fields, answered: false };
-    for port in prepared.planned.plan().inputs() {
-        let window = prepared.host_window(windows[port.image.index()]).union(&region);
-        match GraphInput::from_id(&port.name) {
-            Some(GraphInput::Color) => interest.add(SOURCE, window),
-            Some(guide) => guide_clip(guide).into_iter().for_each(|clip| interest.add(clip, window)),
-            None => {}
+    let mut interest = Interest { answer, frame, fields, rects: BTreeMap::new() };
+    for mut known in Known::connected(effect, host, instance, &settings)? {
+        known.limit_to_source(host, instance, moment.time);
+        let prepared = Prepared::new(&known, settings.space, &frame, true).map_err(|_| kOfxStatFailed)?;
+        let windows = prepared.windows(region);
+        for port in prepared.planned.plan().inputs() {
+            let window = prepared.host_window(windows[port.image.index()]).union(&region);
+            let clip =
+                GraphInput::from_id(port.base()).and_then(|input| clip_of(&settings, host, instance, input));
+            clip.into_iter().for_each(|clip| interest.add(clip, window));
         }
     }
     if is_connected(host, instance, MASK) {
         interest.add(MASK, region);
     }
-    Ok(if interest.answered { kOfxStatOK } else { kOfxStatReplyDefault })
+    Ok(if interest.answered() { kOfxStatOK } else { kOfxStatReplyDefault })
 }
 
-/// Whether the instance has a clip of this name, and the host does not say that it is open.
-pub fn is_connected(host: &Host, instance: Handle, name: &CStr) -> bool {
-    Clip::of(host, instance, name).is_some_and(|clip| !clip.is_open())
-}
-
-/// The guides whose clips are connected.
-pub fn connected_guides(effect: &Effect, host: &Host, instance: Handle) -> Guides {
-    let connected = |guide| guide_clip(guide).is_some_and(|name| is_connected(host, instance, name));
-    let has = |guide| effect.guides.contains(&guide) && connected(guide);
-    Guides { normal: has(GraphInput::Normal), depth: has(GraphInput::Depth), ..Guides::default() }
-}
-
-/// The regions of interest that a host has been given.
+/// The regions of interest, by clip.
 struct Interest<'h> {
     answer: Properties<'h>,
     frame: Frame,
     fields: bool,
-    answered: bool,
+    rects: BTreeMap<&'static CStr, Rect>,
 }
 
 impl Interest<'_> {
-    /// Answers that `rect` of the picture is needed of a clip.
-    fn add(&mut self, clip: &CStr, rect: Rect) {
-        let mut bounds = self.frame.outside(rect);
-        if self.fields {
-            (bounds[1], bounds[3]) = (bounds[1] - 1, bounds[3] + 1);
+    /// Notes that `rect` of the picture is needed of a clip, in one frame or another.
+    fn add(&mut self, clip: &'static CStr, rect: Rect) {
+        let all = self.rects.entry(clip).or_insert(rect);
+        *all = all.union(&rect);
+    }
+
+    /// Whether the host has taken any of them.
+    fn answered(&self) -> bool {
+        let mut answered = false;
+        for (clip, rect) in &self.rects {
+            let mut bounds = self.frame.outside(*rect);
+            if self.fields {
+                (bounds[1], bounds[3]) = (bounds[1] - 1, bounds[3] + 1);
+            }
+            let name = CString::new(format!("{ROI_PREFIX}{}", clip.to_string_lossy())).unwrap_or_default();
+            answered |= self.answer.set_doubles(&name, &self.frame.canonical(bounds));
         }
-        let name = CString::new(format!("{ROI_PREFIX}{}", clip.to_string_lossy())).unwrap_or_default();
-        self.answered |= self.answer.set_doubles(&name, &self.frame.canonical(bounds));
+        answered
     }
 }
 
@@ -331,47 +230,4 @@ pub fn is_identity(
 /// Failed, when there is none.
 pub fn output(host: &Host, instance: Handle) -> Outcome<Clip<'_>> {
     Clip::of(host, instance, OUTPUT).ok_or(kOfxStatFailed)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::effects::{EFFECTS, Form};
-    use super::*;
-
-    #[test]
-    fn an_8k_frame_of_any_pixels_fits_into_4_gib() {
-        let guides = Guides { normal: true, depth: true, ..Guides::default() };
-        for par in [0.5, 1.0667, 2.0, 20.0] {
-            let picture = [0, 0, 7680, 4320];
-            let frame = Frame {
-                picture,
-                ratio: [1.0 / par, 1.0],
-                scale: 1.0 / par.min(1.0) as f32,
-                top: None,
-                number: 0,
-            };
-            let whole = Rect::of_size(7680, 4320);
-            let bytes = |window: Rect| window.area() * 16;
-            for effect in EFFECTS.iter() {
-                for over in [false, true] {
-                    if over && effect.form != Form::Lines {
-                        continue;
-                    }
-                    let (graph, _) = effect.graph(over).unwrap();
-                    let prepared =
-                        Prepared::of_graph(&graph, ColourSpace::Linear, &frame, true, guides).unwrap();
-                    let rows = prepared.band_rows(whole);
-                    let middle = (4320 - rows) / 2;
-                    let band = Rect { y0: middle, y1: middle + rows, ..whole };
-                    let (plan, windows) = (prepared.planned.plan(), prepared.windows(band));
-                    // The host's pixels of a guide or the colour are gone when the last are resampled.
-                    let read = plan.inputs().iter().map(|port| windows[port.image.index()]);
-                    let read = read.map(|w| bytes(w) + 2 * bytes(prepared.host_window(w))).sum::<u64>();
-                    let most = 2 * bytes(whole) + plan.peak_bytes(&windows).max(read);
-                    let gib = most as f64 / (1_u64 << 30) as f64;
-                    assert!(most <= 4 << 30, "{:?} at {par}: {gib:.2} GiB", effect.identifier);
-                }
-            }
-        }
-    }
 }

@@ -33,6 +33,7 @@ strings! {
     kOfxImageEffectActionGetRegionsOfInterest = c"OfxImageEffectActionGetRegionsOfInterest";
     kOfxImageEffectActionGetClipPreferences = c"OfxImageEffectActionGetClipPreferences";
     kOfxImageEffectActionIsIdentity = c"OfxImageEffectActionIsIdentity";
+    kOfxImageEffectActionGetFramesNeeded = c"OfxImageEffectActionGetFramesNeeded";
     kOfxImageEffectActionRender = c"OfxImageEffectActionRender";
 
     kOfxPropertySuite = c"OfxPropertySuite";
@@ -58,6 +59,8 @@ strings! {
     kOfxPropPluginDescription = c"OfxPropPluginDescription";
     kOfxPropIcon = c"OfxPropIcon";
     kOfxMessageError = c"OfxMessageError";
+    kOfxMessageWarning = c"OfxMessageWarning";
+    kOfxMessageMessage = c"OfxMessageMessage";
 
     kOfxImageEffectPropColourManagementStyle = c"OfxImageEffectPropColourManagementStyle";
     kOfxImageEffectColourManagementNone = c"OfxImageEffectColourManagementNone";
@@ -127,6 +130,7 @@ strings! {
 
     kOfxImageEffectHostPropIsBackground = c"OfxImageEffectHostPropIsBackground";
     kOfxImageEffectPropProjectExtent = c"OfxImageEffectPropProjectExtent";
+    kOfxImageEffectPropFrameRange = c"OfxImageEffectPropFrameRange";
     kOfxImageEffectPropRenderScale = c"OfxImageEffectPropRenderScale";
     kOfxImageEffectPropRenderWindow = c"OfxImageEffectPropRenderWindow";
     kOfxImageEffectPropFieldToRender = c"OfxImageEffectPropFieldToRender";
@@ -166,6 +170,8 @@ pub const PIXEL_ORDER: &CStr = c"OfxImageEffectPropPixelOrder";
 pub const PIXEL_ORDER_BGRA: &CStr = c"OfxImagePixelOrderBGRA";
 /// What the name of a clip follows, in what `GetRegionsOfInterest` returns.
 pub const ROI_PREFIX: &str = "OfxImageClipPropRoI_";
+/// What the name of a clip follows, in what `GetFramesNeeded` returns.
+pub const FRAME_RANGE_PREFIX: &str = "OfxImageClipPropFrameRange_";
 /// What the name of a clip follows, in what `GetClipPreferences` returns.
 #[allow(dead_code, reason = "the test host reads it")]
 pub const COMPONENTS_PREFIX: &str = "OfxImageClipPropComponents_";

@@ -74,6 +74,12 @@ impl Axis {
         [first, ((end - ROUNDING).ceil() as i32 - 1).clamp(first, self.from - 1)]
     }
 
+    /// The pixel under the middle of a new one.
+    fn middle(&self, at: i32) -> i32 {
+        let ([begin, end], [first, last]) = (self.span(at), self.under(at));
+        (f64::midpoint(begin, end).floor() as i32).clamp(first, last)
+    }
+
     /// The pixels that those from `first` to before `end` are made from.
     fn needed(&self, first: i32, end: i32) -> [i32; 2] {
         if self.is_same() {
@@ -153,7 +159,7 @@ impl SquarePixels {
         input: GraphInput,
         threads: &dyn Threads,
     ) -> Result<Image, Error> {
-        resampled(self.axes, pixels, window, input == GraphInput::Depth, threads)
+        resampled(self.axes, pixels, window, By::input(input), threads)
     }
 
     /// The host's pixels of `window` from the square ones of [`SquarePixels::square_window`].
@@ -161,7 +167,28 @@ impl SquarePixels {
     /// # Errors
     /// Memory.
     pub fn to_host(self, pixels: Image, window: Rect, threads: &dyn Threads) -> Result<Image, Error> {
-        resampled(self.axes.map(Axis::reversed), pixels, window, false, threads)
+        resampled(self.axes.map(Axis::reversed), pixels, window, By::Mean, threads)
+    }
+}
+
+/// How new pixels come from old ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum By {
+    /// As means.
+    Mean,
+    /// As means within a surface.
+    Surface,
+    /// By the one in the middle: what lies between two vectors or points may be neither.
+    Middle,
+}
+
+impl By {
+    fn input(input: GraphInput) -> Self {
+        match input {
+            GraphInput::Depth => Self::Surface,
+            GraphInput::Motion | GraphInput::MotionForward | GraphInput::RestPosition => Self::Middle,
+            _ => Self::Mean,
+        }
     }
 }
 
@@ -177,10 +204,10 @@ fn resampled(
     [x, y]: [Axis; 2],
     mut image: Image,
     window: Rect,
-    depth: bool,
+    by: By,
     threads: &dyn Threads,
 ) -> Result<Image, Error> {
-    if !matches!(image.channels(), 1 | 4) {
+    if !matches!(image.channels(), 1 | 4) && by != By::Middle {
         return Err(Error::Input(format!("an image of {} channels is no picture", image.channels())));
     }
     if !x.is_same() {
@@ -189,9 +216,15 @@ fn resampled(
         // The same for every row.
         let taps: Vec<Vec<Tap>> = (window.x0..window.x1).map(|column| x.taps(column).collect()).collect();
         image = by_rows(columns, image.channels(), threads, |row, target| {
-            let row = image.row(row);
+            let (row, channels) = (image.row(row), image.channels() as usize);
             match image.channels() {
-                1 if depth => {
+                _ if by == By::Middle => {
+                    for (column, target) in (window.x0..window.x1).zip(target.chunks_exact_mut(channels)) {
+                        let at = (x.middle(column) - held.x0) as usize * channels;
+                        target.copy_from_slice(&row[at..at + channels]);
+                    }
+                }
+                1 if by == By::Surface => {
                     for (column, target) in (window.x0..window.x1).zip(target) {
                         *target = surface(&x, column, |x| row[(x - held.x0) as usize]);
                     }
@@ -205,7 +238,7 @@ fn resampled(
         let held = image.window();
         let rows = Rect { y0: window.y0, y1: window.y1, ..held };
         image = by_rows(rows, image.channels(), threads, |row, target| {
-            across_rows(&y, &image, row, depth, target);
+            across_rows(&y, &image, row, by, target);
         })?;
     }
     Ok(image)
@@ -246,10 +279,14 @@ fn along_row<const N: usize>(taps: &[Vec<Tap>], row: &[f32], x0: i32, target: &m
 }
 
 /// One row of new pixels from the old ones of its columns.
-fn across_rows(axis: &Axis, image: &Image, y: i32, depth: bool, target: &mut [f32]) {
+fn across_rows(axis: &Axis, image: &Image, y: i32, by: By, target: &mut [f32]) {
     let held = image.window();
     let row = |y: i32| image.row(y.clamp(held.y0, held.y1 - 1));
-    if depth {
+    if by == By::Middle {
+        target.copy_from_slice(row(axis.middle(y)));
+        return;
+    }
+    if by == By::Surface {
         for (x, target) in target.iter_mut().enumerate() {
             *target = surface(axis, y, |y| row(y)[x]);
         }
@@ -295,8 +332,7 @@ fn surface(axis: &Axis, at: i32, depth: impl Fn(i32) -> f32) -> f32 {
         let start = depth(first);
         return start + axis.taps(at).map(|tap| tap.mean * (depth(tap.at) - start)).sum::<f32>();
     }
-    let [begin, end] = axis.span(at);
-    depth((f64::midpoint(begin, end).floor() as i32).clamp(first, last))
+    depth(axis.middle(at))
 }
 
 #[cfg(test)]

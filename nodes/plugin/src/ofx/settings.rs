@@ -1,11 +1,13 @@
 //! The values of an instance's controls at one time, as a graph. Read when they are needed and never
 //! kept, since hosts change them without a word.
 
-use super::effects::{self, AS_IS, Control, Effect, Form, SPACES, Target};
+use super::effects::{AS_IS, Control, Effect, Form, SPACES, Target};
 use super::host::{Host, Outcome};
 use super::interface::*;
+use super::motion::MotionFrom;
 use isophote::spec::{Param, Unit};
 use isophote::{ColourSpace, Graph, NodeId, Value};
+use isophote_motion::Convention;
 use std::ffi::{CStr, c_int};
 use std::ptr::null_mut;
 
@@ -24,6 +26,10 @@ pub struct Settings {
     pub process_alpha: bool,
     /// Whether a mask counts.
     pub mask_apply: bool,
+    /// Where motion between frames comes from.
+    pub motion_from: MotionFrom,
+    /// What the vectors of clips mean.
+    pub convention: Convention,
     /// What must be 0 for the values to leave the picture as it is: the least of the numbers that do so at
     /// 0. The first is a plain number, the second a length in pixels of the full-size picture.
     least: [f32; 2],
@@ -42,18 +48,25 @@ impl Settings {
         let mut over = false;
         let (mut space, mut as_is) = (host.quirks.space, false);
         let (mut process_alpha, mut mask_apply) = (false, !host.quirks.all_connected);
+        let (mut motion_from, mut convention) = (MotionFrom::default(), Convention::OWN);
         for control in &effect.controls {
             let name = &control.name;
             match control.target {
                 Target::LinesOutput => over = values.int(name) == Some(1),
                 Target::WorkingSpace => {
-                    let index = values.int(name).and_then(|i| usize::try_from(i).ok());
-                    if let Some((label, listed)) = index.and_then(|i| SPACES.get(i)) {
+                    if let Some((label, listed)) = values.index(name).and_then(|i| SPACES.get(i)) {
                         (space, as_is) = (*listed, *label == AS_IS);
                     }
                 }
                 Target::ProcessAlpha => process_alpha = values.bool(name).unwrap_or(process_alpha),
                 Target::MaskApply => mask_apply = values.bool(name).unwrap_or(mask_apply),
+                Target::MotionFrom => {
+                    motion_from = values.index(name).and_then(MotionFrom::at).unwrap_or_default();
+                }
+                Target::MotionConvention => {
+                    let listed = values.index(name).and_then(|i| Convention::PRESETS.get(i));
+                    convention = *listed.unwrap_or(&convention);
+                }
                 Target::Param(..) => {}
             }
         }
@@ -72,7 +85,7 @@ impl Settings {
                 least[kind] = least[kind].min(value.form().numbers[0].abs() as f32);
             }
         }
-        Ok(Self { graph, ids, space, as_is, process_alpha, mask_apply, least })
+        Ok(Self { graph, ids, space, as_is, process_alpha, mask_apply, motion_from, convention, least })
     }
 
     /// What the pixels are by the host's name of their colour space, which counts more than what they
@@ -87,14 +100,6 @@ impl Settings {
             b"ofx_scene_linear" if self.space == ColourSpace::Srgb => ColourSpace::Linear,
             _ => self.space,
         }
-    }
-
-    /// Whether a tile needs only the pixels around it.
-    ///
-    /// # Errors
-    /// Failed, when the graph cannot be planned.
-    pub fn is_local(&self) -> Outcome<bool> {
-        effects::is_local(&self.graph).map_err(|_| kOfxStatFailed)
     }
 
     /// Whether the values leave a picture that is rendered at `scale` as it is.
@@ -148,6 +153,11 @@ impl Values<'_> {
         // SAFETY: integers, booleans and choices are given through one pointer to an int.
         let status = unsafe { get(param, self.time, &raw mut value) };
         (status == kOfxStatOK).then_some(value)
+    }
+
+    /// The position of a choice's option.
+    fn index(&self, name: &CStr) -> Option<usize> {
+        usize::try_from(self.int(name)?).ok()
     }
 
     fn bool(&self, name: &CStr) -> Option<bool> {

@@ -17,7 +17,7 @@ pub static NODE: NodeSpec = NodeSpec {
     section: "",
     inputs: &[ports::COLOR],
     output: ports::color_output("The steady picture."),
-    own_params: &[STEADINESS.with_default(Value::Float(0.5)), WINDOW, COLOR_AGREEMENT],
+    own_params: &[STEADINESS.with_default(Value::Float(0.5)).neutral_at_zero(), WINDOW, COLOR_AGREEMENT],
     build,
 };
 

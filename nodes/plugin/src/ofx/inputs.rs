@@ -1,0 +1,318 @@
+//! What a plan reads: the picture and its guides, of the frame that is rendered and of those around it.
+//!
+//! The images of other frames are fetched when they are read and given back at once. None is kept from one render to the
+//! next: hosts do not tell effects when the pictures of other frames change.
+
+use super::clips::{GUIDES, MOTION, MOTION_FORWARD, SOURCE, guide_clip};
+use super::effects::Effect;
+use super::frame::{Frame, is_endless};
+use super::host::{Host, Outcome, Properties};
+use super::image::{Alpha, Beyond, Clip, Fetched};
+use super::interface::*;
+use super::prepared::Prepared;
+use super::stop::Stop;
+use isophote::Error;
+use isophote::engine::cpu::Threads;
+use isophote::engine::{Image, Rect};
+use isophote::graph::GraphInput;
+use isophote::request::Guides;
+use isophote_motion::{Convention, Way};
+use std::ffi::CStr;
+
+/// One field of an interlaced picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// 0 for the rows 0, 2, 4, ..., 1 for the others; counted upwards.
+    pub parity: i32,
+}
+
+impl Field {
+    /// The field that the arguments of an action name, if any.
+    pub fn of(args: Properties<'_>) -> Option<Self> {
+        match args.string(kOfxImageEffectPropFieldToRender, 0)?.as_c_str() {
+            f if f == kOfxImageFieldLower => Some(Self { parity: 0 }),
+            f if f == kOfxImageFieldUpper => Some(Self { parity: 1 }),
+            _ => None,
+        }
+    }
+}
+
+/// Images by the names of a plan's inputs.
+pub type Named = Vec<(String, Image)>;
+
+/// What came of reading.
+pub enum Gathered {
+    /// Everything.
+    All(Named),
+    /// Nothing, since this frame, counted from the one that is rendered, lacks an image.
+    Without(i32),
+}
+
+/// The images of one render.
+pub struct Inputs<'h> {
+    pub host: &'h Host,
+    pub instance: Handle,
+    pub time: f64,
+    pub frame: Frame,
+    pub field: Option<Field>,
+    pub source: Fetched<'h>,
+    pub guides: Vec<(GraphInput, Fetched<'h>)>,
+    /// What the vectors of clips mean.
+    pub convention: Convention,
+    /// Whether nothing is to change, not even an alpha that is 1 by declaration.
+    pub identity: bool,
+}
+
+/// The image of a clip, where there is one.
+pub fn fetch<'h>(host: &'h Host, instance: Handle, name: &CStr, time: f64) -> Outcome<Option<Fetched<'h>>> {
+    Clip::of(host, instance, name).map_or(Ok(None), |clip| clip.image(time))
+}
+
+/// The guides of an effect that have an image; those of motion where they are wanted.
+pub fn fetch_guides<'h>(
+    effect: &Effect,
+    host: &'h Host,
+    instance: Handle,
+    time: f64,
+    wants_motion: bool,
+) -> Outcome<Vec<(GraphInput, Fetched<'h>)>> {
+    let mut guides = Vec::new();
+    for guide in &effect.guides {
+        let is_motion = matches!(guide, GraphInput::Motion | GraphInput::MotionForward);
+        if (wants_motion || !is_motion)
+            && let Some(name) = guide_clip(*guide)
+            && let Some(image) = fetch(host, instance, name, time)?
+            && image.suits(*guide)
+        {
+            guides.push((*guide, image));
+        }
+    }
+    Ok(guides)
+}
+
+impl<'h> Inputs<'h> {
+    /// The guides that there are. Vectors need two channels at least.
+    pub fn available(&self) -> Guides {
+        let counts = self.vector_channels();
+        Guides::of(|guide| match guide {
+            GraphInput::Motion => self.convention.among(Way::Backward, counts).is_some(),
+            GraphInput::MotionForward => self.convention.among(Way::Forward, counts).is_some(),
+            guide => GUIDES.contains(&guide) && self.guide(guide).is_some(),
+        })
+    }
+
+    /// Whether colour is not multiplied by alpha.
+    pub fn is_straight(&self) -> bool {
+        self.source.alpha == Alpha::Unpremultiplied
+    }
+
+    /// What the plan reads to compute `band`, in the plan's pixels.
+    pub fn gather(&self, prepared: &Prepared, band: Rect, threads: &dyn Threads) -> Result<Gathered, Stop> {
+        let windows = prepared.windows(band);
+        let mut images = Vec::new();
+        for port in prepared.planned.plan().inputs() {
+            let window = windows[port.image.index()];
+            let Some(input) = GraphInput::from_id(port.base()).filter(|_| !window.is_empty()) else {
+                continue;
+            };
+            let Some(mut pixels) = self.pixels(prepared, input, port.frame, window)? else {
+                if port.frame != 0 {
+                    return Ok(Gathered::Without(port.frame));
+                }
+                continue;
+            };
+            if let Some(square) = prepared.square {
+                if input == GraphInput::Color && self.is_straight() {
+                    multiply(&mut pixels);
+                }
+                pixels = square.to_square(pixels, window, input, threads).map_err(Error::from)?;
+            }
+            images.push((port.name.clone(), pixels));
+        }
+        Ok(Gathered::All(images))
+    }
+
+    /// The host's pixels under a window of the plan's; none where there is no image.
+    fn pixels(
+        &self,
+        prepared: &Prepared,
+        input: GraphInput,
+        offset: i32,
+        window: Rect,
+    ) -> Result<Option<Image>, Stop> {
+        let window = prepared.host_window(window);
+        match input {
+            GraphInput::Motion => self.vectors(prepared, Way::Backward, offset, window),
+            GraphInput::MotionForward => self.vectors(prepared, Way::Forward, offset, window),
+            _ if offset != 0 => self.of_neighbour(input, offset, window),
+            GraphInput::Color => Ok(Some(self.read(window)?)),
+            guide => {
+                let image = self.guide(guide);
+                Ok(image.map(|image| self.read_guide(guide, image, window)).transpose()?)
+            }
+        }
+    }
+
+    fn guide(&self, guide: GraphInput) -> Option<&Fetched<'h>> {
+        self.guides.iter().find(|(g, _)| *g == guide).map(|(_, image)| image)
+    }
+
+    /// The pixels of `window` of the source.
+    pub fn read(&self, window: Rect) -> Outcome<Image> {
+        self.read_colour(&self.source, window, Beyond::Edge)
+    }
+
+    fn read_colour(&self, image: &Fetched<'_>, window: Rect, beyond: Beyond) -> Outcome<Image> {
+        let mut pixels =
+            self.of_field(window, |window| image.read(&self.frame, window, GraphInput::Color, beyond))?;
+        if image.alpha == Alpha::Opaque && !self.identity {
+            pixels.data_mut().chunks_exact_mut(4).for_each(|p| p[3] = 1.0);
+        }
+        Ok(pixels)
+    }
+
+    fn read_guide(&self, guide: GraphInput, image: &Fetched<'_>, window: Rect) -> Outcome<Image> {
+        // Beside what it holds there is no object.
+        let beyond = if guide == GraphInput::RestPosition { Beyond::Zero } else { Beyond::Edge };
+        self.of_field(window, |window| image.read(&self.frame, window, guide, beyond))
+    }
+
+    /// The pixels of `window`, by what `read` reads; those of one field where one is rendered.
+    fn of_field(&self, window: Rect, read: impl Fn(Rect) -> Outcome<Image>) -> Outcome<Image> {
+        let Some(field) = self.field else { return read(window) };
+        // Rows of the other field take the next of this one, as hosts that double the lines have it. Then
+        // a picture of both fields and one of doubled lines come out alike.
+        let whole = Rect::of_size(self.frame.size()[0], self.frame.size()[1]);
+        let grown = Rect { y0: window.y0 - 1, y1: window.y1 + 1, ..window }.intersection(&whole);
+        let both = read(grown)?;
+        let mut one = both.crop(window).map_err(|_| kOfxStatErrMemory)?;
+        for y in window.y0..window.y1 {
+            let up = self.frame.picture[3] - 1 - y;
+            if up.rem_euclid(2) != field.parity {
+                // The partner is above for the lower field's odd rows, and below for the upper's even ones.
+                let partner = if field.parity == 0 { y + 1 } else { y - 1 };
+                let other = if partner == y + 1 { y - 1 } else { y + 1 };
+                let from = if (grown.y0..grown.y1).contains(&partner) { partner } else { other };
+                if (grown.y0..grown.y1).contains(&from) {
+                    one.row_mut(y).copy_from_slice(both.row(from));
+                }
+            }
+        }
+        Ok(one)
+    }
+
+    /// The image of a clip in another frame; none where the clip, or the host, has none.
+    fn neighbour(&self, name: &CStr, offset: i32) -> Result<Option<(Clip<'h>, Fetched<'h>)>, Stop> {
+        let time = self.time + f64::from(offset);
+        let clip = Clip::of(self.host, self.instance, name).filter(|clip| clip.has_frame(time));
+        // Whatever is wrong with another frame, this one can do without it.
+        let found = clip.and_then(|clip| Some((clip, clip.image(time).ok().flatten()?)));
+        // A host that wants to stop may have no images either.
+        if self.host.aborted(self.instance) { Err(Stop::Aborted) } else { Ok(found) }
+    }
+
+    /// An image of another frame.
+    fn of_neighbour(&self, input: GraphInput, offset: i32, window: Rect) -> Result<Option<Image>, Stop> {
+        let name = if input == GraphInput::Color { Some(SOURCE) } else { guide_clip(input) };
+        let Some(name) = name else { return Ok(None) };
+        let found = self.neighbour(name, offset)?.filter(|(_, image)| image.suits(input));
+        let Some((clip, image)) = found else { return Ok(None) };
+        present(match input {
+            GraphInput::Color => {
+                let beyond = self.beyond(clip.defined(self.time + f64::from(offset)));
+                self.read_colour(&image, window, beyond)
+            }
+            guide => self.read_guide(guide, &image, window),
+        })
+    }
+
+    /// What lies outside the image of another frame, by its region: nothing, where it does not cover this one's.
+    fn beyond(&self, defined: Option<OfxRectD>) -> Beyond {
+        let ([x0, y0, x1, y1], held) = (self.frame.picture, defined.and_then(|r| self.frame.pixels(&r)));
+        match held {
+            Some(h) if h[0] > x0 + 1 || h[1] > y0 + 1 || h[2] < x1 - 1 || h[3] < y1 - 1 => Beyond::Zero,
+            _ => Beyond::Edge,
+        }
+    }
+
+    /// Channels of the images of vectors, to the frame before and to the one after; 0 where there is none.
+    fn vector_channels(&self) -> [usize; 2] {
+        [GraphInput::Motion, GraphInput::MotionForward]
+            .map(|guide| self.guide(guide).map_or(0, |image| image.channels as usize))
+    }
+
+    /// Vectors of one way in a frame, in pixels of the plan. What an image does not hold is unknown.
+    fn vectors(
+        &self,
+        prepared: &Prepared,
+        way: Way,
+        offset: i32,
+        window: Rect,
+    ) -> Result<Option<Image>, Stop> {
+        let mut counts = self.vector_channels();
+        while let Some((from, channels, rule)) = self.convention.among(way, counts) {
+            let (name, guide) = match from {
+                Way::Backward => (MOTION, GraphInput::Motion),
+                Way::Forward => (MOTION_FORWARD, GraphInput::MotionForward),
+            };
+            let mut fetched = None;
+            let image = if offset == 0 {
+                self.guide(guide)
+            } else {
+                fetched = self.neighbour(name, offset)?.map(|(_, image)| image);
+                fetched.as_ref()
+            };
+            let pairs =
+                image.map(|image| self.of_field(window, |w| image.read_pairs(&self.frame, w, channels)));
+            if let Some(mut pairs) = pairs.map_or(Ok(None), present)? {
+                let clip = Clip::of(self.host, self.instance, name);
+                let par =
+                    image.and_then(|image| image.aspect).or(clip.map(|clip| clip.aspect())).unwrap_or(1.0);
+                let defined = clip.and_then(|clip| clip.defined(self.time + f64::from(offset)));
+                rule.apply(pairs.data_mut(), self.full_size(defined, par));
+                let ratio = prepared.ratio(&self.frame);
+                let [x, y] = [ratio[0] * par, ratio[1]].map(|pixels| pixels as f32);
+                for vector in pairs.data_mut().chunks_exact_mut(2) {
+                    (vector[0], vector[1]) = (vector[0] * x, vector[1] * y);
+                }
+                return Ok(Some(pairs));
+            }
+            drop(fetched);
+            // The other image may have them reversed.
+            counts[usize::from(from == Way::Forward)] = 0;
+        }
+        if offset != 0 {
+            return Ok(None);
+        }
+        let mut unknown = Image::with_window(window, 2).map_err(|_| kOfxStatErrMemory)?;
+        unknown.data_mut().fill(f32::NAN);
+        Ok(Some(unknown))
+    }
+
+    /// Columns and rows of a clip's picture at full size.
+    fn full_size(&self, defined: Option<OfxRectD>, par: f64) -> [f32; 2] {
+        let region =
+            defined.filter(|region| !is_endless(region) && region.x1 < region.x2 && region.y1 < region.y2);
+        let [x1, y1, x2, y2] = match region {
+            Some(OfxRectD { x1, y1, x2, y2 }) => [x1, y1, x2, y2],
+            None => self.frame.canonical(self.frame.picture),
+        };
+        [((x2 - x1) / par) as f32, (y2 - y1) as f32]
+    }
+}
+
+/// What was read of an image; none where the image is not fit for it, which leaves no memory out.
+fn present(read: Outcome<Image>) -> Result<Option<Image>, Stop> {
+    match read {
+        Err(status) if status != kOfxStatErrMemory => Ok(None),
+        read => Ok(Some(read?)),
+    }
+}
+
+/// Colour times alpha.
+fn multiply(image: &mut Image) {
+    for pixel in image.data_mut().chunks_exact_mut(4) {
+        let alpha = pixel[3];
+        pixel[..3].iter_mut().for_each(|v| *v *= alpha);
+    }
+}

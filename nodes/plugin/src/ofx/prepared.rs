@@ -1,0 +1,181 @@
+//! The plan for a frame, over pixels that are square.
+
+use super::frame::Frame;
+use super::known::Known;
+use super::memory::{LEAST_ROWS, WORKING_MEMORY};
+use super::pixel_aspect::SquarePixels;
+use isophote::engine::{Plan, Rect};
+use isophote::{ColourSpace, Planned, Request};
+
+/// The plan for a frame, over square pixels.
+#[derive(Debug)]
+pub struct Prepared {
+    /// What is run.
+    pub planned: Planned,
+    /// Its pixels, where they are others than the host's. Colour is multiplied by alpha in them.
+    pub square: Option<SquarePixels>,
+}
+
+impl Prepared {
+    /// The plan for a frame of which this is known.
+    ///
+    /// # Errors
+    /// Memory; failed, when the graph cannot be planned.
+    pub fn new(
+        known: &Known,
+        space: ColourSpace,
+        frame: &Frame,
+        premultiplied: bool,
+    ) -> isophote::Result<Self> {
+        let plan = |[width, height]: [u32; 2], scale, premultiplied| {
+            Planned::new(
+                &known.graph,
+                Request {
+                    scale,
+                    space,
+                    premultiplied,
+                    guides: known.guides,
+                    frames: known.frames,
+                    origin: frame.origin(),
+                    frame: frame.number,
+                    ..Request::new(width, height)
+                },
+            )
+        };
+        let Some(mut square) = SquarePixels::of(frame) else {
+            return Ok(Self { planned: plan(frame.size(), frame.scale, premultiplied)?, square: None });
+        };
+        let mut planned = plan(square.size(), square.scale, true)?;
+        if least_memory(planned.plan()) > WORKING_MEMORY[1] {
+            square = SquarePixels::as_many(frame);
+            planned = plan(square.size(), square.scale, true)?;
+        }
+        Ok(Self { planned, square: Some(square) })
+    }
+
+    /// The same for pictures with light beyond their coverage. It reads no more of them.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`].
+    pub fn emissive(&self, known: &Known) -> isophote::Result<Planned> {
+        Planned::new(&known.graph, Request { emission: true, ..*self.planned.request() })
+    }
+
+    /// Rendered pixels per canonical unit, in x and y.
+    pub fn ratio(&self, frame: &Frame) -> [f64; 2] {
+        self.square.map_or(frame.ratio, |square| [f64::from(square.scale); 2])
+    }
+
+    /// The part of the plan's result that `region` of the frame is made from.
+    pub fn plan_window(&self, region: Rect) -> Rect {
+        self.square.map_or(region, |square| square.square_window(region))
+    }
+
+    /// The part of each of the plan's images that `region` of the frame needs.
+    pub fn windows(&self, region: Rect) -> Vec<Rect> {
+        self.planned.plan().windows(self.plan_window(region))
+    }
+
+    /// The host's pixels that a part of an image is made from.
+    pub fn host_window(&self, window: Rect) -> Rect {
+        self.square.map_or(window, |square| square.host_window(window))
+    }
+
+    /// Rows of the host's in one band.
+    pub fn band_rows(&self, region: Rect) -> i32 {
+        let plan = self.planned.plan();
+        let window = self.plan_window(region);
+        let mut rows = plan.band_rows(window, WORKING_MEMORY, LEAST_ROWS);
+        let first = Rect { y1: (window.y0 + rows).min(window.y1), ..window };
+        if plan.peak_bytes(&plan.windows(first)) > WORKING_MEMORY[1] {
+            // No band keeps within the bound: each would be computed from nearly all, again and again.
+            rows = window.height() as i32;
+        }
+        if self.square.is_none() {
+            return rows;
+        }
+        let share = f64::from(rows) / f64::from(window.height().max(1));
+        ((share * f64::from(region.height())) as i32).max(1)
+    }
+}
+
+/// Bytes that the images of the whole picture take, in the bands that take least.
+fn least_memory(plan: &Plan) -> u64 {
+    let [width, height] = plan.size();
+    let all = Rect::of_size(width, height);
+    let rows = plan.band_rows(all, WORKING_MEMORY, LEAST_ROWS);
+    let middle = (all.y1 - rows) / 2;
+    plan.peak_bytes(&plan.windows(Rect { y0: middle, y1: middle + rows, ..all }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::effects::{EFFECTS, Form};
+    use super::super::motion::MotionFrom;
+    use super::*;
+    use isophote::frames::Frames;
+    use isophote::request::Guides;
+
+    #[test]
+    fn what_looks_at_whole_pictures_is_no_band() {
+        let picture = [0, 0, 7680, 4320];
+        let frame = Frame { picture, ratio: [1.0; 2], scale: 1.0, top: None, number: 0 };
+        let whole = Rect::of_size(7680, 4320);
+        for effect in EFFECTS.iter().filter(|effect| effect.temporal) {
+            let (mut graph, ids) = effect.graph(false).unwrap();
+            graph.set(ids[0], "steadiness", isophote::Value::Float(0.5)).unwrap();
+            for vectors in [true, false] {
+                let has = Guides { motion: vectors, ..Guides::default() };
+                let known = Known::of(&graph, MotionFrom::default(), has, true).unwrap();
+                assert_ne!(known.frames, Frames::NONE);
+                let prepared = Prepared::new(&known, ColourSpace::Linear, &frame, true).unwrap();
+                let rows = prepared.band_rows(whole);
+                let bytes = prepared.planned.plan().peak_bytes(&prepared.windows(Rect { y1: rows, ..whole }));
+                let gib = bytes as f64 / (1_u64 << 30) as f64;
+                println!("{:?}, vectors {vectors}: {rows} rows, {gib:.2} GiB", effect.identifier);
+                assert!(
+                    rows == 4320 || (vectors && bytes <= WORKING_MEMORY[1]),
+                    "{rows} rows take {gib:.2} GiB"
+                );
+                assert!(bytes <= 10 << 30, "{gib:.2} GiB");
+            }
+        }
+    }
+
+    #[test]
+    fn an_8k_frame_of_any_pixels_fits_into_4_gib() {
+        let guides = Guides { normal: true, depth: true, ..Guides::default() };
+        for par in [0.5, 1.0667, 2.0, 20.0] {
+            let picture = [0, 0, 7680, 4320];
+            let frame = Frame {
+                picture,
+                ratio: [1.0 / par, 1.0],
+                scale: 1.0 / par.min(1.0) as f32,
+                top: None,
+                number: 0,
+            };
+            let whole = Rect::of_size(7680, 4320);
+            let bytes = |window: Rect| window.area() * 16;
+            for effect in EFFECTS.iter() {
+                for over in [false, true] {
+                    if over && effect.form != Form::Lines {
+                        continue;
+                    }
+                    let (graph, _) = effect.graph(over).unwrap();
+                    let known = Known { graph, guides, frames: Frames::NONE };
+                    let prepared = Prepared::new(&known, ColourSpace::Linear, &frame, true).unwrap();
+                    let rows = prepared.band_rows(whole);
+                    let middle = (4320 - rows) / 2;
+                    let band = Rect { y0: middle, y1: middle + rows, ..whole };
+                    let (plan, windows) = (prepared.planned.plan(), prepared.windows(band));
+                    // The host's pixels of a guide or the colour are gone when the last are resampled.
+                    let read = plan.inputs().iter().map(|port| windows[port.image.index()]);
+                    let read = read.map(|w| bytes(w) + 2 * bytes(prepared.host_window(w))).sum::<u64>();
+                    let most = 2 * bytes(whole) + plan.peak_bytes(&windows).max(read);
+                    let gib = most as f64 / (1_u64 << 30) as f64;
+                    assert!(most <= 4 << 30, "{:?} at {par}: {gib:.2} GiB", effect.identifier);
+                }
+            }
+        }
+    }
+}

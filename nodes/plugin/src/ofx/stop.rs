@@ -1,0 +1,28 @@
+//! Why a frame was not finished.
+
+use super::interface::OfxStatus;
+use isophote::Error;
+use isophote::engine::Error as EngineError;
+
+/// Why a frame was not finished.
+pub enum Stop {
+    /// The user no longer wants it.
+    Aborted,
+    Status(OfxStatus),
+    Error(Error),
+}
+
+impl From<OfxStatus> for Stop {
+    fn from(status: OfxStatus) -> Self {
+        Self::Status(status)
+    }
+}
+
+impl From<Error> for Stop {
+    fn from(error: Error) -> Self {
+        match error {
+            Error::Engine(EngineError::Cancelled) => Self::Aborted,
+            other => Self::Error(other),
+        }
+    }
+}
