@@ -68,6 +68,8 @@ const OF_THE_BINARY: &[OfTheBinary] = named! {
     time::frames_beyond_a_cut_count_for_nothing,
     time::frames_at_once_on_threads_are_the_same,
     time::neighbours_are_given_back_before_the_next_is_taken,
+    time::frames_may_cover_less_than_others,
+    time::fields_are_steadied_by_their_own_lines,
     time::frames_that_a_host_lacks_count_for_nothing,
     time::hosts_of_single_frames_show_stills_and_say_so_once,
     time::hosts_that_call_every_clip_connected_are_estimated_for,

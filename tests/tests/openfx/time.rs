@@ -5,7 +5,7 @@ use crate::reference::*;
 use isophote_tests::ofx::effect::{Described, Instance, Wanted};
 use isophote_tests::ofx::host::Host;
 use isophote_tests::ofx::interface::*;
-use isophote_tests::ofx::picture::Layout;
+use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::state::Behaviour;
 use std::ffi::{CStr, CString};
@@ -180,6 +180,60 @@ pub fn neighbours_are_given_back_before_the_next_is_taken(binary: &Binary) {
         // The output, the source, vectors, and one of another frame.
         assert_eq!(host.inner.most_lent.load(Ordering::SeqCst), own + 1, "{context:?}");
         assert_eq!(host.inner.lent.load(Ordering::SeqCst), 0);
+    }
+    host.no_faults();
+}
+
+pub fn frames_may_cover_less_than_others(binary: &Binary) {
+    let host = Host::new(Behaviour::default());
+    let described = Described::new(&host, binary.plugin("org.isophote.steady"));
+    let instance = steadied(&described, GENERAL, 1);
+    connect_motion(&instance);
+    let (columns, layout) = (24, Layout::default());
+    let alone = floats(&still(&instance, 5));
+    let frames = [4, 5, 6].map(|n| {
+        let whole = film::picture(layout, &film::frame(n));
+        let part = whole.crop([0, 0, columns, SIZE[1]]).packed();
+        // A picture of its own, and no part of one.
+        if n == 5 { whole } else { Picture::packed_in(layout, columns, SIZE[1], &part) }
+    });
+    instance.connect_film("Source", 4, frames.into());
+    let got = floats(&render(&instance, 5).packed());
+    let column = |at: usize| (at / 4) as i32 % SIZE[0];
+    let apart = |columns: std::ops::Range<i32>| {
+        let pairs = got.iter().zip(&alone).enumerate().filter(|(at, _)| columns.contains(&column(*at)));
+        pairs.map(|(_, (a, b))| (a - b).abs()).fold(0.0, f32::max)
+    };
+    // Nothing is there where the others end.
+    assert!(apart(columns + 8..SIZE[0]) < 1e-6, "{}", apart(columns + 8..SIZE[0]));
+    assert!(apart(0..columns - 8) > 1e-4);
+    host.no_faults();
+}
+
+pub fn fields_are_steadied_by_their_own_lines(binary: &Binary) {
+    let host = Host::new(Behaviour::default());
+    let described = Described::new(&host, binary.plugin("org.isophote.steady"));
+    let instance = steadied(&described, FILTER, 1);
+    let both = Layout { field: kOfxImageFieldBoth, ..Layout::default() };
+    for (field, parity) in [(kOfxImageFieldLower, 0), (kOfxImageFieldUpper, 1)] {
+        let render = |doubled: bool| {
+            let frames = (4..=6).map(|n| {
+                let picture = film::picture(both, &film::frame(n));
+                let line = |y: i32| {
+                    let other = if parity == 0 { y - 1 } else { y + 1 };
+                    let from = if y % 2 == parity || !doubled { y } else { other };
+                    picture.crop([0, from, SIZE[0], from + 1]).packed()
+                };
+                let lines: Vec<u8> = (0..SIZE[1]).rev().flat_map(line).collect();
+                Picture::packed_in(both, SIZE[0], SIZE[1], &lines)
+            });
+            instance.connect_film("Source", 4, frames.collect());
+            let wanted = Wanted { field, time: 5.0, ..Wanted::new([0, 0, SIZE[0], SIZE[1]]) };
+            let (status, picture) = instance.try_render(both, SIZE, &wanted);
+            assert_eq!(status, kOfxStatOK);
+            picture.packed()
+        };
+        assert!(render(true) == render(false), "{field:?}");
     }
     host.no_faults();
 }

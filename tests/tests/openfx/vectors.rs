@@ -99,6 +99,11 @@ pub fn unknown_vectors_leave_the_frame_alone(binary: &Binary) {
         (RANGE[0]..=RANGE[1]).map(|_| film::picture(coverage, &vectors([1.0; 2], [1.0; 2]))).collect();
     instance.connect_film("Motion", RANGE[0] as i32, single);
     assert!(floats(&render(&instance, 5)) == estimated);
+    // Frames of it that lack channels have no vectors, and are no neighbours.
+    let frames = (RANGE[0]..=RANGE[1]).map(|n| if n == 5 { layout } else { coverage });
+    let mixed = frames.map(|layout| film::picture(layout, &vector)).collect();
+    instance.connect_film("Motion", RANGE[0] as i32, mixed);
+    assert!(floats(&render(&instance, 5)) == still);
     host.no_faults();
 }
 

@@ -181,7 +181,11 @@ impl Checked {
         let mut bytes = self.row_of_bytes(&row)?;
         // SAFETY: as in `read`.
         unsafe { bytes.as_mut_ptr().copy_from_nonoverlapping(self.at(&row, row.y0), bytes.len()) };
-        let mut pairs = vec![0.0; row.width() as usize * 2];
+        let (mut pairs, len) = (Vec::new(), row.width() as usize * 2);
+        pairs.try_reserve_exact(len).map_err(|_| {
+            Failure::new(ISOPHOTE_ERROR_OUT_OF_MEMORY, format!("there is no memory for {len} vectors"))
+        })?;
+        pairs.resize(len, 0.0);
         for (pixel, pair) in
             bytes.chunks_exact(self.channels * self.sample.size()).zip(pairs.chunks_exact_mut(2))
         {

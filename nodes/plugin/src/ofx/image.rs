@@ -242,9 +242,12 @@ impl<'h> Fetched<'h> {
     /// Two channels of the pixels of `window`, as they are stored; NaN for what the image does not hold.
     ///
     /// # Errors
-    /// As [`Fetched::read`].
+    /// Memory; image format, for one without such channels or of a shape that no image can have.
     pub fn read_pairs(&self, frame: &Frame, window: Rect, channels: [usize; 2]) -> Outcome<Image> {
         let checked = self.checked(frame)?;
+        if channels.iter().any(|c| *c >= self.channels as usize) {
+            return Err(kOfxStatErrImageFormat);
+        }
         let mut image = Image::with_window(window, 2).map_err(|_| kOfxStatErrMemory)?;
         image.data_mut().fill(f32::NAN);
         let held = window.intersection(&checked.window);
