@@ -180,7 +180,7 @@ fn wall(footprint: f32) -> Image {
 
 #[test]
 fn marks_keep_their_size_when_the_camera_comes_closer() {
-    let columns = ["style", "at rest positions", "widest to narrowest", "strongest to weakest"];
+    let columns = ["style", "width", "contrast"];
     let title = "Marks on a wall that comes four times closer, over those on the screen";
     let mut table = Table::new(18, "marks", title, &columns);
     let mut found = Vec::new();

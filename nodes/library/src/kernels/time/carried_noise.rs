@@ -47,11 +47,8 @@ pub fn pass(
     layers: &Layers,
 ) -> ImageId {
     let sigma = layers.sigma.max(0.3);
-    let params = Params {
-        share: layers.share,
-        falloff: -0.25 / (sigma * sigma),
-        decay: 1.0 / (APART * sigma),
-    };
+    let params =
+        Params { share: layers.share, falloff: -0.25 / (sigma * sigma), decay: 1.0 / (APART * sigma) };
     let around = Support::Pixels(layers.farthest.ceil() as u32 + 3);
     let supports = [around, around, around, Support::Pixels(0)];
     plan.pass_reaching(&KERNEL, &[common, first, second, chain], &params, &[Class::Colour], &supports, 0)

@@ -380,7 +380,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         texture: drawing.texture,
         cover: scope.bool("cover"),
     };
-    let hatching = if own.hatching > 0.0 { marks::hatching(scope, HATCHING, scope.renewed(301)) } else { None };
+    let hatching =
+        if own.hatching > 0.0 { marks::hatching(scope, HATCHING, scope.renewed(301)) } else { None };
     let drawn = ink_sheet::pass(scope.plan, response, tinted, carved, hatching, &sheet);
     if own.sigma_a > 0.0 {
         let options = Lic { sigma: drawing.sigma_a * scale, ..lic::options() };

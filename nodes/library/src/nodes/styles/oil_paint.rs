@@ -3,8 +3,8 @@
 
 use crate::kernels::colour::paint_relief::{self, Relief};
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
-use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
 use crate::kernels::smoothing::flow_dilation;
+use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
 use crate::nodes::smoothing::line_integral_convolution as lic;
 use crate::nodes::structure::flow_map;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
