@@ -1,32 +1,56 @@
-//! A node on the CPU, through the library's `process`.
+//! A node on the CPU, through the library's `process`; one that depends on frames before its own, through a sequence.
+
+use std::cell::Cell;
 
 use super::entry::{Entry, PassEntry};
-use super::{Subject, median};
+use super::{Subject, median, motion};
+use crate::apply::memory;
 use crate::error::Result;
+use crate::loader::contract::{ISOPHOTE_GUIDE_MOTION, IsophoteRequest};
 use crate::loader::process::PassTime;
-use crate::loader::{Control, Input, Library};
+use crate::loader::{Control, Input, Library, Refusal};
 use crate::pixels::{Pixels, Precision};
 use crate::stylize::style::Style;
 
-/// Measures one node.
+/// Measures one node; of one that is steady, frames in order of which those before are known.
 pub fn run(library: &Library, subject: &Subject, picture: &Pixels, runs: u32) -> Result<Entry> {
     let node = &subject.node;
     let size = (picture.width(), picture.height());
+    let refused = |e: Refusal| e.at(node, "leave it out with --node");
     let mut style = Style::any(library, node, &subject.settings)?;
     let request = library.request(size).map_err(|e| e.at("--size", "choose another size"))?;
     let mut target = Pixels::zeroed(size.0, size.1, 4, Precision::F32);
     let inputs = [Input { name: "color", pixels: picture }];
+    let [past, future] = library.frames(&style.graph).map_err(refused)?;
+    let mut sequence = match past + future {
+        0 => None,
+        _ => Some(library.sequence(memory::usual().0, 0.0).map_err(refused)?),
+    };
+    let (motion, frame) = (motion(size), Cell::new(0));
+    let footage = |name: &str, number: i64| match name {
+        _ if !(0..=frame.get()).contains(&number) => None,
+        "color" => Some(picture),
+        "motion" => Some(&motion),
+        _ => None,
+    };
     let mut once = || {
         let mut times = Vec::new();
         let mut control = Control { measured: Some(&mut times), ..Control::default() };
-        let report = style
-            .graph
-            .process(None, &request, &inputs, &mut target, &mut control)
-            .map_err(|e| e.at(node, "leave it out with --node"))?;
-        Ok((report.seconds, times))
+        let report = match &mut sequence {
+            None => style.graph.process(None, &request, &inputs, &mut target, &mut control),
+            Some(sequence) => {
+                let number = frame.get() + 1;
+                frame.set(number);
+                let request = IsophoteRequest { frame: number, guides: ISOPHOTE_GUIDE_MOTION, ..request };
+                sequence.process(&mut style.graph, None, &request, &footage, &mut target, &mut control)
+            }
+        };
+        Ok((report.map_err(refused)?.seconds, times))
     };
-    // The first run allocates, and is not counted.
-    once()?;
+    // The first runs allocate, and find the frames that others are based on; they are not counted.
+    for _ in 0..=past {
+        once()?;
+    }
     let measured: Vec<(f64, Vec<PassTime>)> = (0..runs).map(|_| once()).collect::<Result<_>>()?;
     let seconds = |at: usize| median(measured.iter().filter_map(|(_, t)| Some(t.get(at)?.seconds)).collect());
     let passes = measured.first().map_or(&[][..], |(_, times)| times);

@@ -5,13 +5,13 @@ use std::time::Instant;
 
 use super::entry::{Entry, PassEntry};
 use super::timer::Timer;
-use super::{Subject, median};
+use super::{Subject, median, motion};
 use crate::error::Result;
+use crate::loader::contract::ISOPHOTE_GUIDE_MOTION;
 use crate::loader::plan::Pass;
 use crate::loader::{Answer, Library, Plan, Refusal};
 use crate::pixels::Pixels;
 use crate::render::gpu::Gpu;
-use crate::stylize::history::Past;
 use crate::stylize::plan_runner::{Kernels, PlanRunner};
 use crate::stylize::style::Style;
 
@@ -45,12 +45,21 @@ impl Bench {
         let refused = |e: Refusal| e.at(&subject.node, "leave it out with --node");
         let size = (picture.width(), picture.height());
         let style = Style::any(library, &subject.node, &subject.settings)?;
-        let request = library.request(size).map_err(|e| e.at("--size", "choose another size"))?;
-        let plan = style.graph.plan(&request).map_err(refused)?;
-        let mut runner = PlanRunner::new(&self.kernels, &plan, Past::default())?;
-        runner.bind(&[("color", &self.upload(picture))])?;
-        // The first run compiles, and is not counted.
-        self.once(&mut runner)?;
+        let mut request = library.request(size).map_err(|e| e.at("--size", "choose another size"))?;
+        let [frames, _] = library.frames(&style.graph).map_err(refused)?;
+        if frames > 0 {
+            request.guides = ISOPHOTE_GUIDE_MOTION;
+        }
+        // Of one that is steady, frames in order of which those before are known.
+        let past = style.past(library, &request)?;
+        let plan = style.plan(library, &request, past.frames)?;
+        let mut runner = PlanRunner::new(&self.kernels, &plan, past)?;
+        let (color, motion) = (self.upload(picture), self.upload(&motion(size)));
+        runner.bind(&[("color", &color), ("motion", &motion)])?;
+        // The first runs compile, and find the frames that others are based on; they are not counted.
+        for _ in 0..=frames {
+            self.once(&mut runner)?;
+        }
         let totals = (0..runs).map(|_| self.once(&mut runner)).collect::<Result<Vec<f64>>>()?;
         let mut passes = passes(&plan).map_err(refused)?;
         match Timer::new(&self.gpu, passes.len()) {
@@ -94,8 +103,14 @@ impl Bench {
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba32Float,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            format: match picture.channels() {
+                2 => wgpu::TextureFormat::Rg32Float,
+                _ => wgpu::TextureFormat::Rgba32Float,
+            },
+            // Frames that are kept are copied.
+            usage: wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_DST
+                | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
         self.gpu.queue.write_texture(
@@ -103,7 +118,7 @@ impl Bench {
             picture.bytes(),
             wgpu::TexelCopyBufferLayout {
                 offset: 0,
-                bytes_per_row: Some(picture.width() * 16),
+                bytes_per_row: Some(picture.width() * picture.channels() * 4),
                 rows_per_image: None,
             },
             texture.size(),

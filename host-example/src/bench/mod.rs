@@ -49,6 +49,14 @@ pub fn picture((width, height): (u32, u32)) -> Pixels {
     Pixels::new(width, height, 4, Samples::F32(samples)).unwrap_or_else(black)
 }
 
+/// Motion that is the same everywhere, to places between pixels.
+fn motion((width, height): (u32, u32)) -> Pixels {
+    let samples = [-1.3, 0.7].repeat(width as usize * height as usize);
+    // Two samples were made for each pixel.
+    let rest = || Pixels::zeroed(width, height, 2, crate::pixels::Precision::F32);
+    Pixels::new(width, height, 2, Samples::F32(samples)).unwrap_or_else(rest)
+}
+
 /// The middle one of some numbers, the mean of the middle two; 0 of none.
 fn median(mut numbers: Vec<f64>) -> f64 {
     numbers.sort_by(f64::total_cmp);

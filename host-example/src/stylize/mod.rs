@@ -223,7 +223,11 @@ impl Stylizer {
 }
 
 impl Style {
-    fn plan(&self, library: &Library, request: &IsophoteRequest, known: usize) -> Result<Plan> {
+    /// The plan of a frame where so many frames before it are known.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Input`] when an input that the style needs is open.
+    pub fn plan(&self, library: &Library, request: &IsophoteRequest, known: usize) -> Result<Plan> {
         let history = IsophoteHistory { past: known as u32, max_motion: 0.0 };
         let plan = match library.frames(&self.graph) {
             Ok([0, 0]) => self.graph.plan(request),
@@ -239,7 +243,10 @@ impl Style {
     }
 
     /// What frames read of those before, where all are known.
-    fn past(&self, library: &Library, request: &IsophoteRequest) -> Result<Past> {
+    ///
+    /// # Errors
+    /// As [`Style::plan`].
+    pub fn past(&self, library: &Library, request: &IsophoteRequest) -> Result<Past> {
         let refused = |e: Refusal| e.at(&self.name, "choose another style");
         let [frames, _] = library.frames(&self.graph).map_err(refused)?;
         if frames == 0 {

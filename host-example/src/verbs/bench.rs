@@ -23,7 +23,9 @@ const SIZES: [(u32, u32); 2] = [(1280, 720), (1920, 1080)];
 
 /// Options of `bench`.
 #[derive(Args, Debug)]
-#[command(after_help = "Times are medians of warm runs, without the conversion of pixels in and out.")]
+#[command(
+    after_help = "Times are medians of warm runs, without the conversion of pixels in and out. Nodes that are steady, such as cartoon,steadiness=0.5, are measured on frames in order of which those before are known."
+)]
 pub struct BenchArgs {
     /// Prints JSON.
     #[arg(long)]
