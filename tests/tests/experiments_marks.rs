@@ -2,6 +2,7 @@
 //! screen when the camera comes closer.
 
 use isophote::graph::GraphInput;
+use isophote::request::Guides;
 use isophote::{Graph, Request};
 use isophote_engine::Image;
 use isophote_tests::device::device;
@@ -224,4 +225,20 @@ fn far_from_the_origin_marks_are_the_same() {
     let (near, far) = (at(0.0), at(8192.0));
     assert!((far.width[0] / near.width[0] - 1.0).abs() < 0.1, "{near:?} {far:?}");
     assert!((far.contrast / near.contrast - 1.0).abs() < 0.1, "{near:?} {far:?}");
+}
+
+#[test]
+fn hold_renews_marks_on_things() {
+    let graph = run::single("oil_paint", &[("hold", "2")]);
+    let inputs = [
+        ("color", grey(96, 64, 0.6)),
+        ("rest_position", from_fn(96, 64, |x, y| [x as f32, y as f32, 1.0, 1.0])),
+    ];
+    let at = |frame: i64| {
+        let guides = Guides::of(|input| input == GraphInput::RestPosition);
+        let request = Request { frame, guides, ..Request::new(96, 64) };
+        run::whole(run::planned(&graph, request).plan(), &inputs)
+    };
+    assert!(at(4) == at(5), "both are of one drawing");
+    assert!(at(5) != at(6), "marks are renewed");
 }
