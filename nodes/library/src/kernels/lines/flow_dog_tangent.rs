@@ -68,13 +68,8 @@ fn planned(
     threshold: u32,
 ) -> ImageId {
     let Options { sigma, integrator, xdog } = *options;
-    let params = Params {
-        sigma,
-        integrator: integrator as u32,
-        threshold,
-        epsilon: xdog.epsilon,
-        phi: xdog.phi,
-    };
+    let params =
+        Params { sigma, integrator: integrator as u32, threshold, epsilon: xdog.epsilon, phi: xdog.phi };
     plan.pass(&KERNEL, &[response, field], &params, Class::Field, Support::Pixels(reach(&params) as u32))
 }
 

@@ -12,9 +12,7 @@ use crate::nodes::structure::flow_map::Flow;
 use crate::nodes::structure::structure_tensor::{self, TensorOptions};
 use crate::ports;
 use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
-use crate::stages::steady::{
-    Agreement, COLOUR_AGREEMENT, Steadied, compared, steadied, steadied_picture,
-};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, compared, steadied, steadied_picture};
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.

@@ -70,16 +70,17 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let abstraction = Abstraction::of(scope);
     let n_e = scope.int("n_e");
     let flow = lines::flow_dog(scope, guide_weight);
-    let Steadied { stages: [smooth, tensor, response], shares } = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
-        let color = scope.required("color");
-        let guides = flow_dog::guides(scope, guide_weight);
-        let tensor = flow_dog::tensor(scope, color, &guides);
-        let tensor = flow_map::bent(scope, tensor);
-        let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-        let smooth = abstraction.apply(scope.plan, lab, tensor, n_e);
-        let lightness = lightness::pass_lab(scope.plan, smooth);
-        [smooth, tensor, flow.response(scope.plan, lightness, tensor, &guides)]
-    });
+    let Steadied { stages: [smooth, tensor, response], shares } =
+        steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
+            let color = scope.required("color");
+            let guides = flow_dog::guides(scope, guide_weight);
+            let tensor = flow_dog::tensor(scope, color, &guides);
+            let tensor = flow_map::bent(scope, tensor);
+            let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
+            let smooth = abstraction.apply(scope.plan, lab, tensor, n_e);
+            let lightness = lightness::pass_lab(scope.plan, smooth);
+            [smooth, tensor, flow.response(scope.plan, lightness, tensor, &guides)]
+        });
     let lightness = lightness::pass_lab(scope.plan, smooth);
     let edges = flow.decided(scope.plan, response, tensor, shares);
     let sheet = Sheet {

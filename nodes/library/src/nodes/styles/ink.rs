@@ -343,16 +343,17 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         kernel: Kernel::Separable,
         guide_weight,
     };
-    let Steadied { stages: [smooth, tensor, response], shares } = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
-        let color = scope.required("color");
-        let guides = flow_dog::guides(scope, guide_weight);
-        let tensor = of_color_and_guides(scope.plan, color, &guides, &options);
-        let tensor = flow_map::bent(scope, tensor);
-        let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-        let smooth = abstraction.apply(scope.plan, lab, tensor, n_e + own.flattening);
-        let lightness = lightness::pass_lab(scope.plan, smooth);
-        [smooth, tensor, flow.response(scope.plan, lightness, tensor, &guides)]
-    });
+    let Steadied { stages: [smooth, tensor, response], shares } =
+        steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
+            let color = scope.required("color");
+            let guides = flow_dog::guides(scope, guide_weight);
+            let tensor = of_color_and_guides(scope.plan, color, &guides, &options);
+            let tensor = flow_map::bent(scope, tensor);
+            let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
+            let smooth = abstraction.apply(scope.plan, lab, tensor, n_e + own.flattening);
+            let lightness = lightness::pass_lab(scope.plan, smooth);
+            [smooth, tensor, flow.response(scope.plan, lightness, tensor, &guides)]
+        });
     let mut response = flow.decided(scope.plan, response, tensor, None);
     if let Some(shares) = shares {
         let xdog = Xdog { epsilon: drawing.epsilon, phi: drawing.phi, ..flow.xdog };

@@ -118,13 +118,14 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     };
     let abstraction = Abstraction::of(scope);
     let n_a = scope.int("n_a");
-    let Steadied { stages: [flat, tensors], .. } = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
-        let color = scope.required("color");
-        let tensors = structure_tensor::of_color(scope.plan, color, &options);
-        let tensors = flow_map::bent(scope, tensors);
-        let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-        [abstraction.apply(scope.plan, lab, tensors, n_a), tensors]
-    });
+    let Steadied { stages: [flat, tensors], .. } =
+        steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
+            let color = scope.required("color");
+            let tensors = structure_tensor::of_color(scope.plan, color, &options);
+            let tensors = flow_map::bent(scope, tensors);
+            let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
+            [abstraction.apply(scope.plan, lab, tensors, n_a), tensors]
+        });
     let (scale, seed) = (scope.scale(), scope.renewed(scope.int("seed") as u32));
     let sigma_n = scope.float("sigma_n") * width;
     let grains = marks::grains(scope, sigma_n, seed);

@@ -99,13 +99,14 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let options = TensorOptions::at_scale(scope.scale());
     let abstraction = Abstraction::of(scope);
     let n_a = scope.int("n_a");
-    let Steadied { stages: [mut flat, tensors], .. } = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
-        let color = scope.required("color");
-        let tensors = structure_tensor::of_color(scope.plan, color, &options);
-        let tensors = flow_map::bent(scope, tensors);
-        let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-        [abstraction.apply(scope.plan, lab, tensors, n_a), tensors]
-    });
+    let Steadied { stages: [mut flat, tensors], .. } =
+        steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
+            let color = scope.required("color");
+            let tensors = structure_tensor::of_color(scope.plan, color, &options);
+            let tensors = flow_map::bent(scope, tensors);
+            let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
+            [abstraction.apply(scope.plan, lab, tensors, n_a), tensors]
+        });
     flat = tone::curve(scope, flat);
     let saturation = scope.float("saturation");
     let rgb = lab_to_rgb::pass(scope.plan, flat, saturation);
