@@ -112,10 +112,11 @@ impl Node {
     /// Frames before the node's own that it reads by a port to carry marks. Estimated motion does not carry them: that of
     /// so many frames costs too much.
     pub fn mark_window(&self, port: &Port, source: Option<Source>) -> i32 {
+        if port.id != GraphInput::Motion.id() {
+            return 0;
+        }
         match source {
-            Some(Source::Input(GraphInput::Motion)) if port.id == GraphInput::Motion.id() => {
-                self.spec.mark_window(&self.values)
-            }
+            Some(Source::Input(_)) => self.spec.mark_window(&self.values),
             _ => 0,
         }
     }

@@ -116,17 +116,19 @@ pub fn sample_sharp2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>
     let (wx, wy) = (catmull_rom(fx), catmull_rom(fy));
     let inside = columns.simd_ge(1) & columns.simd_lt(w - 2) & rows.simd_ge(1) & rows.simd_lt(h - 2);
     if !inside.all_true() {
+        // In the order of the other way: a pixel must not depend on which others it is computed with.
         let mut sum = [f32x8::splat(simd, 0.0); 2];
-        for j in 0..4 {
-            let mut row = [f32x8::splat(simd, 0.0); 2];
-            for i in 0..4 {
-                let pixel = fetch2(simd, view, columns + (i as i32 - 1), rows + (j as i32 - 1));
+        for i in 0..4 {
+            let at = |j: i32| fetch2(simd, view, columns + (i as i32 - 1), rows + (j - 1));
+            let mut column = at(0).map(|v| v * wy[0]);
+            for j in 1..4 {
+                let pixel = at(j as i32);
                 for c in 0..2 {
-                    row[c] = pixel[c].mul_add(wx[i], row[c]);
+                    column[c] = pixel[c].mul_add(wy[j], column[c]);
                 }
             }
             for c in 0..2 {
-                sum[c] = row[c].mul_add(wy[j], sum[c]);
+                sum[c] += wx[i] * column[c];
             }
         }
         return sum;
