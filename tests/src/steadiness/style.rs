@@ -26,10 +26,28 @@ impl Style {
         Self { graph: run::single(id, params), has_guides: true }
     }
 
-    /// The same with the colour alone, and with motion.
+    /// The same without normals, depth and object numbers, which draw lines of their own.
     #[must_use]
     pub fn without_guides(self) -> Self {
         Self { has_guides: false, ..self }
+    }
+
+    /// The same with motion that is estimated from the pictures.
+    ///
+    /// # Panics
+    /// For nodes that take no motion.
+    #[must_use]
+    pub fn estimating(mut self) -> Self {
+        let mut connect = || -> isophote::Result<()> {
+            let node = self.graph.node(0)?;
+            let flow = self.graph.add("flow", "optical_flow")?;
+            self.graph.connect_input(GraphInput::Color, flow, "color")?;
+            self.graph.connect(flow, node, "motion")
+        };
+        match connect() {
+            Ok(()) => self,
+            Err(e) => panic!("{e}"),
+        }
     }
 
     /// The frames of a shot in order, from 0, that may look at so many frames before and after.
@@ -49,7 +67,7 @@ impl Style {
                     GraphInput::Normal if self.has_guides => &frame.normal,
                     GraphInput::Depth if self.has_guides => &frame.depth,
                     GraphInput::ObjectId if self.has_guides => &frame.object_id,
-                    GraphInput::RestPosition if self.has_guides => &frame.rest,
+                    GraphInput::RestPosition => &frame.rest,
                     _ => return None,
                 };
                 Some(image.clone())
