@@ -98,7 +98,11 @@ pub fn frames_are_asked_for_as_the_values_say(binary: &Binary, effect: Expected)
     if instance.has("renewal") {
         // Marks are carried by the motion of all frames that are known.
         let carrying = [range("Source", 3.0, 7.0), range("Motion", 3.0, 6.0)];
-        assert!(effect.node.id == "ink" || needed(&instance, 5.0) == carrying, "{:?}", needed(&instance, 5.0));
+        assert!(
+            effect.node.id == "ink" || needed(&instance, 5.0) == carrying,
+            "{:?}",
+            needed(&instance, 5.0)
+        );
         instance.set("renewal", 0);
     }
     // Of the nearest neighbours the motion back is compared, too.
