@@ -75,7 +75,7 @@ fn steady_styles_exaggerate_less_along_the_path_of_the_camera() {
     let Some(_) = device("the demo scene") else { return };
     let pairs = measured(&footage::demo().unwrap());
     print(
-        "Warping error over that of the plain frames: demo scene, camera on its path, two frames before known",
+        "Warping error over that of the plain frames: demo scene, camera on its path, the last two frames count",
         &pairs,
     );
     for Pair { name, still, steady, .. } in &pairs {
@@ -94,7 +94,7 @@ fn steady_styles_exaggerate_less_on_a_running_fox() {
         return;
     };
     let pairs = measured(&shot.unwrap());
-    print("Warping error over that of the plain frames: a running fox, two frames before known", &pairs);
+    print("Warping error over that of the plain frames: a running fox, the last two frames count", &pairs);
     for Pair { name, still, steady, .. } in &pairs {
         let [before, after] = [still.steadiness.ratio, steady.steadiness.ratio];
         // What is drawn on the paper stays there while the fox runs.

@@ -92,9 +92,9 @@ fn on_things(
 /// can follow, would make tiles read much of the picture.
 const FARTHEST: f32 = 2.0;
 
-/// The noise that `screen` makes of a seed, carried along the motion of the frames before: two layers of it, half a period apart, each of which
-/// begins anew when the other one alone is seen. The number of the frame decides when, so that frames in any order show the
-/// same.
+/// The noise that `screen` makes of a seed, carried along the motion of the frames before: two layers of it, half a
+/// period apart, each of which begins anew when the other one alone is seen. The number of the frame decides when, so
+/// that frames in any order show the same.
 fn carried(scope: &mut Scope<'_>, screen: impl Fn(&mut Scope<'_>, u32) -> ImageId, marks: &Marks) -> ImageId {
     let common = screen(scope, marks.seed);
     let Some((period, frame)) = scope.renewal() else { return common };
