@@ -191,6 +191,12 @@ pub struct IsophoteRequest {
     pub origin_y: f64,
     /// Number of the frame; noise that the parameter `hold` lets last for so many frames is drawn anew by it.
     pub frame: i64,
+    /// Height of a picture at which parameters in pixels are meant: 1080 gives the same picture the same look at any size.
+    /// At least 1/64 of the picture's own height. 0: they are pixels of the full-size picture.
+    pub reference_height: u32,
+    /// Height of the canonical picture, in full-size pixels, which the reference is compared with: of the display window
+    /// where this is a data window. 0: the height of this picture.
+    pub canonical_height: u32,
 }
 
 /// Pixels of the host's, to be read. The library never keeps the pointer.

@@ -1,5 +1,5 @@
 // Soft quantization of the lightness of a Lab image (section 4.6): bins continue below 0 and above 100.
-// Cost: one to five loads, a tanh and a square root.
+// Cost: one to six loads, a tanh and two square roots.
 #import gpu/grid
 
 struct Params {
@@ -19,11 +19,17 @@ struct Params {
     lambda_phi: f32,
     /// Greatest steepness, per unit of L.
     omega_phi: f32,
+    /// 1 / gradient of the surroundings, in L per pixel, from which on there are steps; 0: everywhere.
+    inverse_least: f32,
+    /// Narrowest border of two levels, pixels; used where steps are bounded by gradients.
+    crispest: f32,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+// The mean gradient of L around each pixel.
+@group(0) @binding(3) var surroundings: texture_2d<f32>;
+@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
 
 // Lightness of a neighbour; where it is not covered, that of the pixel itself.
 fn neighbour(p: vec2i, own: f32) -> f32 {
@@ -39,15 +45,25 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let p = pixel(id);
     let v = fetch(source, 0u, p);
     var phi = params.phi;
-    if params.adaptive != 0u {
+    var stepped = 1.0;
+    if params.adaptive != 0u || params.inverse_least > 0.0 {
         let gx = 0.5 * (neighbour(p + vec2i(1, 0), v.x) - neighbour(p - vec2i(1, 0), v.x));
         let gy = 0.5 * (neighbour(p + vec2i(0, 1), v.x) - neighbour(p - vec2i(0, 1), v.x));
         let g = sqrt(gx * gx + gy * gy);
-        let t = clamp((g - params.lambda_delta) * params.inverse_delta, 0.0, 1.0);
-        phi = params.lambda_phi + t * (params.omega_phi - params.lambda_phi);
+        if params.adaptive != 0u {
+            let t = clamp((g - params.lambda_delta) * params.inverse_delta, 0.0, 1.0);
+            phi = params.lambda_phi + t * (params.omega_phi - params.lambda_phi);
+        }
+        if params.inverse_least > 0.0 {
+            phi = min(phi, 2.0 / max(params.crispest * g, 1e-6));
+            let around = fetch(surroundings, 1u, p).xy;
+            let t = clamp((sqrt(dot(around, around)) * params.inverse_least - 0.6) * 1.25, 0.0, 1.0);
+            stepped = t * t * (3.0 - 2.0 * t);
+        }
     }
     let middle = (floor(v.x * params.inverse_width) + 0.5) * params.width;
     let x = clamp(phi * (v.x - middle), -20.0, 20.0);
-    let lightness = middle + 0.5 * params.width * tanh(x);
+    let level = middle + 0.5 * params.width * tanh(x);
+    let lightness = v.x + stepped * (level - v.x);
     textureStore(target_image, vec2i(id.xy), vec4f(lightness, v.yzw));
 }

@@ -20,8 +20,6 @@ struct Params {
     epsilon: f32,
     /// Steepness of the ramp, per unit of L.
     phi: f32,
-    /// Nonzero: the result is not the edge image but the response that has it (tanh).
-    undecided: u32,
 }
 
 @group(0) @binding(1) var<uniform> params: Params;
@@ -31,9 +29,6 @@ struct Params {
 // To the nearest other frame, pixels.
 @group(0) @binding(4) var motion: texture_2d<f32>;
 @group(0) @binding(5) var target_image: texture_storage_2d<r32float, write>;
-
-// Least edge that is turned back into a response: a thousandth of paper is none.
-const LEAST_EDGE = 1e-3;
 
 // The response beside one; that one itself where nothing is covered.
 fn beside(p: vec2i, own: f32) -> f32 {
@@ -79,16 +74,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var result = sum / 16.0;
     if share <= 0.0 {
         result = edge_threshold(own, params.threshold, params.epsilon, params.phi);
-    }
-    if params.undecided != 0u {
-        let edge = max(result, LEAST_EDGE);
-        let solution = params.epsilon + 0.5 * log(edge / (2.0 - edge)) / params.phi;
-        if result >= 1.0 {
-            result = max(own, params.epsilon);
-        } else {
-            result = select(solution, min(own, solution), result <= LEAST_EDGE);
-        }
-        result = select(result, own, share <= 0.0);
     }
     textureStore(target_image, vec2i(id.xy), vec4f(result));
 }

@@ -380,6 +380,8 @@ fn request(api: &IsophoteApi, width: u32, height: u32) -> IsophoteRequest {
         origin_x: 0.0,
         origin_y: 0.0,
         frame: 0,
+        reference_height: 0,
+        canonical_height: 0,
     };
     // SAFETY: the place is writable.
     assert_eq!(unsafe { (api.request_init)(width, height, &raw mut request) }, ISOPHOTE_OK);

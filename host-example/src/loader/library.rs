@@ -65,6 +65,8 @@ impl Library {
             origin_x: 0.0,
             origin_y: 0.0,
             frame: 0,
+            reference_height: 0,
+            canonical_height: 0,
         };
         // SAFETY: `request` may be written during the call.
         let status = unsafe { (self.api.request_init)(size.0, size.1, &raw mut request) };

@@ -187,7 +187,7 @@ fn result(
         spec: node.spec,
         values: &node.values,
         inputs,
-        scale: request.scale,
+        scale: request.length_scale(),
         origin: request.origin.map(|o| (o * f64::from(request.scale)) as f32),
         frame,
         max_motion: request.max_motion * request.scale,

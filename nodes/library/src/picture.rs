@@ -13,6 +13,12 @@ pub struct Request {
     pub height: u32,
     /// Rendered size over full size: 0.5 for a half-size proxy. Scales every parameter in pixels.
     pub scale: f32,
+    /// Height of the picture, in pixels, at which parameters in pixels are meant: pictures of other sizes scale them, so
+    /// that the same picture gives the same look at any size. 0: pixels are those of the full-size picture.
+    pub reference_height: u32,
+    /// Height of the canonical picture, in full-size pixels, which the reference is compared with; 0: it is that of this
+    /// picture. A bounding box, or a data window within a display window, is not the canonical picture.
+    pub canonical_height: u32,
     /// Where the left top corner of the picture stands in the canonical one, in full-size pixels: noise, paper, hatching
     /// and grids are anchored there, so that a bounding box that moves shows the same marks.
     pub origin: [f64; 2],
@@ -97,6 +103,8 @@ impl Request {
             width,
             height,
             scale: 1.0,
+            reference_height: 0,
+            canonical_height: 0,
             origin: [0.0; 2],
             frame: 0,
             space: ColourSpace::Srgb,
@@ -115,6 +123,19 @@ impl Request {
             frames: Frames::NONE,
             max_motion: MAX_MOTION,
         }
+    }
+
+    /// Pixels of the rendered picture that a pixel of a parameter comes to.
+    pub fn length_scale(&self) -> f32 {
+        if self.reference_height == 0 {
+            return self.scale;
+        }
+        let canonical = match self.canonical_height {
+            // The height of the full-size picture times the scale.
+            0 => self.height as f32,
+            height => height as f32 * self.scale,
+        };
+        canonical / self.reference_height as f32
     }
 
     pub(crate) fn encoding(&self) -> Encoding {

@@ -78,6 +78,9 @@ impl Planned {
     }
 }
 
+/// Most pixels that a pixel of a parameter may come to.
+const MOST_SCALE: f32 = 64.0;
+
 /// Farther from 0, places of pixels are not exact in single precision.
 const MOST_ORIGIN: f64 = 1_000_000.0;
 
@@ -88,10 +91,16 @@ fn check(graph: &Graph, request: &Request) -> Result<()> {
             "the graph has no output; name the node whose result leaves it".into(),
         ));
     }
-    if !(request.scale.is_finite() && request.scale > 0.0 && request.scale <= 64.0) {
+    if !(request.scale.is_finite() && request.scale > 0.0 && request.scale <= MOST_SCALE) {
         return Err(Error::Value(format!(
-            "the render scale must be above 0 and at most 64, not {}",
+            "the render scale must be above 0 and at most {MOST_SCALE}, not {}",
             request.scale
+        )));
+    }
+    if request.length_scale() > MOST_SCALE {
+        return Err(Error::Value(format!(
+            "the reference height of {} is less than 1/{MOST_SCALE} of the picture's; lengths would grow too long",
+            request.reference_height
         )));
     }
     if !request.origin.iter().all(|o| o.abs() <= MOST_ORIGIN) {

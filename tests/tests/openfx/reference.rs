@@ -162,6 +162,8 @@ impl Through<'_> {
             origin_x: 0.0,
             origin_y: 0.0,
             frame: 0,
+            reference_height: 0,
+            canonical_height: 0,
         };
         // SAFETY: text with a closing zero, images of the sizes they name, and places for the answers.
         unsafe {

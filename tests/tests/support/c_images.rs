@@ -57,6 +57,8 @@ impl<'a> Run<'a> {
             origin_x: 0.0,
             origin_y: 0.0,
             frame: 0,
+            reference_height: 0,
+            canonical_height: 0,
         };
         let id = CString::new(node).unwrap();
         // SAFETY: the text ends with a zero, the places are writable.

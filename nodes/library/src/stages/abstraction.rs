@@ -9,7 +9,7 @@ use crate::stages::{ADVANCED, LOOK};
 use isophote_engine::{ImageId, PlanBuilder};
 
 pub(crate) const DETAIL: Param = Param::float("detail", "Detail", 0.5, [0.0, 1.0]).group(LOOK).doc(
-    "How much survives the abstraction: scales `sigma_r` from 4 to 1/4 times and `sigma_d` from 2 to 1/2.",
+    "How much survives the abstraction: scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2.",
 );
 pub(crate) const ABSTRACTION: Param =
     Param::choice("abstraction", "Abstraction", Filter::Oriented.selected()).group(ADVANCED).doc(
@@ -102,7 +102,7 @@ impl Abstraction {
 /// Factors on (`sigma_d`, `sigma_r`) for `detail` 0..=1, 1 at the default.
 pub(crate) fn detail_factors(detail: f32) -> [f32; 2] {
     let exponent = 2.0 * (DETAIL.default_float() - detail);
-    [2f32.powf(exponent), 4f32.powf(exponent)]
+    [2f32.powf(exponent), 3f32.powf(exponent)]
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ pub(crate) const LINE_AMOUNT: Param = Param::float("line_amount", "Line amount",
     .doc("How many lines: 0 draws none, 1 draws them at faint edges too; scales 1 - `tau`.");
 pub(crate) const SUPPRESS_SMALL: Param =
     Param::float("suppress_small", "Suppress small", 0.0, [0.0, 1.0]).group(LOOK).doc(
-        "Drops short and weak lines: lengthens `sigma_m` up to three times and lowers `epsilon` by up to 0.75.",
+        "Drops short and weak lines: lengthens `sigma_m` by up to 0.8 of it and lowers `epsilon` by up to 0.75.",
     );
 pub(crate) const N_E: Param = Param::int("n_e", "Iterations for lines", 1, [0, 16])
     .slider(0.0, 8.0)
@@ -52,7 +52,7 @@ impl Lines {
         let base = base(1.0 - self.tau, amount);
         Self {
             sigma_e: self.sigma_e * width_factor(width),
-            sigma_m: self.sigma_m * length_factor(width) * (1.0 + 2.0 * suppress),
+            sigma_m: self.sigma_m * length_factor(width) * (1.0 + 0.8 * suppress),
             tau: 1.0 - base,
             epsilon: self.epsilon - 0.75 * suppress,
             phi: self.phi,

@@ -47,12 +47,14 @@ pub(crate) fn clouds(scope: &mut Scope<'_>, layers: [Layer; 2]) -> Option<ImageI
     Some(gaussian_blur::pass(scope.plan, clouds, BORDER * scale, Class::Colour))
 }
 
+/// Standard deviation of the heights of [`hatching`].
+pub(crate) const HATCHING_DEVIATION: f32 = 0.28;
+
 /// Heights of pencil strokes in two directions, 0..=1, as fine as those of the screen; none where they are to stay there.
 pub(crate) fn hatching(scope: &mut Scope<'_>, directions: [[f32; 2]; 2], seed: u32) -> Option<[ImageId; 2]> {
-    // Standard deviations across and along strokes, pixels of the full-size picture, and of the heights.
+    // Standard deviations across and along strokes, pixels of the full-size picture.
     const ACROSS: f32 = 0.45;
     const ALONG: f32 = 13.0;
-    const DEVIATION: f32 = 0.28;
     if !belong_to_things(scope) {
         return None;
     }
@@ -61,7 +63,7 @@ pub(crate) fn hatching(scope: &mut Scope<'_>, directions: [[f32; 2]; 2], seed: u
     let Marks { deviation, .. } = Marks::of_smoothed_noise(ACROSS * scale, scale, seed);
     // A Gaussian along lines leaves this share of the deviation.
     let left = (ACROSS / ALONG.hypot(ACROSS)).sqrt();
-    let gain = DEVIATION / (deviation * left);
+    let gain = HATCHING_DEVIATION / (deviation * left);
     let step = (1.5 * scale).max(1.0);
     Some(directions.map(|direction| {
         let lines = Lines { direction, step, sigma: ALONG * scale, gain };

@@ -10,9 +10,9 @@ pub(crate) const POSTERIZE: Param = Param::int("posterize", "Posterize", BINS.de
     .group(LOOK)
     .doc("Levels of lightness between black and white; 0 leaves tones continuous.");
 pub(crate) const POSTERIZE_SMOOTH: Param =
-    Param::float("posterize_smooth", "Posterize smooth", 0.25, [0.0, 1.0])
+    Param::float("posterize_smooth", "Posterize smooth", 0.0, [0.0, 1.0])
         .group(LOOK)
-        .doc("Softness of the steps between levels, relative to their height: scales `phi_q` from 2 to 1/8.");
+        .doc("Softness of the steps between levels, relative to their height: divides `phi_q` by 1 to 20.");
 
 /// Steepness of the steps between `levels` as the parameters of a style say.
 pub(crate) fn steepness(scope: &Scope<'_>, levels: i32) -> f32 {
@@ -23,22 +23,22 @@ pub(crate) fn steepness(scope: &Scope<'_>, levels: i32) -> f32 {
 /// their shape relative to their height, which is that of the default levels by default.
 fn softened(phi_q: f32, levels: i32, softness: f32) -> f32 {
     let height = levels as f32 / POSTERIZE.default_int() as f32;
-    phi_q * height * 16f32.powf(POSTERIZE_SMOOTH.default_float() - softness)
+    phi_q * height / (1.0 + 19.0 * softness)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::nodes::colour::quantize_luminance::PHI_Q;
 
-    const THESIS: f32 = PHI_Q.default_float();
+    /// The `phi_q` of styles.
+    const CRISP: f32 = 8.0;
     const LEVELS: i32 = POSTERIZE.default_int();
 
     #[test]
     fn neutral_controls_change_nothing_and_softness_softens() {
-        assert_eq!(softened(THESIS, LEVELS, POSTERIZE_SMOOTH.default_float()), THESIS);
+        assert_eq!(softened(CRISP, LEVELS, POSTERIZE_SMOOTH.default_float()), CRISP);
         for i in 0..100 {
-            let [a, b] = [i, i + 1].map(|i| softened(THESIS, LEVELS, i as f32 / 100.0));
+            let [a, b] = [i, i + 1].map(|i| softened(CRISP, LEVELS, i as f32 / 100.0));
             assert!(a > b);
         }
     }
@@ -47,7 +47,7 @@ mod tests {
     fn steps_of_any_number_of_levels_end_where_their_bins_do() {
         for levels in [2, 8, 64] {
             let half_bin = 50.0 / levels as f32;
-            assert!((softened(THESIS, levels, 1.0) * half_bin).tanh() > 0.98);
+            assert!((softened(CRISP, levels, 1.0) * half_bin).tanh() > 0.98);
         }
     }
 }

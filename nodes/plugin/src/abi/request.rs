@@ -39,6 +39,8 @@ pub fn request(host: &IsophoteRequest) -> Outcome<Request> {
         scale: host.scale,
         origin: [host.origin_x, host.origin_y],
         frame: host.frame,
+        reference_height: host.reference_height,
+        canonical_height: host.canonical_height,
         ..Request::new(host.width, host.height)
     })
 }
@@ -99,6 +101,8 @@ pub(super) unsafe extern "C" fn init(
         origin_x: 0.0,
         origin_y: 0.0,
         frame: 0,
+        reference_height: 0,
+        canonical_height: 0,
     };
     // SAFETY: the host promised that the place may be written.
     guard::call(|| unsafe { args::put(request, value, "the place for the request") }, |_| {})

@@ -1,7 +1,10 @@
 //! Soft quantization of the lightness of a Lab image (§ 4.6). Bins continue below 0 and above 100, so
 //! that highlights beyond white are flattened like everything else.
 //!
-//! Cost: one to five reads, a tanh and a square root per pixel.
+//! Steps may be left out where the surroundings have no gradient to speak of: there borders of levels would wander,
+//! since nothing in the picture says where they are.
+//!
+//! Cost: one to six reads, a tanh and two square roots per pixel.
 
 pub use crate::kernels::shaders::quantize_luminance::Params;
 use crate::kernels::simd::pixels::{Block, for_blocks, write};
@@ -39,6 +42,30 @@ pub enum Steepness {
 /// Quantizes the L of a Lab image softly to `bins` levels per 100 units:
 /// q + d/2 tanh(phi (L - q)), q the middle of the bin of L, d = 100 / `bins`.
 pub fn pass(plan: &mut PlanBuilder, lab: ImageId, bins: i32, steepness: Steepness) -> ImageId {
+    pass_where(plan, lab, bins, steepness, None)
+}
+
+/// Where the steps of [`pass_where`] are.
+#[derive(Clone, Copy, Debug)]
+pub struct Steps {
+    /// The mean gradient of L around each pixel, in the first two of four channels, units of L per pixel.
+    pub surroundings: ImageId,
+    /// Its length from which on levels step, units of L per pixel; tones below are continuous.
+    pub least: f32,
+}
+
+/// Narrowest border of two levels, pixels: a narrower one would be jagged.
+const CRISPEST: f32 = 1.5;
+
+/// The same, with steps only where the surroundings have something that their borders can follow; borders are then at
+/// least 1.5 pixels wide.
+pub fn pass_where(
+    plan: &mut PlanBuilder,
+    lab: ImageId,
+    bins: i32,
+    steepness: Steepness,
+    steps: Option<Steps>,
+) -> ImageId {
     let bins = bins.max(1) as f32;
     let mut params = Params {
         width: 100.0 / bins,
@@ -49,6 +76,8 @@ pub fn pass(plan: &mut PlanBuilder, lab: ImageId, bins: i32, steepness: Steepnes
         inverse_delta: 0.0,
         lambda_phi: 0.0,
         omega_phi: 0.0,
+        inverse_least: steps.map_or(0.0, |steps| 1.0 / steps.least.max(1e-6)),
+        crispest: CRISPEST,
     };
     match steepness {
         Steepness::Fixed(phi) => params.phi = phi,
@@ -59,7 +88,8 @@ pub fn pass(plan: &mut PlanBuilder, lab: ImageId, bins: i32, steepness: Steepnes
             [params.lambda_phi, params.omega_phi] = phi;
         }
     }
-    plan.pass(&KERNEL, &[lab], &params, Class::Colour, Support::Pixels(1))
+    let surroundings = steps.map_or(lab, |steps| steps.surroundings);
+    plan.pass(&KERNEL, &[lab, surroundings], &params, Class::Colour, Support::Pixels(1))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
@@ -68,20 +98,30 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     dispatch!(pass.level, simd => for_blocks::<4>(band, #[inline(always)] |block, target| {
         let [l, a, b, alpha] = block.read(simd, view);
         let mut phi = f32x8::splat(simd, params.phi);
-        if params.adaptive != 0 {
+        let mut stepped = f32x8::splat(simd, 1.0);
+        if params.adaptive != 0 || params.inverse_least > 0.0 {
             let (right, left) =
                 (neighbours(simd, view, &block, 1, 0, l), neighbours(simd, view, &block, -1, 0, l));
             let (below, above) =
                 (neighbours(simd, view, &block, 0, 1, l), neighbours(simd, view, &block, 0, -1, l));
             let (gx, gy) = ((right - left) * 0.5, (below - above) * 0.5);
             let g = (gx * gx + gy * gy).sqrt();
-            let t = ((g - params.lambda_delta) * params.inverse_delta).max(0.0).min(1.0);
-            phi = t * (params.omega_phi - params.lambda_phi) + params.lambda_phi;
+            if params.adaptive != 0 {
+                let t = ((g - params.lambda_delta) * params.inverse_delta).max(0.0).min(1.0);
+                phi = t * (params.omega_phi - params.lambda_phi) + params.lambda_phi;
+            }
+            if params.inverse_least > 0.0 {
+                phi = phi.min(f32x8::splat(simd, 2.0) / (g * params.crispest).max(1e-6));
+                let [x, y, ..]: [f32x8<_>; 4] = block.read(simd, &pass.inputs[1]);
+                let length = (x * x + y * y).sqrt();
+                let t = ((length * params.inverse_least - 0.6) * 1.25).max(0.0).min(1.0);
+                stepped = t * t * (t * -2.0 + 3.0);
+            }
         }
         let middle = ((l * params.inverse_width).floor() + 0.5) * params.width;
         let x = (phi * (l - middle)).max(-20.0).min(20.0);
-        let lightness = middle + x.tanh() * (0.5 * params.width);
-        write([lightness, a, b, alpha], target);
+        let level = middle + x.tanh() * (0.5 * params.width);
+        write([l + stepped * (level - l), a, b, alpha], target);
     }));
 }
 

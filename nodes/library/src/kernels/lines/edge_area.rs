@@ -5,10 +5,9 @@
 //! Cost: nine reads and up to 16 exponentials per pixel; few where neither line nor paper is in doubt.
 
 pub use crate::kernels::shaders::edge_area::Params;
-use crate::kernels::shared::edge_threshold::{NOT_COVERED, Threshold, Xdog, edge_threshold};
+use crate::kernels::shared::edge_threshold::{NOT_COVERED, Xdog, edge_threshold};
 use crate::kernels::simd::pixels::{BLOCK, Block, read, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(edge_area {
@@ -28,8 +27,6 @@ const WIDTH: f32 = 2.0;
 const SHARPENING: f32 = 1.0;
 /// Motion from which on lines count as moving, pixels per frame.
 const MOVING: f32 = 0.25;
-/// Least edge that is turned back into a response: a thousandth of paper is none.
-const LEAST_EDGE: f32 = 1e-3;
 
 /// How much frames count.
 #[derive(Clone, Copy, Debug)]
@@ -44,21 +41,6 @@ pub struct Shares {
 
 /// The edge image of a response, in units of L, thresholded as `xdog` says.
 pub fn pass(plan: &mut PlanBuilder, response: ImageId, shares: Shares, xdog: &Xdog) -> ImageId {
-    planned(plan, response, shares, xdog, 0)
-}
-
-/// The response whose edge image, by the tanh (4.8) of `xdog`, is that of [`pass`].
-pub fn pass_undecided(plan: &mut PlanBuilder, response: ImageId, shares: Shares, xdog: &Xdog) -> ImageId {
-    planned(plan, response, shares, &Xdog { threshold: Threshold::Tanh, ..*xdog }, 1)
-}
-
-fn planned(
-    plan: &mut PlanBuilder,
-    response: ImageId,
-    shares: Shares,
-    xdog: &Xdog,
-    undecided: u32,
-) -> ImageId {
     let params = Params {
         width: WIDTH,
         sharpening: SHARPENING,
@@ -67,7 +49,6 @@ fn planned(
         threshold: xdog.threshold as u32,
         epsilon: xdog.epsilon,
         phi: xdog.phi,
-        undecided,
     };
     plan.pass(&KERNEL, &[response, shares.image, shares.motion], &params, Class::Field, Support::Pixels(1))
 }
@@ -142,16 +123,7 @@ fn area<S: Simd>(params: &Params, rows: [[f32x8<S>; 3]; 3], share: f32x8<S>) -> 
         }
     }
     let alone = edge_threshold(own, params.threshold, params.epsilon, params.phi);
-    let edge = share.simd_gt(0.0).select(sum * (1.0 / 16.0), alone);
-    if params.undecided == 0 {
-        return edge;
-    }
-    let bounded = edge.max(LEAST_EDGE);
-    let two = f32x8::splat(own.simd, 2.0);
-    let solution = (bounded / (two - bounded)).ln() * (0.5 / params.phi) + params.epsilon;
-    let solution = edge.simd_le(LEAST_EDGE).select(own.min(solution), solution);
-    let found = edge.simd_ge(1.0).select(own.max(params.epsilon), solution);
-    share.simd_gt(0.0).select(found, own)
+    share.simd_gt(0.0).select(sum * (1.0 / 16.0), alone)
 }
 
 /// Four samples across a pixel, from the values before, at and behind it; `reach` is the outermost.

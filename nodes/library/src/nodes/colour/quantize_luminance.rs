@@ -1,10 +1,11 @@
 //! Soft quantization of lightness (§ 4.6).
 
-use crate::kernels::colour::quantize_luminance::{self, Steepness};
-use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
+use crate::kernels::colour::quantize_luminance::{self, Steepness, Steps};
+use crate::kernels::colour::{lab_to_rgb, rgb_to_lab, tone_gradient};
+use crate::kernels::smoothing::gaussian_blur;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
-use isophote_engine::ImageId;
+use isophote_engine::{Class, ImageId};
 
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
@@ -26,6 +27,7 @@ pub static NODE: NodeSpec = NodeSpec {
         OMEGA_DELTA,
         LAMBDA_PHI,
         OMEGA_PHI,
+        LEAST_GRADIENT,
     ],
     build,
 };
@@ -48,8 +50,14 @@ pub(crate) const OMEGA_PHI: Param = Param::float("omega_phi", "Omega phi", 1.6, 
     .slider(0.2, 10.0)
     .doc("Steepness at edges, per unit of L.");
 
+pub(crate) const LEAST_GRADIENT: Param =
+    Param::float("least_gradient", "Least gradient", 0.0, [0.0, 1.0]).slider(0.0, 0.5).structural().doc(
+        "Gradient of L, per pixel, that the surroundings have where levels step; where they have less, tones are \
+         continuous, since borders of levels would follow nothing there. 0 steps everywhere.",
+    );
+
 /// Steepness as `adaptive` and its parameters say; gradients count per pixel of the full-size picture.
-pub(crate) fn steepness(scope: &Scope<'_>, phi_q: f32) -> Steepness {
+fn steepness(scope: &Scope<'_>, phi_q: f32) -> Steepness {
     if !scope.bool("adaptive") {
         return Steepness::Fixed(phi_q);
     }
@@ -58,10 +66,28 @@ pub(crate) fn steepness(scope: &Scope<'_>, phi_q: f32) -> Steepness {
     Steepness::Adaptive { delta, phi: [scope.float("lambda_phi"), scope.float("omega_phi")] }
 }
 
+/// Longest gradient that counts, L per pixel: edges must not bring steps into all that lies beside them.
+const LONGEST: f32 = 1.0;
+
+/// Standard deviation of the surroundings whose gradient counts, pixels of the full-size picture.
+const SURROUNDINGS: f32 = 5.0;
+
+/// The flattened Lab image, with steps where `least_gradient` says.
+pub(crate) fn flattened(scope: &mut Scope<'_>, lab: ImageId, bins: i32, phi_q: f32) -> ImageId {
+    let (steepness, scale) = (steepness(scope, phi_q), scope.scale());
+    let least = scope.float("least_gradient");
+    let steps = (least > 0.0).then(|| {
+        let gradient = tone_gradient::pass(scope.plan, lab, LONGEST / scale);
+        let surroundings = gaussian_blur::pass(scope.plan, gradient, SURROUNDINGS * scale, Class::Field);
+        Steps { surroundings, least: least / scale }
+    });
+    quantize_luminance::pass_where(scope.plan, lab, bins, steepness, steps)
+}
+
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = scope.required("color");
-    let (bins, steepness) = (scope.int("bins"), steepness(scope, scope.float("phi_q")));
+    let bins = scope.int("bins");
     let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-    let flat = quantize_luminance::pass(scope.plan, lab, bins, steepness);
+    let flat = flattened(scope, lab, bins, scope.float("phi_q"));
     lab_to_rgb::pass(scope.plan, flat, 1.0)
 }

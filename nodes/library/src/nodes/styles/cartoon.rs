@@ -2,7 +2,7 @@
 
 use crate::choice::choice;
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
-use crate::kernels::colour::{lab_to_rgb, lightness, quantize_luminance, rgb_to_lab};
+use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::nodes::colour::quantize_luminance as quantization;
 use crate::nodes::colour::warp_sharpen;
@@ -15,6 +15,7 @@ use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::{ADVANCED, LOOK, lines, quantization as levels, tone};
+use crate::value::Value;
 use isophote_engine::ImageId;
 
 /// The node.
@@ -24,7 +25,8 @@ pub static NODE: NodeSpec = NodeSpec {
     group: "styles",
     doc: "Flattened colours and coherent black lines: bilateral filtering in CIELAB along the local \
           structure, lines by the flow-based difference of Gaussians, soft quantization of lightness. \
-          Defaults are those of Fig. 4.8. Normals, depth and object ids, where given, draw lines of \
+          Defaults are those of Fig. 4.8, but for `tau`, and for steps of lightness, which are crisp and lie \
+          only where tones change. Normals, depth and object ids, where given, draw lines of \
           their own.",
     section: "4.6",
     inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID],
@@ -53,12 +55,14 @@ pub static NODE: NodeSpec = NodeSpec {
         dog::SIGMA_E.group(ADVANCED),
         dog::K.group(ADVANCED),
         flow_dog::SIGMA_M.group(ADVANCED),
-        dog::TAU.group(ADVANCED),
+        // Less inhibition than Fig. 4.8 has: dark textures do not fill with lines.
+        dog::TAU.with_default(Value::Float(0.975)).group(ADVANCED),
         dog::EPSILON.group(ADVANCED),
         dog::PHI.group(ADVANCED),
         lines::LINE_ITERATIONS,
         lines::GUIDE_WEIGHT,
-        quantization::PHI_Q.group(ADVANCED),
+        // Crisper steps than those of Fig. 4.8, where there is something that they follow.
+        quantization::PHI_Q.with_default(Value::Float(8.0)).group(ADVANCED),
         Param::bool("adaptive", "Adaptive quantization", false)
             .group(ADVANCED)
             .doc("Steepness from the gradient of L instead of `phi_q`, for steady sequences."),
@@ -66,6 +70,7 @@ pub static NODE: NodeSpec = NodeSpec {
         quantization::OMEGA_DELTA.group(ADVANCED),
         quantization::LAMBDA_PHI.group(ADVANCED),
         quantization::OMEGA_PHI.group(ADVANCED),
+        quantization::LEAST_GRADIENT.with_default(Value::Float(0.2)).group(ADVANCED),
         WARP,
         SIGMA_A,
         STEADINESS,
@@ -138,8 +143,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     flat = tone::curve(scope, flat);
     let bins = scope.int("posterize");
     if bins > 0 {
-        let steepness = quantization::steepness(scope, levels::steepness(scope, bins));
-        flat = quantize_luminance::pass(scope.plan, flat, bins, steepness);
+        flat = quantization::flattened(scope, flat, bins, levels::steepness(scope, bins));
     }
     let (saturation, line) = (scope.float("saturation"), scope.color("line_color"));
     let mut rgb = lab_to_rgb::pass(scope.plan, flat, saturation);

@@ -1,14 +1,17 @@
 //! Ink and its relatives: the extended difference of Gaussians as drawing (§ 4.3, 4.4, Figure 4.1).
 
 use crate::choice::choice;
-use crate::kernels::colour::ink_sheet::{self, HATCHING, Sheet};
+use crate::kernels::colour::composite_lines::{self, Params as Composite};
+use crate::kernels::colour::ink_sheet::{self, Drawing, Sheet};
+use crate::kernels::colour::tone_marks::{self, HATCHING, Inputs, Tones};
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
-use crate::kernels::lines::edge_area;
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::shared::stream::Integrator;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
 use crate::kernels::structure::contrast;
+use crate::kernels::structure::solid_noise::Marks;
+use crate::kernels::structure::tensor_display::least_significant;
 use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::nodes::lines::flow_dog::{self, FlowDog, Kernel};
 use crate::nodes::smoothing::line_integral_convolution as lic;
@@ -29,7 +32,8 @@ pub static NODE: NodeSpec = NodeSpec {
     group: "styles",
     doc: "Drawings on paper: pencil, ink, charcoal, woodcut or pastel. All are one filter, the flow-based \
           difference of Gaussians in its sharpening form (4.10), thresholded more or less softly (4.8), with \
-          hatching, carved strokes and the paper's grain, at five sets of values; `advanced` trims them. \
+          hatching, strokes along the form and the paper's grain, at five sets of values; `advanced` trims \
+          them. What is light and empty stays bare paper. \
           Normals, depth and object ids, where given, draw lines of their own.",
     section: "4.3-4.5",
     inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID, ports::REST_POSITION],
@@ -43,7 +47,7 @@ pub static NODE: NodeSpec = NodeSpec {
             "How many lines: 0 leaves masses and shading alone, 1 draws faint edges too; scales p (4.10).",
         ),
         lines::SUPPRESS_SMALL.doc(
-            "Drops short and weak lines: lengthens the smoothing along lines up to three times and halves p.",
+            "Drops short and weak lines: lengthens the smoothing along lines by up to 0.8 of it and halves p.",
         ),
         TONE,
         GRAIN,
@@ -68,8 +72,9 @@ pub static NODE: NodeSpec = NodeSpec {
             "Added to epsilon, the lightness from which on there is no ink (4.8).",
         ),
         factor("steepness", "Steepness", "Factor on phi, the steepness of the ramp from paper to ink (4.8)."),
-        factor("carving", "Carving", "Factor on the strokes that follow the flow."),
-        factor("shading", "Shading", "Factor on the shading that is hatched or rubbed in."),
+        factor("carving", "Carving", "Factor on how much of the hatching follows the form; the rest is regular."),
+        factor("shading", "Shading", "Factor on how fast tones grow dark, which are hatched or rubbed in."),
+        factor("hatch_spacing", "Hatch spacing", "Factor on the distance of hatches."),
         factor("grain_size", "Grain size", "Factor on the size of the paper's grains."),
         shift("own_color", "Own colour", 1.0, "Added to how much of the picture's own colours shows."),
         factor("edge_smoothing", "Edge smoothing", "Factor on the final smoothing along the edges."),
@@ -89,10 +94,10 @@ pub static NODE: NodeSpec = NodeSpec {
 
 const TONE: Param = Param::float("tone", "Tone", 0.5, [0.0, 1.0])
     .group(LOOK)
-    .doc("How much is dark: 0 leaves lines alone, 1 fills what is not bright; shifts epsilon and scales the shading.");
+    .doc("How much is dark: 0 leaves lines alone, 1 fills what is not bright; shifts epsilon and scales the shading from 0 to 4 times.");
 const GRAIN: Param = Param::float("grain", "Grain", 0.5, [0.0, 1.0])
     .group(LOOK)
-    .doc("How much the paper's grain shows, from not at all to twice the style's own.");
+    .doc("How much the paper shows in lines and tones, from not at all to twice the style's own.");
 
 const fn factor(id: &'static str, label: &'static str, doc: &'static str) -> Param {
     Param::float(id, label, 1.0, [0.0, 4.0]).slider(0.0, 2.0).group(ADVANCED).doc(doc)
@@ -111,51 +116,59 @@ struct Preset {
     sigma_m: f32,
     /// Weight of the difference of Gaussians (4.10).
     p: f32,
-    /// Lightness from which on there is no ink, units of L.
+    /// Lightness from which on there are no masses, units of L.
     epsilon: f32,
     /// Steepness of the ramp, per unit of L.
     phi: f32,
-    /// Width and length of strokes along the flow; no length: there are none.
+    /// Lightness from which on the paper is bare and that from which down all is dark, units of L.
+    tones: [f32; 2],
+    /// Share of the tones that is rubbed in.
+    rubbed: f32,
+    /// How much of the hatching follows the form.
+    form: f32,
+    /// Distance of hatches.
+    spacing: f32,
+    /// Width and length of strokes along the form.
     stroke: [f32; 2],
-    /// Units of L by which they raise and lower the response.
-    carving: f32,
     /// How much of the grain follows them instead of the paper.
     follow: f32,
     /// Iterations of the bilateral filter beside `n_e`.
     flattening: i32,
-    shading: f32,
-    hatching: f32,
     grain: f32,
     grain_size: f32,
+    /// How far lines break on the grain.
+    dryness: f32,
     /// How much of the picture's own colours shows.
     colour: f32,
     /// Opacity of what is drawn with.
     opacity: f32,
-    /// Standard deviation of the final smoothing along the edges; 0: there is none.
+    /// Standard deviation of the smoothing of lines along the edges.
     sigma_a: f32,
     texture: f32,
 }
 
-/// Two tones with soft edges; the others are described by how they differ.
+/// Black, white and hatching; the others are described by how they differ.
 const INK: Preset = Preset {
     rho: 2.0,
     sigma_e: 1.2,
     sigma_m: 4.0,
     p: 20.0,
-    epsilon: 38.0,
-    phi: 0.06,
-    stroke: [1.0, 0.0],
-    carving: 0.0,
+    epsilon: 26.0,
+    phi: 0.12,
+    tones: [67.0, 14.0],
+    rubbed: 0.0,
+    form: 0.85,
+    spacing: 5.5,
+    stroke: [1.1, 9.0],
     follow: 0.0,
     flattening: 0,
-    shading: 0.0,
-    hatching: 0.0,
     grain: 0.0,
     grain_size: 2.5,
+    dryness: 0.2,
     colour: 0.0,
     opacity: 1.0,
-    sigma_a: 1.5,
-    texture: 0.04,
+    sigma_a: 1.2,
+    texture: 0.012,
 };
 
 /// Thin grey lines, tones hatched in two directions, a fine grain.
@@ -163,15 +176,18 @@ const PENCIL: Preset = Preset {
     sigma_e: 0.9,
     sigma_m: 3.0,
     p: 18.0,
-    epsilon: 30.0,
-    phi: 0.03,
-    shading: 0.95,
-    hatching: 1.0,
-    grain: 0.7,
+    epsilon: 20.0,
+    phi: 0.05,
+    tones: [99.0, 10.0],
+    form: 0.7,
+    spacing: 4.0,
+    stroke: [0.9, 8.0],
+    grain: 0.45,
     grain_size: 1.6,
-    opacity: 0.8,
-    sigma_a: 0.0,
-    texture: 0.06,
+    dryness: 0.35,
+    opacity: 0.93,
+    sigma_a: 0.8,
+    texture: 0.014,
     ..INK
 };
 
@@ -181,29 +197,35 @@ const CHARCOAL: Preset = Preset {
     sigma_e: 2.2,
     sigma_m: 6.0,
     p: 14.0,
-    epsilon: 45.0,
-    phi: 0.022,
-    stroke: [1.4, 5.0],
+    epsilon: 26.0,
+    phi: 0.03,
+    tones: [99.0, 12.0],
+    rubbed: 0.8,
+    form: 0.8,
+    spacing: 8.0,
+    stroke: [1.4, 6.0],
     follow: 0.25,
-    shading: 1.0,
-    grain: 0.65,
+    grain: 0.42,
     grain_size: 2.4,
+    dryness: 0.5,
     opacity: 0.95,
-    sigma_a: 0.0,
-    texture: 0.08,
+    sigma_a: 1.5,
+    texture: 0.014,
     ..INK
 };
 
-/// Thick lines and masses, carved along the flow.
+/// Thick lines and masses, carved along the form.
 const WOODCUT: Preset = Preset {
     rho: 4.0,
     sigma_e: 1.8,
     sigma_m: 9.0,
     p: 16.0,
-    epsilon: 48.0,
+    epsilon: 30.0,
     phi: 0.15,
-    stroke: [1.6, 12.0],
-    carving: 28.0,
+    tones: [68.0, 20.0],
+    form: 1.0,
+    spacing: 7.0,
+    stroke: [1.7, 13.0],
     sigma_a: 2.0,
     ..INK
 };
@@ -214,18 +236,21 @@ const PASTEL: Preset = Preset {
     sigma_e: 1.6,
     sigma_m: 5.0,
     p: 12.0,
-    epsilon: 20.0,
-    phi: 0.02,
+    epsilon: 10.0,
+    phi: 0.025,
+    tones: [30.0, -25.0],
+    rubbed: 1.0,
+    form: 0.0,
     stroke: [1.4, 7.0],
     follow: 0.5,
     flattening: 2,
-    shading: 0.2,
-    grain: 1.0,
+    grain: 0.6,
     grain_size: 2.4,
-    colour: 0.95,
-    opacity: 0.7,
-    sigma_a: 0.0,
-    texture: 0.08,
+    dryness: 0.4,
+    colour: 0.96,
+    opacity: 0.75,
+    sigma_a: 1.5,
+    texture: 0.014,
     ..INK
 };
 
@@ -234,11 +259,11 @@ choice! {
     enum Style {
         /// Thin grey lines, tones hatched in two directions, a fine grain.
         Pencil ("pencil", "Pencil"),
-        /// Two tones with soft edges.
+        /// Black, white and hatching.
         Ink ("ink", "Ink"),
         /// Wide soft lines and rubbed tones that catch on coarse paper.
         Charcoal ("charcoal", "Charcoal"),
-        /// Thick lines and masses, carved along the flow.
+        /// Thick lines and masses, carved along the form.
         Woodcut ("woodcut", "Woodcut"),
         /// The picture's colours in chalk, with soft dark lines.
         Pastel ("pastel", "Pastel"),
@@ -278,14 +303,17 @@ impl Preset {
         const NEUTRAL: f32 = lines::LINE_AMOUNT.default_float();
         let share = look.amount / NEUTRAL;
         let amount = if look.amount <= NEUTRAL { share } else { 4f32.powf(share - 1.0) };
+        let grain = look.grain / GRAIN.default_float();
         Self {
             rho: self.rho * length_factor(look.width),
             sigma_e: self.sigma_e * width_factor(look.width),
-            sigma_m: self.sigma_m * length_factor(look.width) * (1.0 + 2.0 * look.suppress),
+            sigma_m: self.sigma_m * length_factor(look.width) * (1.0 + 0.8 * look.suppress),
             p: self.p * amount * (1.0 - 0.5 * look.suppress),
-            epsilon: self.epsilon + 80.0 * (look.tone - TONE.default_float()),
-            shading: self.shading * (look.tone / TONE.default_float()),
-            grain: self.grain * (look.grain / GRAIN.default_float()),
+            epsilon: self.epsilon + 60.0 * (look.tone - TONE.default_float()),
+            tones: toned(self.tones, look.tone),
+            grain: self.grain * grain,
+            dryness: (self.dryness * grain * grain).min(1.0),
+            texture: self.texture * grain,
             ..self
         }
     }
@@ -298,8 +326,9 @@ impl Preset {
             p: self.p * scope.float("sharpening"),
             epsilon: self.epsilon + scope.float("threshold_shift"),
             phi: self.phi * scope.float("steepness"),
-            carving: self.carving * scope.float("carving"),
-            shading: self.shading * scope.float("shading"),
+            form: (self.form * scope.float("carving")).min(1.0),
+            tones: shaded(self.tones, scope.float("shading")),
+            spacing: self.spacing * scope.float("hatch_spacing"),
             grain_size: self.grain_size * scope.float("grain_size"),
             colour: self.colour + scope.float("own_color"),
             sigma_a: self.sigma_a * scope.float("edge_smoothing"),
@@ -308,16 +337,45 @@ impl Preset {
     }
 }
 
-/// Strokes along the flow, 0..=1 about middle grey: noise, `width` pixels wide and smoothed along the stream
-/// lines by `length`, lengths in pixels of the full-size picture.
-fn strokes(scope: &mut Scope<'_>, tensor: ImageId, [width, length]: [f32; 2]) -> ImageId {
+/// The range of tones with `factor` times the density below the same light.
+fn shaded([light, solid]: [f32; 2], factor: f32) -> [f32; 2] {
+    [light, light - (light - solid) / factor.max(1e-3)]
+}
+
+/// The range of tones for `tone` 0..=1: nothing is dark at 0, all that is not bright at 1.
+fn toned(tones: [f32; 2], tone: f32) -> [f32; 2] {
+    const NEUTRAL: f32 = TONE.default_float();
+    let share = tone / NEUTRAL;
+    shaded(tones, if tone <= NEUTRAL { share } else { 4f32.powf(share - 1.0) })
+}
+
+/// Strokes along the flow, 0..=1 about middle grey, and the standard deviation of their values: noise, `width` pixels
+/// wide and smoothed along the stream lines by `length`, lengths in pixels of the full-size picture.
+fn strokes(scope: &mut Scope<'_>, tensor: ImageId, [width, length]: [f32; 2]) -> (ImageId, f32) {
     let (scale, seed) = (scope.scale(), scope.renewed(19));
     let soft = marks::grains(scope, width * scale, seed);
+    let Marks { deviation, .. } = Marks::of_smoothed_noise(width * scale, scale, seed);
     // Noise is about as fine as pixels: none may be left out.
     let options = Lic { sigma: length * scale, adapt: Adapt::None, ..lic::options() };
     let long = line_integral_convolution::pass(scope.plan, soft, tensor, &options);
-    // Averages of noise are faint: a Gaussian of this width leaves 1 / (2 sqrt(pi) width) of its deviation.
-    contrast::pass(scope.plan, long, 7.0 * width)
+    // A Gaussian along lines leaves this share of the deviation.
+    let left = (width / length.hypot(width)).sqrt();
+    const DEVIATION: f32 = 0.22;
+    (contrast::pass(scope.plan, long, DEVIATION / (deviation * left)), DEVIATION)
+}
+
+/// Black lines on white, smoothed along the edges.
+fn lines_on_white(
+    scope: &mut Scope<'_>,
+    color: ImageId,
+    edges: ImageId,
+    tensor: ImageId,
+    sigma: f32,
+) -> ImageId {
+    let black_on_white = Composite { line: [0.0, 0.0, 0.0, 1.0], paper: [1.0; 4] };
+    let drawn = composite_lines::pass(scope.plan, color, edges, &black_on_white);
+    let options = Lic { sigma, ..lic::options() };
+    line_integral_convolution::pass(scope.plan, drawn, tensor, &options)
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
@@ -337,7 +395,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         sigma_e: drawing.sigma_e * scale,
         k: scope.float("k"),
         sigma_m: drawing.sigma_m * scale,
-        xdog: Xdog::sharpen(drawing.p, 0.0, 1.0, Threshold::None),
+        xdog: Xdog::sharpen(drawing.p, drawing.epsilon, drawing.phi, Threshold::Tanh),
         iterations: 1,
         stepping: Stepping::Along(Integrator::TwoStep),
         kernel: Kernel::Separable,
@@ -354,41 +412,44 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
             let lightness = lightness::pass_lab(scope.plan, smooth);
             [smooth, tensor, flow.response(scope.plan, lightness, tensor, &guides)]
         });
-    let mut response = flow.decided(scope.plan, response, tensor, None);
-    if let Some(shares) = shares {
-        let xdog = Xdog { epsilon: drawing.epsilon, phi: drawing.phi, ..flow.xdog };
-        response = edge_area::pass_undecided(scope.plan, response, shares, &xdog);
-    }
+    let edges = flow.decided(scope.plan, response, tensor, shares);
     let tinted = lab_to_rgb::pass(scope.plan, smooth, scope.float("saturation"));
-    // Which passes there are is a matter of the style alone: the trims only change numbers.
-    let carved = if own.stroke[1] > 0.0 { strokes(scope, tensor, own.stroke) } else { tinted };
+    let lines = lines_on_white(scope, tinted, edges, tensor, drawing.sigma_a * scale);
+    let (strokes, deviation) = strokes(scope, tensor, own.stroke);
+    let tones = Tones {
+        light: drawing.tones[0],
+        solid: drawing.tones[1],
+        rubbed: drawing.rubbed,
+        form: drawing.form,
+        spacing: drawing.spacing,
+        // Of the tensor's window: structure that noise makes in one of a hundred places (2.154, 2.158).
+        significant: least_significant(0.01, 4.0 * std::f32::consts::PI * drawing.rho * drawing.rho),
+        stroke: own.stroke.map(|length| length * scale),
+        deviation,
+        given_deviation: marks::HATCHING_DEVIATION,
+        scale,
+        origin: scope.origin(),
+    };
+    let hatching =
+        if own.rubbed < 1.0 { marks::hatching(scope, HATCHING, scope.renewed(301)) } else { None };
+    let toned = lightness::pass_lab(scope.plan, smooth);
+    let marks = tone_marks::pass(scope.plan, &Inputs { tones: toned, tensor, strokes, hatching }, &tones);
     let mut line = scope.color("line_color");
     line[3] *= drawing.opacity;
     let sheet = Sheet {
         line,
         paper: scope.color("paper_color"),
-        epsilon: drawing.epsilon,
-        phi: drawing.phi,
-        carving: drawing.carving,
         follow: drawing.follow,
-        shading: drawing.shading,
-        hatching: drawing.hatching,
         grain: drawing.grain,
         grain_size: drawing.grain_size,
+        dryness: drawing.dryness,
         scale,
         origin: scope.origin(),
         colour: drawing.colour,
         texture: drawing.texture,
         cover: scope.bool("cover"),
     };
-    let hatching =
-        if own.hatching > 0.0 { marks::hatching(scope, HATCHING, scope.renewed(301)) } else { None };
-    let drawn = ink_sheet::pass(scope.plan, response, tinted, carved, hatching, &sheet);
-    if own.sigma_a > 0.0 {
-        let options = Lic { sigma: drawing.sigma_a * scale, ..lic::options() };
-        return line_integral_convolution::pass(scope.plan, drawn, tensor, &options);
-    }
-    drawn
+    ink_sheet::pass(scope.plan, &Drawing { lines, color: tinted, strokes, marks }, &sheet)
 }
 
 #[cfg(test)]

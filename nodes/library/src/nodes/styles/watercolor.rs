@@ -33,7 +33,7 @@ pub static NODE: NodeSpec = NodeSpec {
             .group(LOOK)
             .doc("Radius of the smallest patches of colour that are painted."),
         abstraction::DETAIL,
-        Param::float("pigment", "Pigment", 0.85, [0.0, 1.0])
+        Param::float("pigment", "Pigment", 0.95, [0.0, 1.0])
             .slider(0.3, 1.0)
             .group(LOOK)
             .doc("How much pigment is in the water: 1 keeps the colours, less shows the paper, 0 leaves it white."),
@@ -89,8 +89,8 @@ pub static NODE: NodeSpec = NodeSpec {
 
 /// Densities of the look controls at 1.
 const MOST_EDGES: f32 = 16.0;
-const MOST_CLOUDS: f32 = 0.8;
-const MOST_GRAIN: f32 = 0.6;
+const MOST_CLOUDS: f32 = 0.3;
+const MOST_GRAIN: f32 = 0.3;
 
 /// Shortest waves against how far they reach: below 5 outlines could fold.
 const SHORTEST_WAVE: f32 = 8.0;

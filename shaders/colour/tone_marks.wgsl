@@ -1,0 +1,137 @@
+// Tones as an artist's marks: regular hatching, crossed where it is dark, and strokes along the form where the
+// structure is significant. What is lighter than marks can say is rubbed in smoothly.
+// Cost: five loads, 8 hashes, an eigenvector and about 100 multiply-adds.
+#import gpu/grid
+#import shared/tensor
+#import shared/value_noise
+
+struct Params {
+    /// Where the picture stands in the canonical one, pixels.
+    origin: vec2f,
+    /// Pixels of the full-size picture per pixel.
+    inverse_scale: f32,
+    /// Distance of hatches, pixels of the full-size picture.
+    spacing: f32,
+    /// L from which on nothing is dark.
+    light: f32,
+    /// Density per unit of L below `light`.
+    slope: f32,
+    /// L from which on tones are smooth.
+    smooth_from: f32,
+    /// 1 / the units of L over which marks stand out.
+    inverse_fade: f32,
+    /// How much of the tones is rubbed in, 0..=1.
+    rubbed: f32,
+    /// How much of them follows the form where that is significant, 0..=1.
+    form: f32,
+    /// Anisotropy from which on structure is significant.
+    significant: f32,
+    /// 1 / standard deviation of the strokes' values.
+    stroke_gain: f32,
+    /// Width of strokes, pixels.
+    stroke_width: f32,
+    /// 1 / length of strokes, pixels.
+    inverse_length: f32,
+    /// How soft the edges of strokes are, in values of 0..=1.
+    softness: f32,
+    /// 1 / standard deviation of given hatching; 0: hatching stays on the screen.
+    given_gain: f32,
+}
+
+@group(0) @binding(1) var<uniform> params: Params;
+// (L alpha, alpha).
+@group(0) @binding(2) var tones: texture_2d<f32>;
+@group(0) @binding(3) var tensor: texture_2d<f32>;
+@group(0) @binding(4) var strokes: texture_2d<f32>;
+@group(0) @binding(5) var first_hatching: texture_2d<f32>;
+@group(0) @binding(6) var second_hatching: texture_2d<f32>;
+@group(0) @binding(7) var target_image: texture_storage_2d<rg32float, write>;
+
+const HALF: vec2f = vec2f(0.5);
+
+// A ramp from 0 to 1.
+fn rise(t: f32) -> f32 {
+    let c = clamp(t, 0.0, 1.0);
+    return c * c * (3.0 - 2.0 * c);
+}
+
+// How much of a pixel a band covers, `r` pixels from whose middle it lies and whose half width is `s`.
+fn covered(r: f32, s: f32) -> f32 {
+    return clamp(s - r + 0.5, 0.0, 1.0) - clamp(-s - r + 0.5, 0.0, 1.0);
+}
+
+// Hatches of mean density `d` along `along`, as if drawn by hand.
+fn hatch(q: vec2f, along: vec2f, d: f32, seed: u32) -> f32 {
+    let p = dot(q, along);
+    var across = q.y * along.x - q.x * along.y;
+    across += params.spacing * 0.45 * (value_noise(vec2f(p, across) * (0.06 / params.spacing), seed) - 0.5);
+    let phase = across / params.spacing;
+    let line = floor(phase);
+    // The pressure of the hand, stroke by stroke.
+    let pressure = value_noise(vec2f(p * (0.11 / params.spacing), line * 7.0), seed + 57u) - 0.5;
+    let density = clamp(d + 0.7 * d * (1.0 - d) * pressure, 0.0, 1.0);
+    let r = abs(phase - line - 0.5) * params.spacing;
+    let half_spacing = 0.5 * params.spacing;
+    if density <= 0.5 {
+        return covered(r, density * half_spacing);
+    }
+    return 1.0 - covered(half_spacing - r, (1.0 - density) * half_spacing);
+}
+
+// Strokes of mean density `d` where noise is higher than most, `z` in standard deviations.
+fn stroke(z: f32, d: f32) -> f32 {
+    let h = 0.5 + 0.5 * tanh(clamp(0.8 * z, -8.0, 8.0));
+    let wide = d * (1.0 + params.softness) - 0.5 * params.softness;
+    return clamp((wide - h) / params.softness + 0.5, 0.0, 1.0);
+}
+
+// By how much fewer grains a stroke averages beside the picture's border, where its line is cut: the root of the
+// variance that it gains.
+fn border_gain(p: vec2f, t: vec2f) -> f32 {
+    let size = vec2f(grid.full);
+    let near = min(p, size - p);
+    let cut = near * params.inverse_length / max(abs(t), vec2f(1e-3));
+    let along = exp(-cut * (0.92 + 0.28 * cut));
+    let d = near / params.stroke_width;
+    let beside = exp(-d * (0.92 + 0.28 * d));
+    return 1.0 / sqrt((1.0 + along.x) * (1.0 + along.y) * (1.0 + beside.x) * (1.0 + beside.y));
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    let p = pixel(id);
+    let v = fetch(tones, 0u, p).xy;
+    let lightness = select(100.0, v.x / v.y, v.y > 1e-4);
+    let d = clamp((params.light - lightness) * params.slope, 0.0, 1.0);
+    let marked = (1.0 - params.rubbed) * rise((params.smooth_from - lightness) * params.inverse_fade);
+    var density = d;
+    if marked > 0.0 {
+        let t = fetch(tensor, 1u, p);
+        let tangent = tensor_tangent(t);
+        let gradient = sqrt(max(t.x + t.z, 0.0));
+        let form = params.form * rise((tensor_anisotropy(t) - params.significant) * 4.0)
+            * rise((gradient - 0.001) * 250.0);
+        let z = (fetch(strokes, 2u, p).x - 0.5) * params.stroke_gain * border_gain(vec2f(p) + HALF, tangent);
+        // What strokes along the form leave over is hatched.
+        let followed = d * form;
+        let rest = 1.0 - (1.0 - d) / max(1.0 - followed, 1e-6);
+        let first = rest - 0.5 * max(rest - 0.45, 0.0);
+        let second = 1.0 - (1.0 - rest) / max(1.0 - first, 1e-6);
+        var hatches = vec2f(0.0);
+        if params.given_gain > 0.0 {
+            let a = (fetch(first_hatching, 3u, p).x - 0.5) * params.given_gain;
+            let b = (fetch(second_hatching, 4u, p).x - 0.5) * params.given_gain;
+            hatches = vec2f(stroke(a, first), stroke(b, second));
+        } else {
+            let q = (vec2f(p) + HALF + params.origin) * params.inverse_scale;
+            hatches = vec2f(hatch(q, vec2f(0.8, -0.6), first, 301u), hatch(q, vec2f(0.96, 0.28), second, 701u));
+        }
+        let drawn = 1.0 - (1.0 - stroke(z, followed)) * (1.0 - hatches.x) * (1.0 - hatches.y);
+        density = d + marked * (drawn - d);
+    }
+    let grained = rise((params.smooth_from - lightness) * params.inverse_fade);
+    textureStore(target_image, vec2i(id.xy), vec4f(density, grained, 0.0, 0.0));
+}
