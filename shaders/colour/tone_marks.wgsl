@@ -16,6 +16,8 @@ struct Params {
     light: f32,
     /// Density per unit of L below `light`.
     slope: f32,
+    /// By how much middle tones are lighter than in proportion, 0..1.
+    ease: f32,
     /// L from which on tones are smooth.
     smooth_from: f32,
     /// 1 / the units of L over which marks stand out.
@@ -105,14 +107,15 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let p = pixel(id);
     let v = fetch(tones, 0u, p).xy;
     let lightness = select(100.0, v.x / v.y, v.y > 1e-4);
-    let d = clamp((params.light - lightness) * params.slope, 0.0, 1.0);
+    let t = clamp((params.light - lightness) * params.slope, 0.0, 1.0);
+    let d = t * (1.0 - params.ease * (1.0 - t));
     let marked = (1.0 - params.rubbed) * rise((params.smooth_from - lightness) * params.inverse_fade);
     var density = d;
     if marked > 0.0 {
-        let t = fetch(tensor, 1u, p);
-        let tangent = tensor_tangent(t);
-        let gradient = sqrt(max(t.x + t.z, 0.0));
-        let form = params.form * rise((tensor_anisotropy(t) - params.significant) * 4.0)
+        let structure = fetch(tensor, 1u, p);
+        let tangent = tensor_tangent(structure);
+        let gradient = sqrt(max(structure.x + structure.z, 0.0));
+        let form = params.form * rise((tensor_anisotropy(structure) - params.significant) * 4.0)
             * rise((gradient - 0.001) * 250.0);
         let z = (fetch(strokes, 2u, p).x - 0.5) * params.stroke_gain * border_gain(vec2f(p) + HALF, tangent);
         // What strokes along the form leave over is hatched.

@@ -128,6 +128,7 @@ impl Filter {
             if picture.origin.iter().all(|o| o.abs() <= MOST_ORIGIN) {
                 [request.origin_x, request.origin_y] = picture.origin.map(f64::from);
             }
+            request.canonical_height = picture.canonical_height;
             request.frame = own.number.unwrap_or_default();
             let share = 1.0 / count as f32;
             let mut report = |done: f32| progress((at as f32 + done) * share);
@@ -184,7 +185,8 @@ impl Filter {
         space: Space,
     ) -> Result<IsophoteRequest> {
         let size = (color.width(), color.height());
-        let request = self.library.request(size).map_err(|e| e.at(name, "use a smaller picture"))?;
+        let request =
+            self.style.request(&self.library, size).map_err(|e| e.at(name, "use a smaller picture"))?;
         Ok(IsophoteRequest {
             space: match space {
                 Space::Srgb => ISOPHOTE_SPACE_SRGB,
@@ -225,7 +227,7 @@ impl Planner {
             return Ok(bytes);
         }
         let refused = |e: crate::loader::Refusal| e.at(name, "choose another picture or style");
-        let mut request = self.library.request(size).map_err(refused)?;
+        let mut request = self.style.request(&self.library, size).map_err(refused)?;
         request.guides = self.guides.iter().fold(0, |all, guide| all | guide_bit(guide.id()));
         let frames = self.library.frames(&self.style.graph).map_err(refused)?;
         let plan = match frames {

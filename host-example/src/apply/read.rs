@@ -311,7 +311,7 @@ fn picture(path: &Path, mut decoder: impl ImageDecoder, kind: &str) -> Result<So
     };
     let pixels = Pixels::new(width, height, channels, samples)
         .ok_or_else(|| Error::malformed(path, kind, "it does not hold as many pixels as it says"))?;
-    let picture = Picture { pixels, guides: Vec::new(), chromaticities: None, origin: [0; 2] };
+    let picture = Picture { pixels, guides: Vec::new(), chromaticities: None, origin: [0; 2], canonical_height: 0 };
     let state = match picture.pixels.precision() {
         Precision::F16 | Precision::F32 => ImageState::SceneReferred,
         Precision::U8 | Precision::U16 => ImageState::DisplayReferred,

@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::loader::Library;
 use crate::output;
 use crate::pixels::Pixels;
+use crate::stylize::lengths::Lengths;
 use crate::stylize::style::Style;
 
 /// Measures every subject on so many frames that show `picture`, and prints what came out.
@@ -19,7 +20,12 @@ pub fn run(subjects: &[Subject], picture: &Pixels, frames: u32, json: bool) -> R
     let mut results = Vec::with_capacity(subjects.len());
     for subject in subjects {
         let library = Library::open()?;
-        let style = || Style::load(&library, &subject.node, &subject.settings);
+        let style = || {
+            let mut style = Style::load(&library, &subject.node, &subject.settings)?;
+            // As in the other tables.
+            style.lengths = Lengths::Pixels;
+            Ok::<_, Error>(style)
+        };
         let planner = Planner::new(library.clone(), style()?)?;
         let filter = Filter::new(library.clone(), style()?, Backend::Cpu, None, 0)?;
         let result = measure(filter, planner, picture, frames, memory::usual().0)?;

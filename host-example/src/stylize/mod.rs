@@ -5,6 +5,7 @@
 //! is one submission.
 
 pub mod history;
+pub mod lengths;
 pub mod plan_runner;
 pub mod preset;
 pub mod style;
@@ -49,7 +50,7 @@ impl Stylizer {
     /// # Errors
     /// [`crate::error::Error::Input`] when an input that the style needs is open, [`crate::error::Error::Failure`] when the device refuses.
     pub fn new(kernels: &Arc<Kernels>, library: &Library, style: Style, size: (u32, u32)) -> Result<Self> {
-        let request = request(library, size)?;
+        let request = request(library, &style, size)?;
         let past = style.past(library, &request)?;
         let plan = style.plan(library, &request, 0)?;
         let runner = PlanRunner::new(kernels, &plan, past.clone())?;
@@ -260,8 +261,8 @@ impl Style {
 }
 
 /// What the renderer's frames are: linear light, premultiplied, with guides.
-fn request(library: &Library, size: (u32, u32)) -> Result<IsophoteRequest> {
-    let request = library.request(size).map_err(|e| e.at("--size", "choose another size"))?;
+fn request(library: &Library, style: &Style, size: (u32, u32)) -> Result<IsophoteRequest> {
+    let request = style.request(library, size).map_err(|e| e.at("--size", "choose another size"))?;
     Ok(IsophoteRequest {
         space: ISOPHOTE_SPACE_LINEAR,
         guides: ISOPHOTE_GUIDE_NORMAL

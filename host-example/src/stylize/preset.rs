@@ -13,7 +13,8 @@
 //! ```
 //!
 //! `style` is the id of a node, or the path of a graph file relative to the preset; `node.id` then names the
-//! parameter of one node. Keyframes are values by frame: before the first and after the last their values
+//! parameter of one node. `"lengths": "pixels"` makes lengths pixels of the picture instead of those of one 1080
+//! lines high. Keyframes are values by frame: before the first and after the last their values
 //! hold, between two of them numbers and colours change evenly (`linear`) or not at all (`step`), the rest
 //! never does. Whole numbers are rounded.
 
@@ -22,11 +23,12 @@ use std::path::Path;
 
 use serde_json::{Map, Value};
 
+use super::lengths::Lengths;
 use crate::error::{Error, Result};
 use crate::loader::catalogue::{Param, ParamKind};
 
 /// Keys of the file.
-const KEYS: [&str; 2] = ["style", "parameters"];
+const KEYS: [&str; 3] = ["style", "parameters", "lengths"];
 /// The key beside the frames of an animated parameter.
 const BETWEEN: &str = "between";
 
@@ -35,6 +37,8 @@ const BETWEEN: &str = "between";
 pub struct Preset {
     /// The id of a node or the path of a graph file.
     pub style: String,
+    /// What lengths mean, where the file says so.
+    pub lengths: Option<Lengths>,
     /// Parameters in the file's order, by the names that `--set` takes.
     pub params: Vec<(String, Track)>,
 }
@@ -105,6 +109,21 @@ impl Preset {
                 String::new()
             }
         };
+        let lengths = match file.remove("lengths") {
+            None => None,
+            Some(value) => {
+                let known = value.as_str().and_then(Lengths::of);
+                if known.is_none() {
+                    let words = Lengths::ALL.map(Lengths::id).join(" or ");
+                    faults.push(Error::file(
+                        path,
+                        format!("its lengths are {value}"),
+                        format!("write {words}"),
+                    ));
+                }
+                known
+            }
+        };
         let mut params = Vec::new();
         match file.remove("parameters") {
             Some(Value::Object(object)) => {
@@ -116,7 +135,7 @@ impl Preset {
             Some(_) => faults.push(Error::file(path, "its parameters are no object", fix)),
             None => {}
         }
-        Ok((Self { style, params }, faults))
+        Ok((Self { style, lengths, params }, faults))
     }
 
     /// The style as it is to be opened by a program whose folder is another than that of the preset at `path`:
@@ -146,7 +165,10 @@ impl Preset {
             };
             params.insert(name.clone(), value);
         }
-        let file = serde_json::json!({ "style": self.style, "parameters": params });
+        let mut file = serde_json::json!({ "style": self.style, "parameters": params });
+        if let Some(lengths) = self.lengths {
+            file["lengths"] = lengths.id().into();
+        }
         format!("{file:#}\n")
     }
 }

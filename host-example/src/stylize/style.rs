@@ -4,9 +4,11 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::str::FromStr;
 
+use super::lengths::Lengths;
 use super::preset::{self, Animated, Preset, Track};
 use crate::error::{Error, Result};
 use crate::loader::catalogue::{Kind, Node, Param, Port};
+use crate::loader::contract::IsophoteRequest;
 use crate::loader::{Answer, Graph, Library, Refusal};
 use crate::{frames, input, output};
 
@@ -59,6 +61,8 @@ pub struct Style {
     pub graph: Graph,
     /// What it yields.
     pub kind: Kind,
+    /// What its lengths mean.
+    pub lengths: Lengths,
     /// Whether it is one node, index 0, with what feeds it.
     single: bool,
     /// Parameters that change from frame to frame.
@@ -92,6 +96,7 @@ impl Style {
         let mut opened = open(library, name.as_ref())?;
         let preset = opened.preset.take();
         let mut style = Self::of(opened, name.as_ref())?;
+        style.lengths = preset.as_ref().and_then(|preset| preset.lengths).unwrap_or_default();
         let mut faults = Vec::new();
         for (param, track) in preset.iter().flat_map(|p| &p.params) {
             style.follow(param, track, &mut faults);
@@ -125,7 +130,16 @@ impl Style {
         let name = name.to_string_lossy().into_owned();
         let kind =
             graph.output_kind().map_err(|e| e.at(&name, "name the node whose output is the graph's"))?;
-        Ok(Self { name, graph, kind, single, animated: Vec::new() })
+        Ok(Self { name, graph, kind, lengths: Lengths::default(), single, animated: Vec::new() })
+    }
+
+    /// What is asked of the library for pictures of a size, with lengths as the style means them.
+    ///
+    /// # Errors
+    /// As [`Library::request`].
+    pub fn request(&self, library: &Library, size: (u32, u32)) -> Answer<IsophoteRequest> {
+        let reference_height = self.lengths.reference_height();
+        Ok(IsophoteRequest { reference_height, ..library.request(size)? })
     }
 
     /// Warns of keyframes before and after all of `frames`.

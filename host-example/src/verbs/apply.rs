@@ -22,6 +22,7 @@ use crate::frames::{FrameList, Pattern};
 use crate::limits;
 use crate::loader::Library;
 use crate::stop::Stop;
+use super::shared::LengthArgs;
 use crate::stylize::style::{Setting, Style};
 use crate::video;
 
@@ -65,6 +66,9 @@ pub struct ApplyArgs {
     /// Sets a parameter; node.id=value for one node of a graph. May be repeated.
     #[arg(long, value_name = "ID=VALUE")]
     pub set: Vec<Setting>,
+    /// What lengths of parameters are.
+    #[command(flatten)]
+    pub lengths: LengthArgs,
     /// Where the filter runs.
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub backend: Backend,
@@ -269,6 +273,7 @@ impl ApplyArgs {
     /// The style with its parameters.
     fn style_of(&self, library: &Library, name: &Path) -> Result<Style> {
         let mut style = Style::load(library, name, &self.set)?;
+        self.lengths.apply(&mut style);
         if let Some(steadiness) = self.steadiness {
             style.steady(steadiness)?;
         }

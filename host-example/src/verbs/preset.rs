@@ -82,11 +82,11 @@ pub fn run(args: &PresetArgs) -> Result<()> {
 fn save(library: &Library, base: &Path, file: &Path, settings: &[Setting], all: bool) -> Result<()> {
     let style = Style::any(library, base, settings)?;
     let mut preset = if library.find_node(&style.name).is_ok() {
-        Preset { style: style.name.clone(), params: Vec::new() }
+        Preset { style: style.name.clone(), lengths: None, params: Vec::new() }
     } else {
         let text = style::read(base)?;
         if preset::is_graph(&text) {
-            Preset { style: from(file, base)?, params: Vec::new() }
+            Preset { style: from(file, base)?, lengths: None, params: Vec::new() }
         } else {
             let preset = Preset::parse(base, &text)?;
             let inner = preset.style_beside(base);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::shared::{SceneArgs, parse_size};
+use super::shared::{LengthArgs, SceneArgs, parse_size};
 use crate::apply::read;
 use crate::error::{Error, Result};
 use crate::files;
@@ -67,6 +67,8 @@ pub struct RenderArgs {
     /// Sets a parameter of the style; node.id=value for one node of a graph. May be repeated.
     #[arg(long, value_name = "ID=VALUE")]
     set: Vec<Setting>,
+    #[command(flatten)]
+    lengths: LengthArgs,
     /// How steady the style is over time, from 0 to 1: frames before are carried along the scene's motion and averaged
     /// before the style decides anything [default: what the style says].
     #[arg(long, value_name = "S")]
@@ -84,6 +86,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     let style = match &library {
         Some(library) => {
             let mut style = Style::load(library, &args.style, &args.set)?;
+            args.lengths.apply(&mut style);
             args.steadiness.map_or(Ok(()), |steadiness| style.steady(steadiness))?;
             Some((library, style))
         }

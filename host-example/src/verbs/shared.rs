@@ -8,6 +8,8 @@ use crate::error::Result;
 use crate::output;
 use crate::pixels::MOST_PIXELS;
 use crate::scene::Scene;
+use crate::stylize::lengths::Lengths;
+use crate::stylize::style::Style;
 
 /// The scene of `render` and `view`.
 #[derive(Args, Debug)]
@@ -35,6 +37,22 @@ impl SceneArgs {
     /// Name of the file, without its folder.
     pub fn name(&self) -> String {
         self.scene.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+    }
+}
+
+/// What lengths of a style mean.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct LengthArgs {
+    /// What lengths of parameters are: pixels of a picture 1080 lines high, so that pictures of all sizes get the same look,
+    /// or pixels of the picture itself [default: what the preset says, else relative].
+    #[arg(long, value_enum)]
+    pub lengths: Option<Lengths>,
+}
+
+impl LengthArgs {
+    /// Lets lengths mean what was asked for.
+    pub fn apply(self, style: &mut Style) {
+        style.lengths = self.lengths.unwrap_or(style.lengths);
     }
 }
 

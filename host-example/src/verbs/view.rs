@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::shared::{SceneArgs, parse_size};
+use super::shared::{LengthArgs, SceneArgs, parse_size};
 use crate::error::Result;
 use crate::loader::Library;
 use crate::stylize::style::Setting;
@@ -22,6 +22,8 @@ pub struct ViewArgs {
     /// Sets a parameter of the styles that have it. May be repeated.
     #[arg(long, value_name = "ID=VALUE")]
     set: Vec<Setting>,
+    #[command(flatten)]
+    lengths: LengthArgs,
     /// Size of the window in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
     size: (u32, u32),
@@ -46,6 +48,7 @@ pub fn run(args: &ViewArgs) -> Result<()> {
         name: args.scene.name(),
         styles,
         settings: args.set.clone(),
+        lengths: args.lengths.lengths,
         size: args.size,
         frames: args.frames,
     };

@@ -9,6 +9,7 @@ use crate::render::look::Look;
 use crate::scene::Scene;
 use crate::scene::camera::{self, Direction, Orbit, View};
 use crate::scene::pose::Pose;
+use crate::stylize::lengths::Lengths;
 use crate::stylize::style::{Setting, Style};
 
 /// The style that leaves frames as they were rendered.
@@ -28,6 +29,7 @@ pub struct Viewer {
     pub styles: Vec<String>,
     /// Parameters for the styles that have them.
     pub settings: Vec<Setting>,
+    lengths: Option<Lengths>,
     /// Size of the window in pixels.
     pub size: (u32, u32),
     /// Whether time passes.
@@ -66,6 +68,8 @@ pub struct Options {
     pub styles: Vec<String>,
     /// Parameters for the styles that have them.
     pub settings: Vec<Setting>,
+    /// What lengths mean; none: what presets say.
+    pub lengths: Option<Lengths>,
     /// Size of the window in pixels.
     pub size: (u32, u32),
     /// Closes the window after so many frames.
@@ -97,7 +101,7 @@ pub fn usable_styles(library: &Library, wanted: &[String], settings: &[Setting])
 impl Viewer {
     /// A viewer of `scene`, at rest.
     pub fn new(library: Library, scene: Scene, options: Options) -> Self {
-        let Options { name, styles, settings, size, frames } = options;
+        let Options { name, styles, settings, lengths, size, frames } = options;
         let pose = Pose::at_rest(&scene);
         let look = Look::for_scene(&scene, &pose);
         let aspect = size.0 as f32 / size.1 as f32;
@@ -111,6 +115,7 @@ impl Viewer {
             look,
             styles,
             settings,
+            lengths,
             size,
             adapter: String::new(),
             name,
@@ -138,7 +143,8 @@ impl Viewer {
         if style == PLAIN {
             return Ok(None);
         }
-        let style = Style::load(&self.library, style, &[])?;
+        let mut style = Style::load(&self.library, style, &[])?;
+        style.lengths = self.lengths.unwrap_or(style.lengths);
         for setting in &self.settings {
             // That some style takes it was made sure of at the start.
             let _ = style.set(setting);

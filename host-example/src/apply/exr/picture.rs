@@ -23,6 +23,8 @@ pub struct Picture {
     pub chromaticities: Option<[f32; 8]>,
     /// Where its first pixel stands in the display window's coordinates.
     pub origin: [i32; 2],
+    /// Rows of the display window; 0 where the picture is all there is.
+    pub canonical_height: u32,
 }
 
 /// Reads a picture.
@@ -58,6 +60,7 @@ pub fn read(exr: &File, decoded: &[Option<Decoded>], chosen: &Chosen) -> Result<
         guides,
         chromaticities: part.chromaticities,
         origin: [part.window.x, part.window.y],
+        canonical_height: part.display_height.unwrap_or_default(),
     })
 }
 

@@ -35,6 +35,8 @@ pub struct Tones {
     pub light: f32,
     /// Lightness from which down all is dark, below `light`.
     pub solid: f32,
+    /// By how much middle tones are lighter than in proportion, 0..1.
+    pub ease: f32,
     /// How much of the tones is rubbed in everywhere, 0..=1; the rest is hatched where it is not light.
     pub rubbed: f32,
     /// How much of the hatching follows the form where that is significant, 0..=1.
@@ -87,6 +89,7 @@ pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, tones: &Tones) -> ImageId {
         spacing: tones.spacing.max(0.5),
         light: tones.light,
         slope: 1.0 / (tones.light - tones.solid).max(1.0),
+        ease: tones.ease.clamp(0.0, 0.99),
         smooth_from: SMOOTH_FROM,
         inverse_fade: 1.0 / FADE,
         rubbed: tones.rubbed.clamp(0.0, 1.0),
@@ -97,6 +100,7 @@ pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, tones: &Tones) -> ImageId {
         inverse_length: 1.0 / tones.stroke[1].max(0.1),
         softness: SOFTNESS,
         given_gain: if inputs.hatching.is_some() { 1.0 / tones.given_deviation.max(1e-3) } else { 0.0 },
+        padding: Default::default(),
     };
     let images = [inputs.tones, inputs.tensor, inputs.strokes, first, second];
     plan.pass(&KERNEL, &images, &params, Class::Field, Support::Pixels(0))
@@ -110,7 +114,8 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         let covered = alpha.simd_gt(1e-4);
         let one = f32x8::splat(simd, 1.0);
         let lightness = covered.select(sum / covered.select(alpha, one), one * 100.0);
-        let d = ((one * params.light - lightness) * params.slope).max(0.0).min(1.0);
+        let t = ((one * params.light - lightness) * params.slope).max(0.0).min(1.0);
+        let d = t * (one - (one - t) * params.ease);
         let grained = rise((one * params.smooth_from - lightness) * params.inverse_fade);
         let marked = grained * (1.0 - params.rubbed);
         let mut density = d;
@@ -240,6 +245,7 @@ mod tests {
         spacing: 6.0,
         light: 68.0,
         slope: 0.02,
+        ease: 0.0,
         smooth_from: SMOOTH_FROM,
         inverse_fade: 1.0 / FADE,
         rubbed: 0.0,
@@ -250,6 +256,7 @@ mod tests {
         inverse_length: 0.1,
         softness: SOFTNESS,
         given_gain: 0.0,
+        padding: [0; 3],
     };
 
     /// The mean of hatches of density `d` over a large field.

@@ -122,6 +122,8 @@ struct Preset {
     phi: f32,
     /// Lightness from which on the paper is bare and that from which down all is dark, units of L.
     tones: [f32; 2],
+    /// By how much middle tones are lighter than in proportion.
+    ease: f32,
     /// Share of the tones that is rubbed in.
     rubbed: f32,
     /// How much of the hatching follows the form.
@@ -156,6 +158,7 @@ const INK: Preset = Preset {
     epsilon: 26.0,
     phi: 0.12,
     tones: [67.0, 14.0],
+    ease: 0.0,
     rubbed: 0.0,
     form: 0.85,
     spacing: 5.5,
@@ -179,6 +182,8 @@ const PENCIL: Preset = Preset {
     epsilon: 20.0,
     phi: 0.05,
     tones: [99.0, 10.0],
+    ease: 0.45,
+    rubbed: 0.4,
     form: 0.7,
     spacing: 4.0,
     stroke: [0.9, 8.0],
@@ -200,6 +205,7 @@ const CHARCOAL: Preset = Preset {
     epsilon: 26.0,
     phi: 0.03,
     tones: [99.0, 12.0],
+    ease: 0.15,
     rubbed: 0.8,
     form: 0.8,
     spacing: 8.0,
@@ -419,6 +425,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let tones = Tones {
         light: drawing.tones[0],
         solid: drawing.tones[1],
+        ease: drawing.ease,
         rubbed: drawing.rubbed,
         form: drawing.form,
         spacing: drawing.spacing,
