@@ -6,21 +6,22 @@
 //
 // normal: 1 - cos of the angle. depth: 1/z is linear in x and y over any plane, so |z0/z+ + z0/z- - 2|
 // is 0 on planes however slanted, and has no scale. object id: different or not.
-// Cost: up to 3 loads and two exponentials per step, 12 sigma_e steps.
+// Creases and outlines have widths and strengths of their own.
+// Cost: up to 3 loads and four exponentials per step, 12 sigma_e steps.
 #import gpu/grid
 #import shared/tensor
 
 struct Params {
-    /// -1 / (2 sigma^2) of the narrower Gaussian.
-    narrow: f32,
+    /// -1 / (2 sigma^2) of the narrower Gaussian, of creases and of outlines.
+    narrow: vec2f,
     /// The same of the wider Gaussian.
-    wide: f32,
+    wide: vec2f,
     /// Cut-off, in pixels.
-    halfwidth: f32,
-    /// Steps on each side that the cut-off takes at most.
-    steps: i32,
+    halfwidth: vec2f,
     /// Units of response that a unit of the difference takes off.
-    amount: f32,
+    amount: vec2f,
+    /// Steps on each side that the longer cut-off takes at most.
+    steps: i32,
     /// Bit 0: normal, bit 1: depth, bit 2: object id are there.
     guides: u32,
 }
@@ -57,17 +58,17 @@ fn id_at(p: vec2i) -> f32 {
     return select(0.0, v, is_finite(v));
 }
 
-// 0 for equal directions or two missing normals, 1 for perpendicular ones or one that is missing.
-fn normal_break(a: vec3f, b: vec3f) -> f32 {
+// How far two directions differ, 0 for equal and 1 for perpendicular ones, and 1 where one is missing and the other not.
+fn normal_break(a: vec3f, b: vec3f) -> vec2f {
     let aa = dot(a, a);
     let bb = dot(b, b);
     if aa <= 0.0 || bb <= 0.0 {
-        return select(0.0, 1.0, aa > 0.0 || bb > 0.0);
+        return vec2f(0.0, select(0.0, 1.0, aa > 0.0 || bb > 0.0));
     }
     let turn = 1.0 - dot(a, b) / sqrt(aa * bb);
     // Below 10 degrees a pixel it is relief of the surface, from 31 degrees on an edge.
     let t = clamp((turn - 0.015) * 8.0, 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
+    return vec2f(t * t * (3.0 - 2.0 * t), 0.0);
 }
 
 // Nearness relative to the pixel itself, 0..2; two empty places are equally near.
@@ -127,41 +128,46 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (params.guides & 4u) != 0u {
         id_here = id_at(start);
     }
-    // Of normal, depth and object id.
-    var narrow = vec3f(0.0);
-    var wide = vec3f(0.0);
-    var weights = vec2f(0.0);
+    // Of creases, which lie between two normals, and of outlines: borders of normals, depth and object id.
+    var narrow = vec4f(0.0);
+    var wide = vec4f(0.0);
+    var narrow_weights = vec2f(0.0);
+    var wide_weights = vec2f(0.0);
     for (var k = first; k < params.steps; k++) {
         let next = place(p, upright, k + 1, slope);
-        var found = vec3f(0.0);
+        var found = vec4f(0.0);
         if (params.guides & 1u) != 0u {
             let normal_next = normal_at(next);
-            found.x = normal_break(normal_here, normal_next);
+            let broken = normal_break(normal_here, normal_next);
+            found.x = broken.x;
+            found.y = broken.y;
             normal_here = normal_next;
         }
         if (params.guides & 2u) != 0u {
             let after = depth_at(place(p, upright, k + 2, slope));
             let bend_next = depth_bend(depth_here, depth_next, after);
-            found.y = depth_break(bend_here, bend_next);
+            found.z = depth_break(bend_here, bend_next);
             depth_here = depth_next;
             depth_next = after;
             bend_here = bend_next;
         }
         if (params.guides & 4u) != 0u {
             let id_next = id_at(next);
-            found.z = select(0.0, 1.0, id_next != id_here);
+            found.w = select(0.0, 1.0, id_next != id_here);
             id_here = id_next;
         }
         let d = (f32(k) + 0.5) * ds;
-        if abs(d) <= params.halfwidth {
-            let w = vec2f(exp(params.narrow * d * d), exp(params.wide * d * d));
-            narrow += w.x * found;
-            wide += w.y * found;
-            weights += w;
-        }
+        let near = abs(vec2f(d)) <= params.halfwidth;
+        let n = select(vec2f(0.0), exp(params.narrow * d * d), near);
+        let w = select(vec2f(0.0), exp(params.wide * d * d), near);
+        narrow += n.xyyy * found;
+        wide += w.xyyy * found;
+        narrow_weights += n;
+        wide_weights += w;
     }
-    let ridge = max(narrow / weights.x - wide / weights.y, vec3f(0.0));
-    let strength = params.amount * max(max(ridge.x, ridge.y), ridge.z);
+    let ridge = max(narrow / narrow_weights.xyyy - wide / wide_weights.xyyy, vec4f(0.0));
+    let outline = max(max(ridge.y, ridge.z), ridge.w);
+    let strength = max(params.amount.x * ridge.x, params.amount.y * outline);
     let v = fetch(response, 0u, p).xy;
     textureStore(target_image, vec2i(id.xy), vec4f(v.x - strength * v.y, v.y, 0.0, 0.0));
 }

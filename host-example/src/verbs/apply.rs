@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::shared::LengthArgs;
 use crate::apply::backend::Backend;
 use crate::apply::dry_run::DryRun;
 use crate::apply::exr::{Convention, Guide, GuideChoice, Selection};
@@ -22,7 +23,6 @@ use crate::frames::{FrameList, Pattern};
 use crate::limits;
 use crate::loader::Library;
 use crate::stop::Stop;
-use super::shared::LengthArgs;
 use crate::stylize::style::{Setting, Style};
 use crate::video;
 

@@ -15,6 +15,17 @@ pub(crate) const LINE_WIDTH: Param = Param::float("line_width", "Line width", 2.
 pub(crate) const LINE_AMOUNT: Param = Param::float("line_amount", "Line amount", 0.5, [0.0, 1.0])
     .group(LOOK)
     .doc("How many lines: 0 draws none, 1 draws them at faint edges too; scales 1 - `tau`.");
+pub(crate) const OUTLINE_WIDTH: Param = Param::float("outline_width", "Outline width", 1.0, [0.0, 8.0])
+    .slider(0.0, 3.0)
+    .group(LOOK)
+    .doc("Width of lines around objects against that of the others, where depth, object ids or normals are given; 0 draws none.");
+pub(crate) const CREASE_WIDTH: Param = Param::float("crease_width", "Crease width", 1.0, [0.0, 8.0])
+    .slider(0.0, 3.0)
+    .group(LOOK)
+    .doc("Width of lines where a surface folds against that of the others, where normals are given; 0 draws none.");
+pub(crate) const TEXTURE_LINES: Param = Param::float("texture_lines", "Texture lines", 1.0, [0.0, 1.0])
+    .group(LOOK)
+    .doc("How many of the lines that the picture's own edges draw: 0 leaves outlines and creases alone.");
 pub(crate) const SUPPRESS_SMALL: Param =
     Param::float("suppress_small", "Suppress small", 0.0, [0.0, 1.0]).group(LOOK).doc(
         "Drops short and weak lines: lengthens `sigma_m` by up to 0.8 of it and lowers `epsilon` by up to 0.75.",
@@ -84,7 +95,14 @@ pub(crate) fn flow_dog(scope: &Scope<'_>, guide_weight: f32) -> FlowDog {
         stepping: Stepping::Along(Integrator::TwoStep),
         kernel: Kernel::Separable,
         guide_weight,
+        texture: scope.float(TEXTURE_LINES.id),
+        widths: guide_widths(scope),
     }
+}
+
+/// Widths of creases and of outlines against those of the picture's own lines.
+pub(crate) fn guide_widths(scope: &Scope<'_>) -> [f32; 2] {
+    [scope.float(CREASE_WIDTH.id), scope.float(OUTLINE_WIDTH.id)]
 }
 
 /// Factor on the scale of edges for lines `width` pixels of the full picture wide.

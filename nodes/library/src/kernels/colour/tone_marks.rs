@@ -128,13 +128,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 
 /// Whether there is ink on the paper, for marks that cover the share `d` of it.
 #[inline(always)]
-fn drawn<S: Simd>(
-    simd: S,
-    pass: &CpuPass<'_>,
-    params: &Params,
-    block: &Block,
-    d: f32x8<S>,
-) -> f32x8<S> {
+fn drawn<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: &Block, d: f32x8<S>) -> f32x8<S> {
     let one = f32x8::splat(simd, 1.0);
     let least = one * 1e-6;
     let [e, f, g, _]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[1]);
@@ -158,7 +152,10 @@ fn drawn<S: Simd>(
         [(a, first), (b, second)].map(|(v, d)| stroke((v - 0.5) * params.given_gain, d, params))
     } else {
         let q = [0, 1].map(|i| (place[i] + params.origin[i]) * params.inverse_scale);
-        [hatch(simd, q, HATCHING[0], (first, 301), params), hatch(simd, q, HATCHING[1], (second, 701), params)]
+        [
+            hatch(simd, q, HATCHING[0], (first, 301), params),
+            hatch(simd, q, HATCHING[1], (second, 701), params),
+        ]
     };
     one - (one - stroke(z, followed, params)) * (one - hatches[0]) * (one - hatches[1])
 }

@@ -8,7 +8,10 @@
 //! applied to geometry. 1/z is linear in x and y over any plane, so z0/z+ + z0/z- - 2 is 0 on planes
 //! however slanted, and has no scale.
 //!
-//! Cost: per step (12 sigma_e of them) up to three reads and two exponentials.
+//! Creases, which lie between two normals, and outlines, borders of normals, depth and object ids, have widths and strengths
+//! of their own.
+//!
+//! Cost: per step (12 sigma_e of them) up to three reads and two exponentials; four where the widths differ.
 
 use crate::kernels::lines::flow_dog_gradient::Across;
 pub use crate::kernels::shaders::guide_lines::Params;
@@ -39,14 +42,18 @@ const AMOUNT: f32 = 34.0;
 const NARROW: f32 = 1.2;
 const WIDE: f32 = 3.0;
 
+/// Narrowest Gaussian, pixels: of a narrower one no tap but the two next to the pixel would have any weight. Lines that
+/// are to be narrower are fainter instead.
+const NARROWEST: f32 = 0.4;
+
 /// Cut-off in standard deviations of the wider Gaussian.
 const PRECISION: f32 = 2.0;
 
 /// How guides draw lines.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Standard deviation of the narrower Gaussian across lines, pixels.
-    pub sigma: f32,
+    /// Standard deviation of the narrower Gaussian across lines of creases and of outlines, pixels; 0 draws none of them.
+    pub sigmas: [f32; 2],
     /// Strength of the lines.
     pub weight: f32,
     /// Weight of the difference of Gaussians in the response, tau or p.
@@ -63,18 +70,18 @@ pub fn pass(
     guides: [Option<ImageId>; 3],
     options: &Options,
 ) -> ImageId {
-    let Options { sigma, weight, edge } = *options;
-    // Narrower than this, no tap but the two next to the pixel would have any weight.
-    let sigma = sigma.clamp(0.4, 100.0);
-    let falloff = |factor: f32| -0.5 / (factor * sigma * factor * sigma);
-    let halfwidth = PRECISION * WIDE * sigma;
-    let steps = (halfwidth + 0.5) as i32;
+    let Options { sigmas, weight, edge } = *options;
+    let amount = sigmas.map(|sigma| AMOUNT * weight * edge * (sigma / NARROWEST).clamp(0.0, 1.0));
+    let sigmas = sigmas.map(|sigma| sigma.clamp(NARROWEST, 100.0));
+    let falloff = |factor: f32| sigmas.map(|sigma| -0.5 / (factor * sigma * factor * sigma));
+    let halfwidth = sigmas.map(|sigma| PRECISION * WIDE * sigma);
+    let steps = (halfwidth[0].max(halfwidth[1]) + 0.5) as i32;
     let params = Params {
         narrow: falloff(NARROW),
         wide: falloff(WIDE),
         halfwidth,
+        amount,
         steps,
-        amount: AMOUNT * weight * edge,
         guides: (0..3).map(|i| u32::from(guides[i].is_some()) << i).sum(),
     };
     // A guide that is not there is not read; any image may stand in for it.
@@ -97,16 +104,16 @@ fn breaks<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
         #[inline(always)]
         |block, target| {
             let line = Across::new(simd, &block, block.read(simd, field));
-            let ridge = ridge(simd, [normal, depth, object_id], params, &line);
+            let strength = strength(simd, [normal, depth, object_id], params, &line);
             let [u, alpha] = block.read(simd, response);
-            write([u - ridge * params.amount * alpha, alpha], target);
+            write([u - strength * alpha, alpha], target);
         },
     );
 }
 
-/// By how much the breaks of any guide are stronger near eight pixels than around them.
+/// What breaks of any guide that are stronger near eight pixels than around them take off the response.
 #[inline(always)]
-fn ridge<S: Simd>(
+fn strength<S: Simd>(
     simd: S,
     [normal, depth, object_id]: [&View<'_>; 3],
     params: &Params,
@@ -124,43 +131,79 @@ fn ridge<S: Simd>(
         depth_next = depths(simd, depth, line.nearest(first + 1));
         bend_here = depth_bend(depths(simd, depth, line.nearest(first - 1)), depth_here, depth_next);
     }
-    let (mut narrow, mut wide) = ([zero; 3], [zero; 3]);
-    let (mut narrow_weights, mut wide_weights) = (zero, zero);
+    let mut sums = [GuideSums::new(simd), GuideSums::new(simd)];
+    let is_uniform = params.halfwidth[0] == params.halfwidth[1];
     for k in first..params.steps {
         let next = line.nearest(k + 1);
-        let mut found = [zero; 3];
+        let mut found = [zero; 4];
         if has(1) {
             let normal_next = normals(simd, normal, next);
-            found[0] = normal_break(normal_here, normal_next);
+            [found[0], found[1]] = normal_break(normal_here, normal_next);
             normal_here = normal_next;
         }
         if has(2) {
             let after = depths(simd, depth, line.nearest(k + 2));
             let bend_next = depth_bend(depth_here, depth_next, after);
-            found[1] = ramp((bend_here.min(bend_next) - 0.02) * 10.0);
+            found[2] = ramp((bend_here.min(bend_next) - 0.02) * 10.0);
             (depth_here, depth_next, bend_here) = (depth_next, after, bend_next);
         }
         if has(4) {
             let id_next = ids(simd, object_id, next);
-            found[2] = id_next.simd_eq(id_here).select(zero, one);
+            found[3] = id_next.simd_eq(id_here).select(zero, one);
             id_here = id_next;
         }
         let d = line.step * (k as f32 + 0.5);
-        let near = d.abs().simd_le(params.halfwidth);
-        let n = near.select((d * params.narrow * d).exp(), zero);
-        let w = near.select((d * params.wide * d).exp(), zero);
+        let weights = weights(d, params, 0);
+        let others = if is_uniform { weights } else { self::weights(d, params, 1) };
+        sums[0].add([found[0], zero, zero], weights);
+        sums[1].add([found[1], found[2], found[3]], others);
+    }
+    let [creases, outlines] = sums.map(GuideSums::ridge);
+    (creases * params.amount[0]).max(outlines * params.amount[1])
+}
+
+/// Weights of the narrower and of the wider Gaussian at a distance, of creases or outlines.
+#[inline(always)]
+fn weights<S: Simd>(d: f32x8<S>, params: &Params, kind: usize) -> [f32x8<S>; 2] {
+    let near = d.abs().simd_le(params.halfwidth[kind]);
+    [params.narrow[kind], params.wide[kind]]
+        .map(|falloff| near.select((d * falloff * d).exp(), f32x8::splat(d.simd, 0.0)))
+}
+
+/// Weighted sums of the breaks of three guides.
+#[derive(Clone, Copy)]
+struct GuideSums<S: Simd> {
+    narrow: [f32x8<S>; 3],
+    wide: [f32x8<S>; 3],
+    weights: [f32x8<S>; 2],
+}
+
+impl<S: Simd> GuideSums<S> {
+    #[inline(always)]
+    fn new(simd: S) -> Self {
+        let zero = f32x8::splat(simd, 0.0);
+        Self { narrow: [zero; 3], wide: [zero; 3], weights: [zero; 2] }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, found: [f32x8<S>; 3], [narrow, wide]: [f32x8<S>; 2]) {
         for (i, found) in found.iter().enumerate() {
-            narrow[i] = n.mul_add(*found, narrow[i]);
-            wide[i] = w.mul_add(*found, wide[i]);
+            self.narrow[i] = narrow.mul_add(*found, self.narrow[i]);
+            self.wide[i] = wide.mul_add(*found, self.wide[i]);
         }
-        narrow_weights += n;
-        wide_weights += w;
+        self.weights[0] += narrow;
+        self.weights[1] += wide;
     }
-    let mut ridge = zero;
-    for (narrow, wide) in narrow.iter().zip(&wide) {
-        ridge = ridge.max(*narrow / narrow_weights - *wide / wide_weights);
+
+    /// By how much the breaks of any guide are denser near the pixel than around it.
+    #[inline(always)]
+    fn ridge(self) -> f32x8<S> {
+        let mut ridge = f32x8::splat(self.weights[0].simd, 0.0);
+        for (narrow, wide) in self.narrow.iter().zip(&self.wide) {
+            ridge = ridge.max(*narrow / self.weights[0] - *wide / self.weights[1]);
+        }
+        ridge
     }
-    ridge
 }
 
 #[inline(always)]
@@ -197,17 +240,17 @@ fn ramp<S: Simd>(t: f32x8<S>) -> f32x8<S> {
     t * t * (t * -2.0 + 3.0)
 }
 
-/// 0 for equal directions or two missing normals, 1 for perpendicular ones or one that is missing.
+/// How far two directions differ, 0 for equal and 1 for perpendicular ones, and 1 where one is missing and the other not.
 /// Below 10 degrees a pixel it is relief of the surface, from 31 degrees on an edge.
 #[inline(always)]
-fn normal_break<S: Simd>(a: [f32x8<S>; 3], b: [f32x8<S>; 3]) -> f32x8<S> {
+fn normal_break<S: Simd>(a: [f32x8<S>; 3], b: [f32x8<S>; 3]) -> [f32x8<S>; 2] {
     let (zero, one) = (f32x8::splat(a[0].simd, 0.0), f32x8::splat(a[0].simd, 1.0));
     let (aa, bb) = (dot(a, a), dot(b, b));
     let (has_a, has_b) = (aa.simd_gt(0.0), bb.simd_gt(0.0));
     let both = has_a & has_b;
     let turn = one - dot(a, b) / both.select(aa * bb, one).sqrt();
     let lone = (has_a | has_b).select(one, zero);
-    both.select(ramp((turn - 0.015) * 8.0), lone)
+    [both.select(ramp((turn - 0.015) * 8.0), zero), both.select(zero, lone)]
 }
 
 #[inline(always)]

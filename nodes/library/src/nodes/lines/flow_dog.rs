@@ -123,6 +123,10 @@ pub(crate) struct FlowDog {
     pub stepping: Stepping,
     pub kernel: Kernel,
     pub guide_weight: f32,
+    /// How much the picture's own edges count, 0..=1.
+    pub texture: f32,
+    /// Widths of creases and of outlines against those of the picture's own lines.
+    pub widths: [f32; 2],
 }
 
 impl FlowDog {
@@ -199,7 +203,8 @@ impl FlowDog {
         guides: &Guides,
         xdog: Xdog,
     ) -> ImageId {
-        let options = flow_dog_gradient::Options { sigma: self.sigma_e, k: self.k, xdog };
+        let own = Xdog { edge: xdog.edge * self.texture, ..xdog };
+        let options = flow_dog_gradient::Options { sigma: self.sigma_e, k: self.k, xdog: own };
         let response = flow_dog_gradient::pass(plan, source, field, &options);
         self.with_guides(plan, response, field, guides)
     }
@@ -250,8 +255,11 @@ impl FlowDog {
         if self.guide_weight <= 0.0 || guides.iter().all(Option::is_none) {
             return response;
         }
-        let options =
-            guide_lines::Options { sigma: self.sigma_e, weight: self.guide_weight, edge: self.xdog.edge };
+        let options = guide_lines::Options {
+            sigmas: self.widths.map(|width| self.sigma_e * width),
+            weight: self.guide_weight,
+            edge: self.xdog.edge,
+        };
         guide_lines::pass(plan, response, field, guides, &options)
     }
 
@@ -296,6 +304,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         },
         kernel: scope.option("kernel"),
         guide_weight: scope.float("guide_weight"),
+        texture: 1.0,
+        widths: [1.0; 2],
     };
     let guides_of = |scope: &Scope<'_>| guides(scope, lines.guide_weight);
     let guides = guides_of(scope);

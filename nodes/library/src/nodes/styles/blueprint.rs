@@ -10,6 +10,7 @@ use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::{ADVANCED, LOOK, lines};
+use crate::value::Value;
 use isophote_engine::ImageId;
 
 /// The node.
@@ -26,6 +27,9 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::LINE_WIDTH,
         lines::LINE_AMOUNT,
         lines::SUPPRESS_SMALL,
+        lines::OUTLINE_WIDTH,
+        lines::CREASE_WIDTH,
+        lines::TEXTURE_LINES,
         Param::color("line_color", "Line colour", [0.92, 0.96, 1.0, 1.0])
             .group(LOOK)
             .doc("Colour of lines and grid; its alpha is their opacity."),
@@ -54,7 +58,7 @@ pub static NODE: NodeSpec = NodeSpec {
         dog::SIGMA_E.group(ADVANCED),
         dog::K.group(ADVANCED),
         flow_dog::SIGMA_M.group(ADVANCED),
-        dog::TAU.group(ADVANCED),
+        dog::TAU.with_default(Value::Float(0.98)).group(ADVANCED),
         dog::EPSILON.group(ADVANCED),
         dog::PHI.group(ADVANCED),
         lines::LINE_ITERATIONS,

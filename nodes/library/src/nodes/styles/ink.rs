@@ -49,6 +49,9 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::SUPPRESS_SMALL.doc(
             "Drops short and weak lines: lengthens the smoothing along lines by up to 0.8 of it and halves p.",
         ),
+        lines::OUTLINE_WIDTH,
+        lines::CREASE_WIDTH,
+        lines::TEXTURE_LINES,
         TONE,
         GRAIN,
         abstraction::DETAIL,
@@ -152,7 +155,7 @@ struct Preset {
 /// Black, white and hatching; the others are described by how they differ.
 const INK: Preset = Preset {
     rho: 2.0,
-    sigma_e: 1.2,
+    sigma_e: 1.3,
     sigma_m: 4.0,
     p: 20.0,
     epsilon: 26.0,
@@ -161,17 +164,17 @@ const INK: Preset = Preset {
     ease: 0.0,
     rubbed: 0.0,
     form: 0.85,
-    spacing: 5.5,
-    stroke: [1.1, 9.0],
+    spacing: 7.5,
+    stroke: [1.5, 12.0],
     follow: 0.0,
     flattening: 0,
     grain: 0.0,
-    grain_size: 2.5,
+    grain_size: 3.0,
     dryness: 0.2,
     colour: 0.0,
     opacity: 1.0,
     sigma_a: 1.2,
-    texture: 0.012,
+    texture: 0.01,
 };
 
 /// Thin grey lines, tones hatched in two directions, a fine grain.
@@ -185,14 +188,13 @@ const PENCIL: Preset = Preset {
     ease: 0.45,
     rubbed: 0.4,
     form: 0.7,
-    spacing: 4.0,
-    stroke: [0.9, 8.0],
+    spacing: 5.5,
+    stroke: [1.2, 11.0],
     grain: 0.45,
-    grain_size: 1.6,
+    grain_size: 2.0,
     dryness: 0.35,
     opacity: 0.93,
     sigma_a: 0.8,
-    texture: 0.014,
     ..INK
 };
 
@@ -208,30 +210,29 @@ const CHARCOAL: Preset = Preset {
     ease: 0.15,
     rubbed: 0.8,
     form: 0.8,
-    spacing: 8.0,
-    stroke: [1.4, 6.0],
+    spacing: 10.0,
+    stroke: [1.8, 8.0],
     follow: 0.25,
     grain: 0.42,
-    grain_size: 2.4,
+    grain_size: 3.0,
     dryness: 0.5,
     opacity: 0.95,
     sigma_a: 1.5,
-    texture: 0.014,
     ..INK
 };
 
 /// Thick lines and masses, carved along the form.
 const WOODCUT: Preset = Preset {
     rho: 4.0,
-    sigma_e: 1.8,
+    sigma_e: 2.1,
     sigma_m: 9.0,
     p: 16.0,
     epsilon: 30.0,
     phi: 0.15,
     tones: [68.0, 20.0],
     form: 1.0,
-    spacing: 7.0,
-    stroke: [1.7, 13.0],
+    spacing: 9.5,
+    stroke: [2.2, 17.0],
     sigma_a: 2.0,
     ..INK
 };
@@ -247,16 +248,15 @@ const PASTEL: Preset = Preset {
     tones: [30.0, -25.0],
     rubbed: 1.0,
     form: 0.0,
-    stroke: [1.4, 7.0],
+    stroke: [1.8, 9.0],
     follow: 0.5,
     flattening: 2,
     grain: 0.6,
-    grain_size: 2.4,
+    grain_size: 3.0,
     dryness: 0.4,
     colour: 0.96,
     opacity: 0.75,
     sigma_a: 1.5,
-    texture: 0.014,
     ..INK
 };
 
@@ -355,6 +355,12 @@ fn toned(tones: [f32; 2], tone: f32) -> [f32; 2] {
     shaded(tones, if tone <= NEUTRAL { share } else { 4f32.powf(share - 1.0) })
 }
 
+/// Anisotropy that noise exceeds in one of a hundred places, in windows of standard deviation `rho` pixels (2.154, 2.158).
+fn significant(rho: f32) -> f32 {
+    const SAMPLES: f32 = 4.0 * std::f32::consts::PI;
+    least_significant(0.01, SAMPLES * rho * rho)
+}
+
 /// Strokes along the flow, 0..=1 about middle grey, and the standard deviation of their values: noise, `width` pixels
 /// wide and smoothed along the stream lines by `length`, lengths in pixels of the full-size picture.
 fn strokes(scope: &mut Scope<'_>, tensor: ImageId, [width, length]: [f32; 2]) -> (ImageId, f32) {
@@ -406,6 +412,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         stepping: Stepping::Along(Integrator::TwoStep),
         kernel: Kernel::Separable,
         guide_weight,
+        texture: scope.float(lines::TEXTURE_LINES.id),
+        widths: lines::guide_widths(scope),
     };
     let Steadied { stages: [smooth, tensor, response], shares } =
         steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
@@ -429,16 +437,14 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         rubbed: drawing.rubbed,
         form: drawing.form,
         spacing: drawing.spacing,
-        // Of the tensor's window: structure that noise makes in one of a hundred places (2.154, 2.158).
-        significant: least_significant(0.01, 4.0 * std::f32::consts::PI * drawing.rho * drawing.rho),
+        significant: significant(drawing.rho * scale),
         stroke: own.stroke.map(|length| length * scale),
         deviation,
         given_deviation: marks::HATCHING_DEVIATION,
         scale,
         origin: scope.origin(),
     };
-    let hatching =
-        if own.rubbed < 1.0 { marks::hatching(scope, HATCHING, scope.renewed(301)) } else { None };
+    let hatching = if own.rubbed < 1.0 { marks::hatching(scope, HATCHING, scope.renewed(301)) } else { None };
     let toned = lightness::pass_lab(scope.plan, smooth);
     let marks = tone_marks::pass(scope.plan, &Inputs { tones: toned, tensor, strokes, hatching }, &tones);
     let mut line = scope.color("line_color");

@@ -1,0 +1,219 @@
+//! What an artist expects of styles as they come: empty light stays empty, tones keep their order and reach the ink,
+//! nothing happens along borders that does not happen elsewhere, and a picture looks the same at every size.
+
+use isophote::Request;
+use isophote_engine::Image;
+use isophote_tests::pictures::from_fn;
+use isophote_tests::random::Random;
+use isophote_tests::run;
+
+/// Styles of lines, with what makes their paper plain where that is a pattern of its own.
+const LINE_STYLES: [(&str, &[(&str, &str)]); 7] = [
+    ("ink", &[("style", "ink")]),
+    ("ink", &[("style", "pencil")]),
+    ("ink", &[("style", "charcoal")]),
+    ("ink", &[("style", "woodcut")]),
+    ("ink", &[("style", "pastel")]),
+    ("blueprint", &[("grid", "0")]),
+    ("cartoon", &[]),
+];
+/// Those that draw tones by marks.
+const MARKED: [&str; 4] = ["ink", "pencil", "charcoal", "woodcut"];
+
+/// The sRGB grey of a lightness, 0..=1.
+fn grey(lightness: f32) -> f32 {
+    let f = (lightness + 16.0) / 116.0;
+    let y = if lightness > 8.0 { f * f * f } else { lightness / 903.3 };
+    if y <= 0.003_130_8 { 12.92 * y } else { 1.055 * y.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// A field whose lightness is a function of the place, with noise of a standard deviation, 0..=1.
+fn field(size: u32, noise: f64, lightness: impl Fn(f32, f32) -> f32) -> Image {
+    let mut random = Random::new(7);
+    from_fn(size, size, |x, y| {
+        let plain = grey(lightness(x as f32 / size as f32, y as f32 / size as f32));
+        let v = plain + (random.normal() * noise) as f32;
+        [v, v, v, 1.0]
+    })
+}
+
+fn luma(image: &Image, x: i32, y: i32) -> f32 {
+    let [r, g, b, ..] = image.pixel(x, y) else { panic!("no colour") };
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+/// The mean of a window about a pixel.
+fn local_mean(image: &Image, x: i32, y: i32, radius: i32) -> f32 {
+    let (width, height) = (image.width() as i32, image.height() as i32);
+    let (mut sum, mut count) = (0.0, 0.0);
+    for v in (y - radius).max(0)..(y + radius + 1).min(height) {
+        for u in (x - radius).max(0)..(x + radius + 1).min(width) {
+            sum += luma(image, u, v);
+            count += 1.0;
+        }
+    }
+    sum / count
+}
+
+#[test]
+fn light_and_empty_stays_empty() {
+    type Lightness = fn(f32, f32) -> f32;
+    let fields: [(&str, Lightness); 7] = [
+        ("flat 70", |_, _| 70.0),
+        ("flat 82", |_, _| 82.0),
+        ("flat 97", |_, _| 97.0),
+        ("ramp to the right", |x, _| 70.0 + 28.0 * x),
+        ("ramp down", |_, y| 98.0 - 28.0 * y),
+        ("slanted ramp", |x, y| 70.0 + 14.0 * (x + y)),
+        ("round ramp", |x, y| 70.0 + 28.0 * ((x - 0.5).hypot(y - 0.5) * 1.4).min(1.0)),
+    ];
+    let mut faults = Vec::new();
+    for (id, params) in LINE_STYLES {
+        for (name, lightness) in fields {
+            for noise in [0.0, 0.01] {
+                let result = run::node(id, params, &field(96, noise, lightness));
+                let mut most = 0.0f32;
+                for y in 0..96 {
+                    for x in 0..96 {
+                        // Ramps are steepest at the border, where half of the window is missing.
+                        let (u, v) = (x.clamp(4, 91), y.clamp(4, 91));
+                        most = most.max((luma(&result, u, v) - local_mean(&result, u, v, 4)).abs());
+                    }
+                }
+                assert!(
+                    most < 2.0 / 255.0,
+                    "{id} {params:?}, {name}, noise {noise}: {:.2}/255",
+                    most * 255.0
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn tones_keep_their_order_and_reach_the_ink() {
+    for style in MARKED {
+        let means: Vec<f32> = (1..=19)
+            .map(|i| {
+                let flat = field(128, 0.0, |_, _| i as f32 * 5.0);
+                local_mean(&run::node("ink", &[("style", style)], &flat), 64, 64, 48)
+            })
+            .collect();
+        for (i, pair) in means.windows(2).enumerate() {
+            assert!(
+                pair[0] <= pair[1] + 0.012,
+                "{style}: L {} is lighter than the next: {means:?}",
+                i * 5 + 5
+            );
+        }
+        let (ink, paper) = (0.087, 0.955);
+        let reached = (paper - means[1]) / (paper - ink);
+        assert!(reached >= 0.85, "{style}: L 10 reaches {reached:.2} of the ink");
+        assert!(means[8] < means[18] - 0.15, "{style} tells L 45 from L 95: {means:?}");
+    }
+}
+
+#[test]
+fn ink_knows_black_and_white() {
+    let ramp = field(256, 0.0, |x, _| 100.0 * x);
+    let result = run::node("ink", &[], &ramp);
+    let greys = (0..256 * 256).filter(|i| (0.3..0.75).contains(&luma(&result, i % 256, i / 256))).count();
+    // Borders of hatches are as wide as a pixel.
+    assert!(greys < 256 * 256 / 8, "{greys} pixels are neither black nor white");
+}
+
+#[test]
+fn borders_are_like_the_rest() {
+    const SIZE: i32 = 256;
+    for style in MARKED {
+        for (name, slanted) in [("vertical", 0.0), ("slanted", 0.5)] {
+            let ramp = field(SIZE as u32, 0.0, |x, y| 20.0 + 45.0 * ((1.0 - slanted) * y + slanted * x));
+            let result = run::node("ink", &[("style", style)], &ramp);
+            // Along the left border and well inside, row by row of the same tones.
+            let deviation = |from: i32, to: i32| {
+                let mut sum = 0.0f64;
+                for y in 0..SIZE {
+                    for x in from..to {
+                        sum += f64::from(luma(&result, x, y) - local_mean(&result, x, y, 8)).powi(2);
+                    }
+                }
+                (sum / f64::from((to - from) * SIZE)).sqrt()
+            };
+            let (border, inside) = (deviation(0, 6), deviation(120, 136));
+            assert!(
+                (0.75..1.3).contains(&(border / inside)),
+                "{style}, {name} ramp: {border:.4} along the border, {inside:.4} inside"
+            );
+        }
+    }
+}
+
+/// A picture that is the same at every size: soft and sharp forms.
+fn scenery(height: u32) -> Image {
+    let h = height as f32;
+    let at = |u: f32, v: f32| {
+        let hill = 0.55 + 0.12 * (u * 4.0).sin();
+        let disc = (u - 0.9).hypot(v - 0.3) < 0.16;
+        let tower = (0.35..0.47).contains(&u) && v > 0.25;
+        match (disc, tower, v > hill) {
+            (true, ..) => [0.95, 0.75, 0.25],
+            (_, true, _) => [0.45, 0.2 + 0.3 * v, 0.25],
+            (_, _, true) => [0.2 + 0.2 * (v - hill), 0.42, 0.2],
+            _ => [0.45 + 0.4 * v, 0.6 + 0.3 * v, 0.9],
+        }
+    };
+    from_fn(height * 4 / 3, height, |x, y| {
+        let mut sum = [0.0; 3];
+        for i in 0..16 {
+            let (dx, dy) = ((i % 4) as f32 * 0.25 + 0.125, (i / 4) as f32 * 0.25 + 0.125);
+            let color = at((x as f32 + dx) / h, (y as f32 + dy) / h);
+            sum = [0, 1, 2].map(|c| sum[c] + color[c] / 16.0);
+        }
+        [sum[0], sum[1], sum[2], 1.0]
+    })
+}
+
+/// A picture made smaller by a whole number.
+fn smaller(image: &Image, by: i32) -> Image {
+    let share = 1.0 / (by * by) as f32;
+    from_fn(image.width() / by as u32, image.height() / by as u32, |x, y| {
+        let mut sum = [0.0; 4];
+        for i in 0..by * by {
+            let pixel = image.pixel(x * by + i % by, y * by + i / by);
+            sum = [0, 1, 2, 3].map(|c| sum[c] + pixel[c] * share);
+        }
+        sum
+    })
+}
+
+fn psnr(a: &Image, b: &Image) -> f64 {
+    let squares: f64 = a.data().iter().zip(b.data()).map(|(a, b)| f64::from(a - b).powi(2)).sum();
+    // Alpha is the same and does not count.
+    -10.0 * (squares / (a.data().len() as f64 * 0.75)).log10()
+}
+
+#[test]
+fn a_picture_looks_the_same_at_every_size() {
+    let looks = [
+        ("cartoon", 30.0),
+        ("oil_paint", 30.0),
+        ("painting", 30.0),
+        ("coherent", 30.0),
+        ("watercolor", 30.0),
+        ("ink", 20.0),
+        ("blueprint", 20.0),
+    ];
+    for (id, least) in looks {
+        let result = |height: u32| {
+            let picture = scenery(height);
+            let request =
+                Request { reference_height: 480, ..Request::new(picture.width(), picture.height()) };
+            run::graph(&run::single(id, &[]), request, &picture)
+        };
+        let small = result(240);
+        for by in [2, 4] {
+            let found = psnr(&smaller(&result(240 * by as u32), by), &small);
+            assert!(found >= least, "{id}: {found:.1} dB between 240 and {} lines", 240 * by);
+        }
+    }
+}
