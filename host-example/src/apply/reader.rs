@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use super::exr::{self, Selection};
 use super::filter::Planner;
+use super::masks::Masks;
 use super::memory::{Budget, Needs, too_large};
 use super::read::{Opened, Source, Unread};
 use super::reel::{Held, Window};
@@ -26,6 +27,8 @@ pub struct Footage<'a> {
     pub motion: Option<&'a Pattern>,
     /// What is read of EXR files.
     pub selection: &'a Selection,
+    /// Masks of the run.
+    pub masks: &'a Masks,
     /// Memory of frames in flight.
     pub budget: &'a Budget,
 }
@@ -133,6 +136,7 @@ impl<'a> Reader<'a> {
             add_motion(&mut source, &pattern.file(number), selection)?;
         }
         let is_written = number.is_none_or(|number| self.tasks.contains(&number));
+        self.footage.masks.add(&mut source, number, !is_written)?;
         Ok(Held::new(number, source, is_written, share))
     }
 }

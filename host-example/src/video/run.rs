@@ -111,7 +111,7 @@ impl Job<'_> {
         let name = self.input.display().to_string();
         let [past, future] = filter.frames()?;
         let hold = |(pixels, number)| {
-            let picture = Picture { pixels, guides: Vec::new(), chromaticities: None, origin: [0; 2] };
+            let picture = Picture::alone(pixels);
             let state = ImageState::DisplayReferred;
             let source = Source { pictures: vec![picture], state, profile: None, exr: None };
             Arc::new(Held::new(Some(number), source, false, budget.share()))

@@ -6,9 +6,11 @@ use isophote_exr_edit::{Decoded, Edit, File, Limits, PartEdit, Sample, Window};
 
 use super::choose::{self, Chosen, Selection};
 use super::fault::Fault;
+use super::mask;
 use super::picture::{self, Picture};
 use crate::error::Result;
-use crate::pixels::{MOST_PIXELS, Pixels};
+use crate::output;
+use crate::pixels::{MOST_PIXELS, Pixels, Samples};
 
 /// What one file may take at most, whatever it says of itself. How many files are in memory at the same time is
 /// decided by what they weigh; see [`Opened::weight`].
@@ -25,12 +27,7 @@ pub fn motion_of(
     selection: &Selection,
     picture: &Picture,
 ) -> Result<Vec<(&'static str, Pixels)>> {
-    let window = Window {
-        x: picture.origin[0],
-        y: picture.origin[1],
-        width: picture.pixels.width() as usize,
-        height: picture.pixels.height() as usize,
-    };
+    let window = picture.window();
     let read = || -> std::result::Result<_, Fault> {
         let exr = File::parse(bytes, LIMITS)?;
         let sources = choose::motion(&exr, selection)?;
@@ -62,6 +59,30 @@ pub fn motion_of(
     read().map_err(|fault| fault.of(path))
 }
 
+/// The mask of a file of its own over the window that `place` finds for the file's data and display windows.
+///
+/// # Errors
+/// [`Error::Input`](crate::error::Error::Input) for damaged files, those of several channels, and where `place` finds none,
+/// which says what is wrong.
+pub fn mask_of(
+    path: &Path,
+    bytes: Vec<u8>,
+    place: impl FnOnce(Window, Option<Window>) -> std::result::Result<Window, String>,
+) -> Result<Pixels> {
+    let read = || -> std::result::Result<_, Fault> {
+        let exr = File::parse(bytes, LIMITS)?;
+        let (number, channels) = mask::main_channels(&exr)?;
+        let part = &exr.parts()[number];
+        let window = place(part.window, part.display)
+            .map_err(|problem| Fault::Choice { problem, fix: "make masks of the picture's size".into() })?;
+        let values = mask::whole(&exr, number, &channels, window)?;
+        let (width, height) = (window.width as u32, window.height as u32);
+        let unequal = || isophote_exr_edit::Error::Damaged("its channels are of unequal size".into());
+        Ok(Pixels::new(width, height, 1, Samples::F32(values)).ok_or_else(unequal)?)
+    };
+    read().map_err(|fault| fault.of(path))
+}
+
 /// Whether all chunks of a file are there.
 pub fn is_whole(bytes: Vec<u8>) -> bool {
     File::parse(bytes, LIMITS).is_ok()
@@ -83,7 +104,7 @@ impl Opened {
     pub fn new(path: &Path, bytes: Vec<u8>, selection: &Selection) -> Result<Self> {
         let open = || -> std::result::Result<Self, Fault> {
             let exr = File::parse(bytes, LIMITS)?;
-            let chosen = choose::choose(&exr, selection)?;
+            let chosen = choose::choose(&exr, path.parent().unwrap_or(Path::new("")), selection)?;
             Ok(Self { exr, selection: selection.clone(), chosen })
         };
         open().map_err(|fault| fault.of(path))
@@ -107,7 +128,9 @@ impl Opened {
             let bytes = if is_half { 2 } else { 4 };
             // As read, as result and twice as floats; guides are floats.
             total += pixels * 4 * (2 * bytes + 4 + 4) + pixels * 16 * picture.guides.len() as u64;
-            parts.extend(picture.guides.iter().map(|g| g.part).chain([picture.group.part]));
+            // A mask with the planes that it is made of.
+            total += pixels * 4 * 3 * picture.masks.len() as u64;
+            parts.extend(picture.parts());
         }
         parts.sort_unstable();
         parts.dedup();
@@ -160,8 +183,7 @@ impl ExrFile {
         }
         let mut decoded: Vec<Option<Decoded>> = exr.parts().iter().map(|_| None).collect();
         for picture in &chosen {
-            let needed = picture.guides.iter().map(|g| g.part).chain([picture.group.part]);
-            for part in needed {
+            for part in picture.parts() {
                 if decoded[part].is_none() {
                     decoded[part] = Some(exr.decode(part)?);
                 }
@@ -176,7 +198,8 @@ impl ExrFile {
     /// # Errors
     /// [`Error::Input`](crate::error::Error::Input) when channels are of unequal size.
     pub fn pictures(&self, path: &Path) -> Result<Vec<Picture>> {
-        let read = |chosen| picture::read(&self.exr, &self.decoded, chosen);
+        let mut warn = |problem: &str| output::warn(format_args!("{}: {problem}", path.display()));
+        let read = |chosen| picture::read(&self.exr, &self.decoded, chosen, &self.selection, &mut warn);
         let pictures: std::result::Result<Vec<Picture>, Fault> = self.chosen.iter().map(read).collect();
         pictures.map_err(|fault| fault.of(path))
     }

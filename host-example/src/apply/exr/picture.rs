@@ -23,13 +23,38 @@ pub struct Picture {
     pub chromaticities: Option<[f32; 8]>,
     /// Where its first pixel stands in the display window's coordinates.
     pub origin: [i32; 2],
+    /// The display window, where the picture may be a part of it or more.
+    pub display: Option<Window>,
+    /// How much of results is used, 0 to 1: a mask for each that was asked for.
+    pub masks: Vec<Option<Pixels>>,
+}
+
+impl Picture {
+    /// A picture of which nothing else is known.
+    pub fn alone(pixels: Pixels) -> Self {
+        let (guides, masks) = (Vec::new(), Vec::new());
+        Self { pixels, guides, chromaticities: None, origin: [0; 2], display: None, masks }
+    }
+
+    /// The window that its pixels fill.
+    pub fn window(&self) -> Window {
+        let [x, y] = self.origin;
+        let (width, height) = (self.pixels.width() as usize, self.pixels.height() as usize);
+        Window { x, y, width, height }
+    }
 }
 
 /// Reads a picture.
 ///
 /// # Errors
 /// [`Fault::File`] when its channels are of unequal size or take too much memory.
-pub fn read(exr: &File, decoded: &[Option<Decoded>], chosen: &Chosen) -> Result<Picture, Fault> {
+pub fn read(
+    exr: &File,
+    decoded: &[Option<Decoded>],
+    chosen: &Chosen,
+    selection: &Selection,
+    warn: &mut dyn FnMut(&str),
+) -> Result<Picture, Fault> {
     let unequal = || Error::Damaged("its channels are of unequal size".into());
     let part = &exr.parts()[chosen.group.part];
     let data = decoded[chosen.group.part].as_ref().ok_or_else(unequal)?;
@@ -52,12 +77,24 @@ pub fn read(exr: &File, decoded: &[Option<Decoded>], chosen: &Chosen) -> Result<
             guides.push((source.guide.id(), pixels));
         }
     }
+    let mut masks = Vec::with_capacity(chosen.masks.len());
+    for mask in &chosen.masks {
+        let Some(mask) = mask else {
+            masks.push(None);
+            continue;
+        };
+        let values = mask.read(exr, decoded, part.window, selection.on_unknown, warn)?;
+        let (width, height) = (part.window.width as u32, part.window.height as u32);
+        masks.push(Pixels::new(width, height, 1, Samples::F32(values)));
+    }
     let pixels = interleaved(part.window, &planes).ok_or_else(unequal)?;
     Ok(Picture {
         pixels,
         guides,
         chromaticities: part.chromaticities,
         origin: [part.window.x, part.window.y],
+        display: part.display,
+        masks,
     })
 }
 
@@ -162,6 +199,10 @@ pub fn guide(
 ) -> Result<Option<Pixels>, Error> {
     let part = &exr.parts()[source.part];
     let Some(data) = decoded[source.part].as_ref() else { return Ok(None) };
+    let numbers = match source.meaning {
+        Meaning::Hashes => hashes,
+        _ => numbers,
+    };
     let plane = |channel: &usize| Ok::<_, Error>(numbers(&data.plane(*channel)?));
     let planes: Vec<Vec<f32>> = source.channels.iter().map(plane).collect::<Result<_, _>>()?;
     let count = planes.len();
@@ -213,8 +254,16 @@ pub fn guide(
 /// As floats; integers that floats do not tell apart are folded into those that they do.
 fn numbers(plane: &Plane) -> Vec<f32> {
     let Plane::Uint(ids) = plane else { return plane.to_f32() };
-    let folded = |id: u32| if id < EXACT { id } else { 1 + (id ^ id.rotate_right(13)) % (EXACT - 1) };
-    ids.iter().map(|id| folded(*id) as f32).collect()
+    ids.iter().map(|id| folded(*id)).collect()
+}
+
+/// The bits of floats as numbers of objects.
+fn hashes(plane: &Plane) -> Vec<f32> {
+    plane.to_f32().iter().map(|id| folded(id.to_bits())).collect()
+}
+
+fn folded(id: u32) -> f32 {
+    (if id < EXACT { id } else { 1 + (id ^ id.rotate_right(13)) % (EXACT - 1) }) as f32
 }
 
 fn luminance(numbers: &[f32], count: usize, weights: [f32; 3]) -> Vec<f32> {
