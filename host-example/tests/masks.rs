@@ -432,8 +432,7 @@ fn cryptomattes_number_objects() {
         let guides = choice.map(|text| text.parse().expect("a guide")).into_iter().collect();
         let selection = Selection { wanted: vec![Guide::ObjectId], guides, ..Selection::default() };
         let source = read::read(&at, &selection).expect("a picture");
-        let found = source.pictures[0].guides.first().map(|(name, pixels)| (*name, pixels.to_f32()));
-        found
+        source.pictures[0].guides.first().map(|(name, pixels)| (*name, pixels.to_f32()))
     };
     let (name, ids) = guide(None).expect("ids");
     assert_eq!(name, "object_id");
