@@ -84,7 +84,10 @@ impl Entry {
             None => false,
             Some(Value::Bool(invert)) if !invert || look.contains_key("mask") => invert,
             Some(_) => {
-                return Err(wrong("says what to invert, but not how", "write \"invert\": true beside a mask"));
+                return Err(wrong(
+                    "says what to invert, but not how",
+                    "write \"invert\": true beside a mask",
+                ));
             }
         };
         let mask = match look.remove("mask") {

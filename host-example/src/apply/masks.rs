@@ -8,7 +8,7 @@ use std::sync::{Mutex, PoisonError};
 
 use isophote_exr_edit::Window;
 
-use super::exr::{self, MaskSource, Picture};
+use super::exr::{self, MaskSource, OnUnknown, Picture};
 use super::read::{self, Source, Unread};
 use super::tasks::Tasks;
 use crate::error::{Error, Result};
@@ -31,7 +31,10 @@ pub struct Masks(Vec<Mask>);
 #[derive(Debug)]
 struct Mask {
     place: Place,
+    /// What of the file is the mask, where that is not all of it.
+    source: Option<MaskSource>,
     invert: bool,
+    on_unknown: OnUnknown,
     /// The mask of a file that all frames have in common.
     kept: Mutex<Option<(Frame, Pixels)>>,
 }
@@ -44,6 +47,12 @@ enum Place {
     Files(Pattern),
 }
 
+impl Place {
+    fn of(path: &Path) -> Result<Self> {
+        Ok(Pattern::new(path)?.map_or_else(|| Self::File(path.to_owned()), Self::Files))
+    }
+}
+
 /// Data and display windows of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Frame {
@@ -52,46 +61,36 @@ struct Frame {
 }
 
 impl Masks {
-    /// The masks that were asked for.
+    /// The masks that were asked for; layers and Cryptomattes are in the files `from`, or in those of the pictures.
     ///
     /// # Errors
     /// [`Error::Input`] for names of files that have several places for a number.
-    pub fn new(choices: &[MaskChoice]) -> Result<Self> {
+    pub fn new(choices: &[MaskChoice], from: Option<&Path>, on_unknown: OnUnknown) -> Result<Self> {
         let mask = |choice: &MaskChoice| {
-            let place = match &choice.source {
-                MaskSource::File(path) => match Pattern::new(path)? {
-                    Some(pattern) => Place::Files(pattern),
-                    None => Place::File(path.clone()),
-                },
-                MaskSource::Layer(_) | MaskSource::Mattes(_) => Place::Picture,
+            let (place, source) = match (&choice.source, from) {
+                (MaskSource::File(path), _) => (Place::of(path)?, None),
+                (source, Some(from)) => (Place::of(from)?, Some(source.clone())),
+                (_, None) => (Place::Picture, None),
             };
-            Ok(Mask { place, invert: choice.invert, kept: Mutex::new(None) })
+            Ok(Mask { place, source, invert: choice.invert, on_unknown, kept: Mutex::new(None) })
         };
         choices.iter().map(mask).collect::<Result<_>>().map(Self)
     }
 
-    /// How many there are.
-    pub fn count(&self) -> usize {
-        self.0.len()
-    }
-
-    /// Makes sure that all frames have their files.
+    /// Makes sure that all frames have their files; those of a video are not known.
     ///
     /// # Errors
     /// [`Error::Input`] naming files that are missing.
-    pub fn check(&self, tasks: &Tasks) -> Result<()> {
+    pub fn check(&self, tasks: Option<&Tasks>) -> Result<()> {
         for mask in &self.0 {
-            let missing = |pattern: &Pattern| -> Vec<i64> {
-                let frames = tasks.ready.iter().filter_map(|task| task.frame);
-                frames.filter(|frame| !pattern.file(*frame).is_file()).collect()
-            };
-            match &mask.place {
-                Place::Files(pattern) if !tasks.is_sequence() => {
+            match (&mask.place, tasks) {
+                (Place::Files(pattern), Some(tasks)) if !tasks.is_sequence() => {
                     let problem = "names masks by frame, and there is one picture";
                     return Err(Error::file(&pattern.file(0), problem, "name one file"));
                 }
-                Place::Files(pattern) => {
-                    let missing = missing(pattern);
+                (Place::Files(pattern), Some(tasks)) => {
+                    let frames = tasks.ready.iter().filter_map(|task| task.frame);
+                    let missing: Vec<i64> = frames.filter(|frame| !pattern.file(*frame).is_file()).collect();
                     if let Some(first) = missing.first() {
                         let problem = format!(
                             "is no file; masks of the frames {} are missing",
@@ -104,8 +103,8 @@ impl Masks {
                         ));
                     }
                 }
-                Place::File(path) => Unread::open(path).map(drop)?,
-                Place::Picture => {}
+                (Place::File(path), _) => Unread::open(path).map(drop)?,
+                (Place::Files(_), None) | (Place::Picture, _) => {}
             }
         }
         Ok(())
@@ -146,11 +145,46 @@ impl Mask {
         if let Some((_, pixels)) = kept.as_ref().filter(|(known, _)| *known == frame) {
             return Ok(pixels.clone());
         }
-        let pixels = self.finished(read(path, frame)?);
+        let pixels = self.finished(self.read(path, frame)?);
         if matches!(self.place, Place::File(_)) {
             *kept = Some((frame, pixels.clone()));
         }
         Ok(pixels)
+    }
+
+    /// What is in a file, in the size of a picture.
+    fn read(&self, path: &Path, frame: Frame) -> Result<Pixels> {
+        let unread = Unread::open(path)?;
+        let opened = match unread.any(path)? {
+            read::Any::Exr(bytes) => {
+                let wanted = (self.source.as_ref(), self.on_unknown);
+                return exr::mask_of(path, bytes, wanted, |data, display| frame.place(data, display));
+            }
+            read::Any::Other(_) if self.source.is_some() => {
+                return Err(Error::file(
+                    path,
+                    "is no EXR file, and has no layers",
+                    "name an EXR file, or a mask of its own",
+                ));
+            }
+            read::Any::Other(opened) => opened,
+        };
+        let mut window = frame.data;
+        // Told before all of it is decoded.
+        if let Some((width, height)) = opened.size() {
+            window = placed(path, frame, (width, height))?;
+        }
+        let source = opened.decode(path)?;
+        let Some(Picture { pixels, .. }) = source.pictures.into_iter().next() else {
+            return Err(Error::file(path, "is empty", "name another mask"));
+        };
+        // A camera's attitude may have turned it.
+        let size = (pixels.width(), pixels.height());
+        if size != (window.width as u32, window.height as u32) {
+            window = placed(path, frame, size)?;
+        }
+        placed_over(&pixels, window)
+            .ok_or_else(|| Error::file(path, "does not hold as many pixels as it says", "name another mask"))
     }
 
     fn finished(&self, values: Pixels) -> Pixels {
@@ -183,29 +217,8 @@ impl Frame {
     }
 }
 
-/// The mask of a file in the size of a picture.
-fn read(path: &Path, frame: Frame) -> Result<Pixels> {
-    let unread = Unread::open(path)?;
-    let opened = match unread.any(path)? {
-        read::Any::Exr(bytes) => {
-            return exr::mask_of(path, bytes, |data, display| frame.place(data, display));
-        }
-        read::Any::Other(opened) => opened,
-    };
-    let mut window = frame.data;
-    // Told before all of it is decoded.
-    if let Some((width, height)) = opened.size() {
-        window = placed(path, frame, (width, height))?;
-    }
-    let source = opened.decode(path)?;
-    let Some(Picture { pixels, .. }) = source.pictures.into_iter().next() else {
-        return Err(Error::file(path, "is empty", "name another mask"));
-    };
-    // A camera's attitude may have turned it.
-    let size = (pixels.width(), pixels.height());
-    if size != (window.width as u32, window.height as u32) {
-        window = placed(path, frame, size)?;
-    }
+/// The luminance of a picture over a window; 0 where it has no pixels.
+fn placed_over(pixels: &Pixels, window: Window) -> Option<Pixels> {
     let numbers = pixels.to_f32();
     let grey = |pixel: &[f32]| match *pixel {
         [r, g, b, ..] if r == g && g == b => r,
@@ -213,12 +226,11 @@ fn read(path: &Path, frame: Frame) -> Result<Pixels> {
         [v, ..] => v,
         [] => 0.0,
     };
-    let values: Vec<f32> = numbers.chunks_exact(pixels.channels() as usize).map(grey).collect();
+    let channels = pixels.channels() as usize;
     let mut mask = vec![0.0; window.width * window.height];
-    let own = Window { x: 0, y: 0, width: size.0 as usize, height: size.1 as usize };
-    exr::add(&mut mask, window, own, |at| values[at]);
+    let own = Window { x: 0, y: 0, width: pixels.width() as usize, height: pixels.height() as usize };
+    exr::add(&mut mask, window, own, |at| grey(&numbers[at * channels..][..channels]));
     Pixels::new(window.width as u32, window.height as u32, 1, Samples::F32(mask))
-        .ok_or_else(|| Error::file(path, "does not hold as many pixels as it says", "name another mask"))
 }
 
 /// The window of a file of so many pixels.

@@ -105,6 +105,9 @@ pub struct ApplyArgs {
     /// never counts.
     #[arg(long, value_name = "MASK")]
     pub mask: Option<MaskSource>,
+    /// EXR files that have the mask's layer or Cryptomatte, such as ids.####.exr [default: the input].
+    #[arg(long, value_name = "FILES")]
+    pub mask_from: Option<PathBuf>,
     /// Uses the result where the mask is not.
     #[arg(long, requires = "mask")]
     pub invert: bool,
@@ -153,8 +156,8 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         looks.iter().for_each(|look| look.style.warn_of_keys_beyond(&frames));
     }
     let choices = args.masks(&entries);
-    let masks = Masks::new(&choices)?;
-    masks.check(&tasks)?;
+    let masks = Masks::new(&choices, args.mask_from.as_deref(), args.on_unknown)?;
+    masks.check(Some(&tasks))?;
     let selection = args.selection(&library, &looks, choices, format)?;
     let motion = args.motion_files(&tasks, &selection)?;
     let opened = args.open_first(&tasks, &selection)?;
@@ -250,11 +253,17 @@ impl ApplyArgs {
         match (&self.output, self.preset.as_ref().or(self.layered.as_ref())) {
             (Some(output), None) => Ok(Files { style: &self.style, input: &self.input, output }),
             (None, Some(style)) => Ok(Files { style, input: &self.style, output: &self.input }),
-            _ => Err(Error::input(
-                if self.preset.is_some() { "--preset" } else { "--layered" },
-                "its file names the style",
-                "give the picture and the result alone, or leave it out",
-            )),
+            _ => {
+                let (option, problem) = match self.preset {
+                    Some(_) => ("--preset", "the preset names the style"),
+                    None => ("--layered", "its looks name the styles"),
+                };
+                Err(Error::input(
+                    option,
+                    problem,
+                    format!("give the picture and the result alone, or leave {option} out"),
+                ))
+            }
         }
     }
 
@@ -270,8 +279,6 @@ impl ApplyArgs {
             ("--dry-run", self.dry_run),
             ("--motion", self.motion.is_some() && !self.estimates_motion()),
             ("--into", self.into.is_some()),
-            ("--mask", self.mask.is_some()),
-            ("--layered", self.layered.is_some()),
         ];
         if let Some((option, _)) = others.iter().find(|(_, given)| *given) {
             return wrong(option, "is not for videos", "leave it out");
@@ -288,11 +295,26 @@ impl ApplyArgs {
         }
         let library = Library::open()?;
         limits::start_threads(self.threads as usize)?;
-        let looks = self.looks(&library, files.style, &[])?;
+        let entries = self.entries()?;
+        let looks = self.looks(&library, files.style, &entries)?;
+        let choices = self.masks(&entries);
+        let is_file = |mask: &MaskChoice| matches!(mask.source, MaskSource::File(_));
+        if !(self.mask_from.is_some() || choices.iter().all(is_file)) {
+            return wrong(
+                "--mask",
+                "a video has no layers",
+                "name files of masks, or EXR files by --mask-from",
+            );
+        }
+        let masks = Masks::new(&choices, self.mask_from.as_deref(), self.on_unknown)?;
+        masks.check(None)?;
         let mut filter = Filter::new(library, looks, self.backend, self.space, self.threads)?;
         let stop = Stop::on_signals();
         let (input, output, encode) = (files.input, files.output, self.encode.as_deref());
-        video::run(&video::Job { input, output, encode, json: self.json, stop: &stop }, &mut filter)
+        video::run(
+            &video::Job { input, output, encode, json: self.json, masks: &masks, stop: &stop },
+            &mut filter,
+        )
     }
 
     /// The looks of a file; none where there is a style.
@@ -456,7 +478,11 @@ impl ApplyArgs {
             guides: self.guide.clone(),
             wanted: self.wanted(library, looks)?,
             convention: self.motion_convention,
-            masks: masks.into_iter().map(|mask| mask.source).collect(),
+            // What lies in other files is not looked for in the picture's.
+            masks: masks
+                .into_iter()
+                .map(|mask| self.mask_from.clone().map_or(mask.source, MaskSource::File))
+                .collect(),
             on_unknown: self.on_unknown,
         })
     }

@@ -137,6 +137,7 @@ fn words(command: &[String], parsed: &ApplyArgs) -> Result<Vec<String>> {
     files.extend(parsed.output.as_deref());
     files.extend(parsed.preset.as_deref());
     files.extend(parsed.layered.as_deref());
+    files.extend(parsed.mask_from.as_deref());
     if let Some(MaskSource::File(path)) = &parsed.mask {
         files.push(path);
     }
@@ -151,7 +152,7 @@ fn words(command: &[String], parsed: &ApplyArgs) -> Result<Vec<String>> {
             rest.next();
         } else if word.starts_with("--frames=") {
         } else if let Some((option, file)) = word.split_once('=').filter(|(option, file)| {
-            ["--preset", "--layered"].contains(option)
+            ["--preset", "--layered", "--mask-from"].contains(option)
                 || *option == "--mask" && files.contains(&Path::new(file))
         }) {
             words.push(format!("{option}={}", full(Path::new(file))?));

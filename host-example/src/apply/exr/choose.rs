@@ -187,29 +187,12 @@ pub fn choose(exr: &File, folder: &Path, selection: &Selection) -> Result<Vec<Ch
         }
     }
     found.sort_by_key(|(rank, model, part, ..)| (*rank, *model, *part));
-    let colours = || {
-        let names = groups.iter().filter(|g| g.picture(exr, true).is_some() && likely(g, &mattes).is_some());
-        let list = unique(names.map(|g| g.layer.as_str()).filter(|l| !l.is_empty()));
-        if list.is_empty() { "none: leave --layer out".into() } else { list }
+    let first = found.first().map(|(_, _, _, group, _)| *group);
+    let refused =
+        |group: &Group| selection.layer.is_some() && !selection.force && likely(group, &mattes).is_none();
+    let Some(first) = first.filter(|group| !refused(group)) else {
+        return Err(no_picture(exr, &groups, &mattes, selection, first));
     };
-    let Some((_, _, _, first, _)) = found.first() else {
-        return Err(match &selection.layer {
-            Some(layer) => Fault::Choice {
-                problem: format!("has no layer '{layer}' with colours"),
-                fix: format!("choose from {}", colours()),
-            },
-            None => Fault::Choice {
-                problem: "has no layer with channels R, G and B of floats".into(),
-                fix: "name a layer by --layer, or a picture with colours".into(),
-            },
-        });
-    };
-    if let (Some(layer), false, None) = (&selection.layer, selection.force, likely(first, &mattes)) {
-        return Err(Fault::Choice {
-            problem: format!("holds data in the layer '{layer}', no colours, and a style would spoil it"),
-            fix: format!("choose from {}, or add --force-layer", colours()),
-        });
-    }
     let layer = first.layer.clone();
     let mut chosen: Vec<Chosen> = Vec::new();
     for (_, model, _, group, colors) in &found {
@@ -230,20 +213,51 @@ pub fn choose(exr: &File, folder: &Path, selection: &Selection) -> Result<Vec<Ch
             guides: sources(exr, &groups, group, selection)?,
         });
     }
-    if chosen.is_empty() {
-        let mut views: Vec<&str> = groups.iter().filter_map(|g| g.view.as_deref()).collect();
-        views.dedup();
-        let view = selection.view.as_deref().unwrap_or_default();
-        return Err(Fault::Choice {
-            problem: format!("does not show the layer in a view '{view}'"),
-            fix: if views.is_empty() {
-                "leave --view out: the file has only one".into()
-            } else {
-                format!("choose from {}", unique(views.into_iter()))
-            },
-        });
+    if chosen.is_empty() { Err(no_view(&groups, selection)) } else { Ok(chosen) }
+}
+
+/// Why a file has no picture that could be taken; `found` is a layer that holds something else.
+fn no_picture(
+    exr: &File,
+    groups: &[Group],
+    mattes: &[Matte<'_>],
+    selection: &Selection,
+    found: Option<&Group>,
+) -> Fault {
+    let Some(layer) = &selection.layer else {
+        return Fault::Choice {
+            problem: "has no layer with channels R, G and B of floats".into(),
+            fix: "name a layer by --layer, or a picture with colours".into(),
+        };
+    };
+    let names = groups.iter().filter(|g| g.picture(exr, true).is_some() && likely(g, mattes).is_some());
+    let list = unique(names.map(|g| g.layer.as_str()).filter(|l| !l.is_empty()));
+    let list = if list.is_empty() { "none: leave --layer out".into() } else { list };
+    match found {
+        Some(_) => Fault::Choice {
+            problem: format!("holds data in the layer '{layer}', no colours, and a style would spoil it"),
+            fix: format!("choose from {list}, or add --force-layer"),
+        },
+        None => Fault::Choice {
+            problem: format!("has no layer '{layer}' with colours"),
+            fix: format!("choose from {list}"),
+        },
     }
-    Ok(chosen)
+}
+
+/// Why a file has no picture of the view that was asked for.
+fn no_view(groups: &[Group], selection: &Selection) -> Fault {
+    let mut views: Vec<&str> = groups.iter().filter_map(|g| g.view.as_deref()).collect();
+    views.dedup();
+    let view = selection.view.as_deref().unwrap_or_default();
+    Fault::Choice {
+        problem: format!("does not show the layer in a view '{view}'"),
+        fix: if views.is_empty() {
+            "leave --view out: the file has only one".into()
+        } else {
+            format!("choose from {}", unique(views.into_iter()))
+        },
+    }
 }
 
 fn is_named(exr: &File, group: &Group, wanted: &str) -> bool {

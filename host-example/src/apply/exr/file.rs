@@ -6,7 +6,7 @@ use isophote_exr_edit::{Decoded, Edit, File, Limits, PartEdit, Sample, Window};
 
 use super::choose::{self, Chosen, Selection};
 use super::fault::Fault;
-use super::mask;
+use super::mask::{self, ChosenMask, MaskSource, OnUnknown};
 use super::picture::{self, Picture};
 use crate::error::Result;
 use crate::output;
@@ -59,28 +59,57 @@ pub fn motion_of(
     read().map_err(|fault| fault.of(path))
 }
 
-/// The mask of a file of its own over the window that `place` finds for the file's data and display windows.
+/// The mask of a file of its own, or the one that `source` names in it, over the window that `place` finds for the file's data
+/// and display windows.
 ///
 /// # Errors
-/// [`Error::Input`](crate::error::Error::Input) for damaged files, those of several channels, and where `place` finds none,
-/// which says what is wrong.
+/// [`Error::Input`](crate::error::Error::Input) for damaged files, those of several channels or without what is named, and
+/// where `place` finds no window, which says what is wrong.
 pub fn mask_of(
     path: &Path,
     bytes: Vec<u8>,
+    (source, on_unknown): (Option<&MaskSource>, OnUnknown),
     place: impl FnOnce(Window, Option<Window>) -> std::result::Result<Window, String>,
 ) -> Result<Pixels> {
     let read = || -> std::result::Result<_, Fault> {
         let exr = File::parse(bytes, LIMITS)?;
-        let (number, channels) = mask::main_channels(&exr)?;
+        let named = match source {
+            Some(source) => ChosenMask::alone(&exr, folder(path), source)?,
+            None => None,
+        };
+        let main = if named.is_none() { Some(mask::main_channels(&exr)?) } else { None };
+        let number = main.as_ref().map_or(0, |(part, _)| *part);
         let part = &exr.parts()[number];
         let window = place(part.window, part.display)
             .map_err(|problem| Fault::Choice { problem, fix: "make masks of the picture's size".into() })?;
-        let values = mask::whole(&exr, number, &channels, window)?;
+        let values = match (named, main) {
+            (Some(named), _) => {
+                let mut decoded: Vec<Option<Decoded>> = exr.parts().iter().map(|_| None).collect();
+                for layer in &named.layers {
+                    if decoded[layer.part].is_none() {
+                        decoded[layer.part] = Some(exr.decode(layer.part)?);
+                    }
+                }
+                named.read(&exr, &decoded, window, on_unknown, &mut warning(path))?
+            }
+            (None, Some((part, channels))) => mask::whole(&exr, part, &channels, window)?,
+            (None, None) => Vec::new(),
+        };
         let (width, height) = (window.width as u32, window.height as u32);
         let unequal = || isophote_exr_edit::Error::Damaged("its channels are of unequal size".into());
         Ok(Pixels::new(width, height, 1, Samples::F32(values)).ok_or_else(unequal)?)
     };
     read().map_err(|fault| fault.of(path))
+}
+
+/// The folder of a file.
+fn folder(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
+/// Warns of a file.
+fn warning(path: &Path) -> impl FnMut(&str) {
+    move |problem| output::warn(format_args!("{}: {problem}", path.display()))
 }
 
 /// Whether all chunks of a file are there.
@@ -104,7 +133,7 @@ impl Opened {
     pub fn new(path: &Path, bytes: Vec<u8>, selection: &Selection) -> Result<Self> {
         let open = || -> std::result::Result<Self, Fault> {
             let exr = File::parse(bytes, LIMITS)?;
-            let chosen = choose::choose(&exr, path.parent().unwrap_or(Path::new("")), selection)?;
+            let chosen = choose::choose(&exr, folder(path), selection)?;
             Ok(Self { exr, selection: selection.clone(), chosen })
         };
         open().map_err(|fault| fault.of(path))
@@ -198,7 +227,7 @@ impl ExrFile {
     /// # Errors
     /// [`Error::Input`](crate::error::Error::Input) when channels are of unequal size.
     pub fn pictures(&self, path: &Path) -> Result<Vec<Picture>> {
-        let mut warn = |problem: &str| output::warn(format_args!("{}: {problem}", path.display()));
+        let mut warn = warning(path);
         let read = |chosen| picture::read(&self.exr, &self.decoded, chosen, &self.selection, &mut warn);
         let pictures: std::result::Result<Vec<Picture>, Fault> = self.chosen.iter().map(read).collect();
         pictures.map_err(|fault| fault.of(path))

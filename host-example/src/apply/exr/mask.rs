@@ -105,6 +105,16 @@ impl ChosenMask {
         }
     }
 
+    /// The same of a file that has no picture of its own: of its first view.
+    ///
+    /// # Errors
+    /// As [`ChosenMask::of`].
+    pub fn alone(exr: &File, folder: &Path, source: &MaskSource) -> Result<Option<Self>, Fault> {
+        let view = exr.parts().first().and_then(|part| part.view.as_ref().or(part.views.first()).cloned());
+        let (prefix, layer) = (String::new(), String::new());
+        Self::of(exr, folder, &Group { part: 0, prefix, layer, view, members: Vec::new() }, source)
+    }
+
     /// The mask over a window; 0 where it has no pixels. Names that are not there are warned of by `warn` or refused.
     ///
     /// # Errors

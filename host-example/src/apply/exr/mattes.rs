@@ -44,7 +44,7 @@ pub struct Ranks {
     pub channels: Vec<usize>,
 }
 
-/// All Cryptomattes of a file, in the order of its headers. Parts may repeat one.
+/// All Cryptomattes of a file by their names. Parts may repeat one.
 pub fn mattes(exr: &File) -> Vec<Matte<'_>> {
     let mut found: Vec<Matte<'_>> = Vec::new();
     for part in 0..exr.parts().len() {
@@ -77,6 +77,7 @@ pub fn mattes(exr: &File) -> Vec<Matte<'_>> {
             }
         }
     }
+    found.sort_by(|a, b| a.name.cmp(&b.name));
     found
 }
 
