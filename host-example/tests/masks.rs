@@ -322,3 +322,39 @@ fn masks_may_be_in_other_files_than_pictures() {
     picture(12, 16).save(at("in.png")).expect("the picture can be written");
     refused("cryptomatte:hero", "ids.exr", &["ids.exr", "24x16"]);
 }
+
+#[test]
+fn frames_that_lack_a_thing_fail_by_themselves() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let listed = manifest(&["hero"]);
+    for frame in 1..=3 {
+        let things = if frame == 2 { vec![] } else { matte("crypto_object", ["R", "G", "B", "A"]) };
+        let depth = vec![("crypto_object00.R".to_owned(), FlatSamples::F32(vec![0.0; PIXELS]))];
+        let cover = vec![("crypto_object00.G".to_owned(), FlatSamples::F32(vec![0.0; PIXELS]))];
+        let none = if frame == 2 { [depth, cover].concat() } else { vec![] };
+        let known = if frame == 2 { "{}" } else { listed.as_str() };
+        let texts = attributes("f834d0a", "crypto_object", ("manifest", known));
+        save(&at(&format!("in.{frame:04}.exr")), vec![("", [colours(), things, none].concat(), texts)]);
+    }
+    let args = ["apply", "cartoon", "in.####.exr", "out.####.exr", "--mask", "cryptomatte:hero"];
+    let run = |more: &[&str]| {
+        let mut command = isophote();
+        command
+            .current_dir(folder.path())
+            .args(args)
+            .args(["--backend", "cpu", "--steadiness", "0.5"])
+            .args(more);
+        command
+    };
+    fails(&mut run(&[]), 2, &["in.0002.exr: has no 'hero'", "1 of 3 frames"]);
+    let exists = |frame: u32| at(&format!("out.{frame:04}.exr")).is_file();
+    assert_eq!([1, 2, 3].map(exists), [true, false, true]);
+    // Its neighbours depend on its picture all the same.
+    let bytes = |frame: u32| fs::read(at(&format!("out.{frame:04}.exr"))).expect("a result");
+    let before = [bytes(1), bytes(3)];
+    let (_, warned) = succeeds(&mut run(&["--on-unknown", "empty"]));
+    assert!(warned.contains("in.0002.exr: has no 'hero'"), "{warned}");
+    assert_eq!([bytes(1), bytes(3)], before);
+    assert_eq!(rgb(&at("out.0002.exr")), rgb(&at("in.0002.exr")));
+}

@@ -110,11 +110,11 @@ impl Masks {
         Ok(())
     }
 
-    /// Completes the masks of a frame. Those of frames that are only `near` may be missing.
+    /// Completes the masks of a frame, which is refused for want of one.
     ///
     /// # Errors
-    /// [`Error::Input`] for files that are no masks, or of another size.
-    pub fn add(&self, source: &mut Source, number: Option<i64>, is_near: bool) -> Result<()> {
+    /// [`Error::Failure`] where memory is short.
+    pub fn add(&self, source: &mut Source, number: Option<i64>) -> Result<()> {
         for picture in &mut source.pictures {
             let frame =
                 Frame { data: picture.window(), display: picture.display.unwrap_or(picture.window()) };
@@ -128,10 +128,13 @@ impl Masks {
                     Place::File(path) => path.clone(),
                     Place::Files(pattern) => pattern.file(number.unwrap_or_default()),
                 };
-                if is_near && !path.is_file() {
-                    continue;
+                match mask.of_file(&path, frame) {
+                    Ok(pixels) => *slot = Some(pixels),
+                    Err(error @ Error::Failure { .. }) => return Err(error),
+                    Err(error) => {
+                        picture.refused.get_or_insert(error);
+                    }
                 }
-                *slot = Some(mask.of_file(&path, frame)?);
             }
         }
         Ok(())

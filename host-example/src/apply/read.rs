@@ -47,6 +47,16 @@ pub struct Source {
     pub exr: Option<ExrFile>,
 }
 
+impl Source {
+    /// Makes sure that there can be results of all pictures.
+    ///
+    /// # Errors
+    /// Why there can be none.
+    pub fn check(&self) -> Result<()> {
+        self.pictures.iter().find_map(|picture| picture.refused.clone()).map_or(Ok(()), Err)
+    }
+}
+
 /// Reads a picture, of an EXR file what `selection` chooses.
 ///
 /// # Errors

@@ -117,7 +117,8 @@ impl Job<'_> {
             let picture = Picture::alone(pixels);
             let state = ImageState::DisplayReferred;
             let mut source = Source { pictures: vec![picture], state, profile: None, exr: None };
-            self.masks.add(&mut source, Some(number), false)?;
+            self.masks.add(&mut source, Some(number))?;
+            source.check()?;
             Ok::<_, Error>(Arc::new(Held::new(Some(number), source, false, budget.share())))
         };
         let mut decoded = decoded.into_iter().zip(1..).map(hold);

@@ -130,7 +130,7 @@ pub fn mask_of(path: &Path, text: &str, invert: bool) -> std::result::Result<Vec
         .map_err(|e| e.to_string())?;
     let selection = Selection { masks: vec![source], ..Selection::default() };
     let mut source = read::read(path, &selection).map_err(|e| e.to_string())?;
-    masks.add(&mut source, None, false).map_err(|e| e.to_string())?;
+    masks.add(&mut source, None).and_then(|()| source.check()).map_err(|e| e.to_string())?;
     Ok(source.pictures[0].masks[0].as_ref().expect("a mask").to_f32())
 }
 

@@ -9,7 +9,6 @@ use super::fault::Fault;
 use super::mask::{self, ChosenMask, MaskSource, OnUnknown};
 use super::picture::{self, Picture};
 use crate::error::Result;
-use crate::output;
 use crate::pixels::{MOST_PIXELS, Pixels, Samples};
 
 /// What one file may take at most, whatever it says of itself. How many files are in memory at the same time is
@@ -90,7 +89,7 @@ pub fn mask_of(
                         decoded[layer.part] = Some(exr.decode(layer.part)?);
                     }
                 }
-                named.read(&exr, &decoded, window, on_unknown, &mut warning(path))?
+                named.read(&exr, &decoded, window, on_unknown, path)?
             }
             (None, Some((part, channels))) => mask::whole(&exr, part, &channels, window)?,
             (None, None) => Vec::new(),
@@ -105,11 +104,6 @@ pub fn mask_of(
 /// The folder of a file.
 fn folder(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
-}
-
-/// Warns of a file.
-fn warning(path: &Path) -> impl FnMut(&str) {
-    move |problem| output::warn(format_args!("{}: {problem}", path.display()))
 }
 
 /// Whether all chunks of a file are there.
@@ -227,8 +221,7 @@ impl ExrFile {
     /// # Errors
     /// [`Error::Input`](crate::error::Error::Input) when channels are of unequal size.
     pub fn pictures(&self, path: &Path) -> Result<Vec<Picture>> {
-        let mut warn = warning(path);
-        let read = |chosen| picture::read(&self.exr, &self.decoded, chosen, &self.selection, &mut warn);
+        let read = |chosen| picture::read(&self.exr, &self.decoded, chosen, &self.selection, path);
         let pictures: std::result::Result<Vec<Picture>, Fault> = self.chosen.iter().map(read).collect();
         pictures.map_err(|fault| fault.of(path))
     }

@@ -10,7 +10,7 @@ use super::cryptomatte::{MatteChoice, id};
 use super::fault::Fault;
 use super::mattes::{Matte, Ranks, mattes, pick};
 use super::names::{Group, groups};
-use crate::frames;
+use crate::{frames, output};
 
 /// Channels and layers in a message.
 const MOST_SHOWN: usize = 16;
@@ -115,7 +115,8 @@ impl ChosenMask {
         Self::of(exr, folder, &Group { part: 0, prefix, layer, view, members: Vec::new() }, source)
     }
 
-    /// The mask over a window; 0 where it has no pixels. Names that are not there are warned of by `warn` or refused.
+    /// The mask over a window; 0 where it has no pixels. Names that are not there are refused, or warned of in the name of
+    /// the file `path`.
     ///
     /// # Errors
     /// [`Fault::Choice`] for those, [`Fault::File`] when memory is short.
@@ -125,7 +126,7 @@ impl ChosenMask {
         decoded: &[Option<Decoded>],
         window: Window,
         on_unknown: OnUnknown,
-        warn: &mut dyn FnMut(&str),
+        path: &Path,
     ) -> Result<Vec<f32>, Fault> {
         let mut mask = vec![0.0; window.width * window.height];
         let mut seen = vec![false; self.wanted.as_ref().map_or(0, |wanted| wanted.unlisted.len())];
@@ -162,7 +163,7 @@ impl ChosenMask {
                 OnUnknown::Fail => {
                     return Err(Fault::Choice { problem: problem.clone(), fix: fix.clone() });
                 }
-                OnUnknown::Empty => warn(problem),
+                OnUnknown::Empty => output::warn(format_args!("{}: {problem}", path.display())),
             }
         }
         Ok(mask)

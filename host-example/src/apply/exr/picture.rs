@@ -1,12 +1,15 @@
 //! A picture and its guides out of a file's channels, and a result back into them.
 
-use isophote_exr_edit::{Channel, Decoded, Edit, Error, File, Part, Plane, Window};
+use std::path::Path;
+
+use isophote_exr_edit::{Channel, Decoded, Edit, Error as ExrError, File, Part, Plane, Window};
 
 use super::choose::{Chosen, Meaning, Selection, Source};
 use super::fault::Fault;
 use super::motion::applied;
 use super::names::{Model, components};
 use crate::apply::primaries;
+use crate::error::Error;
 use crate::pixels::{Pixels, Samples};
 
 /// Numbers up to here are exact as floats.
@@ -27,13 +30,15 @@ pub struct Picture {
     pub display: Option<Window>,
     /// How much of results is used, 0 to 1: a mask for each that was asked for.
     pub masks: Vec<Option<Pixels>>,
+    /// Why there can be no result of it, for want of masks; neighbouring frames may depend on it all the same.
+    pub refused: Option<Error>,
 }
 
 impl Picture {
     /// A picture of which nothing else is known.
     pub fn alone(pixels: Pixels) -> Self {
         let (guides, masks) = (Vec::new(), Vec::new());
-        Self { pixels, guides, chromaticities: None, origin: [0; 2], display: None, masks }
+        Self { pixels, guides, chromaticities: None, origin: [0; 2], display: None, masks, refused: None }
     }
 
     /// The window that its pixels fill.
@@ -53,9 +58,9 @@ pub fn read(
     decoded: &[Option<Decoded>],
     chosen: &Chosen,
     selection: &Selection,
-    warn: &mut dyn FnMut(&str),
+    path: &Path,
 ) -> Result<Picture, Fault> {
-    let unequal = || Error::Damaged("its channels are of unequal size".into());
+    let unequal = || ExrError::Damaged("its channels are of unequal size".into());
     let part = &exr.parts()[chosen.group.part];
     let data = decoded[chosen.group.part].as_ref().ok_or_else(unequal)?;
     let mut planes: Vec<Plane> = chosen.colors.iter().map(|c| data.plane(*c)).collect::<Result<_, _>>()?;
@@ -78,14 +83,21 @@ pub fn read(
         }
     }
     let mut masks = Vec::with_capacity(chosen.masks.len());
+    let mut refused = None;
     for mask in &chosen.masks {
         let Some(mask) = mask else {
             masks.push(None);
             continue;
         };
-        let values = mask.read(exr, decoded, part.window, selection.on_unknown, warn)?;
         let (width, height) = (part.window.width as u32, part.window.height as u32);
-        masks.push(Pixels::new(width, height, 1, Samples::F32(values)));
+        match mask.read(exr, decoded, part.window, selection.on_unknown, path) {
+            Ok(values) => masks.push(Pixels::new(width, height, 1, Samples::F32(values))),
+            Err(fault @ Fault::File(_)) => return Err(fault),
+            Err(fault) => {
+                masks.push(None);
+                refused.get_or_insert(fault.of(path));
+            }
+        }
     }
     let pixels = interleaved(part.window, &planes).ok_or_else(unequal)?;
     Ok(Picture {
@@ -95,6 +107,7 @@ pub fn read(
         origin: [part.window.x, part.window.y],
         display: part.display,
         masks,
+        refused,
     })
 }
 
@@ -111,14 +124,14 @@ pub fn result_channels(chosen: &Chosen, selection: &Selection, scalar: bool) -> 
 /// Puts a result into the edit of the part that its picture came from.
 ///
 /// # Errors
-/// [`Error::Argument`] when it does not fit the part.
+/// [`ExrError::Argument`] when it does not fit the part.
 pub fn replace(
     edit: &mut Edit,
     part: &Part,
     chosen: &Chosen,
     selection: &Selection,
     result: &Pixels,
-) -> Result<(), Error> {
+) -> Result<(), ExrError> {
     let numbers = result.to_f32();
     let count = result.channels() as usize;
     let plane = |offset: usize| -> Vec<f32> { numbers.iter().skip(offset).step_by(count).copied().collect() };
@@ -196,14 +209,14 @@ pub fn guide(
     source: &Source,
     window: Window,
     world_to_camera: Option<[f32; 16]>,
-) -> Result<Option<Pixels>, Error> {
+) -> Result<Option<Pixels>, ExrError> {
     let part = &exr.parts()[source.part];
     let Some(data) = decoded[source.part].as_ref() else { return Ok(None) };
     let numbers = match source.meaning {
         Meaning::Hashes => hashes,
         _ => numbers,
     };
-    let plane = |channel: &usize| Ok::<_, Error>(numbers(&data.plane(*channel)?));
+    let plane = |channel: &usize| Ok::<_, ExrError>(numbers(&data.plane(*channel)?));
     let planes: Vec<Vec<f32>> = source.channels.iter().map(plane).collect::<Result<_, _>>()?;
     let count = planes.len();
     // What a motion does not tell is unknown.
