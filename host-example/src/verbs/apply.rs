@@ -96,13 +96,13 @@ pub struct ApplyArgs {
     /// The layer of an EXR file that guides the filter: normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER,
     /// motion_forward=LAYER or rest_position=LAYER, or none instead of a layer. Without it guides are found by names such as
     /// N, normal, Z, depth, P, id, backward, Vector, velocity, Pref and rest; where there is no id, the Cryptomatte of objects
-    /// stands for it, which is object_id=cryptomatte, or object_id=cryptomatte[LAYER] for another. May be repeated.
+    /// stands for it, which is object_id=cryptomatte, or `object_id=cryptomatte[LAYER]` for another. May be repeated.
     #[arg(long, value_name = "GUIDE=LAYER")]
     pub guide: Vec<GuideChoice>,
     /// How much of the result is used where: a file such as mask.png, one for each frame (mask.####.exr), a layer or channel of
-    /// the EXR file, or things of its Cryptomatte: cryptomatte:hero,props/* or cryptomatte[crypto_material]:skin. In names *
-    /// stands for any letters, ? for one, and a backslash makes either ordinary. Files of colours count by luminance; alpha
-    /// never counts.
+    /// the EXR file, or things of its Cryptomatte: `cryptomatte:hero,props/*` or `cryptomatte[crypto_material]:skin`. A star in
+    /// a name stands for any letters, ? for one, and a backslash makes either ordinary. Files of colours count by luminance;
+    /// alpha never counts.
     #[arg(long, value_name = "MASK")]
     pub mask: Option<MaskSource>,
     /// EXR files that have the mask's layer or Cryptomatte, such as ids.####.exr [default: the input].
