@@ -167,13 +167,19 @@ pub fn meant(path: &Path) -> Option<PathBuf> {
     names.iter().filter(fits).find_map(|name| numbered(name)).map(|pattern| path.with_file_name(pattern))
 }
 
+/// Whether a path ends as those of pictures do.
+pub fn is_picture(path: &Path) -> bool {
+    let extension = path.extension().unwrap_or_default();
+    KINDS.iter().any(|kind| extension.eq_ignore_ascii_case(kind))
+}
+
 /// The name of a picture with a place instead of the last number before its extension.
 fn numbered(name: &OsStr) -> Option<String> {
     let (stem, extension) = name.to_str()?.rsplit_once('.')?;
     let end = stem.rfind(|c: char| c.is_ascii_digit())? + 1;
     let digits = stem[..end].bytes().rev().take_while(u8::is_ascii_digit).count();
-    let is_picture = KINDS.iter().any(|kind| extension.eq_ignore_ascii_case(kind));
-    is_picture.then(|| format!("{}{}{}.{extension}", &stem[..end - digits], "#".repeat(digits), &stem[end..]))
+    is_picture(Path::new(name))
+        .then(|| format!("{}{}{}.{extension}", &stem[..end - digits], "#".repeat(digits), &stem[end..]))
 }
 
 /// Frames as they are written on the command line: numbers and ranges with steps after an x, or after a colon as

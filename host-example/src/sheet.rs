@@ -17,9 +17,9 @@ use image::{ImageBuffer, Rgb, RgbImage, Rgba};
 
 use crate::apply::convert;
 use crate::apply::exr::Selection;
-use crate::apply::filter::WorkingSpace;
 use crate::apply::read::{self, ImageState};
 use crate::apply::space::srgb_encode;
+use crate::apply::working::WorkingSpace;
 use crate::error::{Error, Result};
 use crate::pixels::MOST_PIXELS;
 

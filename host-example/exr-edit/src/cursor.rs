@@ -32,6 +32,11 @@ impl<'a> Cursor<'a> {
         self.bytes.len() - self.at
     }
 
+    /// What is left, as it is.
+    pub fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.at..]
+    }
+
     /// Whether nothing is left.
     pub fn is_empty(&self) -> bool {
         self.at == self.bytes.len()

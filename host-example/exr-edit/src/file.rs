@@ -79,6 +79,11 @@ impl File {
         &self.parts
     }
 
+    /// The attributes of type `string` of a part: names, and bytes that should be UTF-8, in the order of the file.
+    pub fn texts(&self, part: usize) -> impl Iterator<Item = (&str, &[u8])> {
+        self.parts.get(part).into_iter().flat_map(|part| part.texts(&self.bytes))
+    }
+
     /// Length of the file in bytes.
     pub fn length(&self) -> usize {
         self.bytes.len()

@@ -37,8 +37,8 @@ pub struct Part {
     pub channels: Vec<Channel>,
     /// The data window.
     pub window: Window,
-    /// Rows of the display window, where that is sound.
-    pub display_height: Option<u32>,
+    /// The display window, where it is one.
+    pub display: Option<Window>,
     /// Number of the compression, as files have it: 0 none, 1 RLE, 2 ZIPS, 3 ZIP, 4 PIZ, 5 PXR24, 6 B44, 7 B44A,
     /// 8 DWAA, 9 DWAB, 10 HTJ2K256, 11 HTJ2K32.
     pub compression: u8,
@@ -106,6 +106,19 @@ impl Part {
         header.part.header.end = at.position() - 1;
         header.finish(version)
     }
+
+    /// The attributes of type `string`, as [`File::texts`](crate::File::texts) has them; `bytes` are the file's.
+    pub(crate) fn texts<'a>(&self, bytes: &'a [u8]) -> impl Iterator<Item = (&'a str, &'a [u8])> + use<'a> {
+        let mut at = Cursor::new(&bytes[self.header.clone()]);
+        let mut next = move || -> Result<_> {
+            let (name, kind) = (at.name()?, at.name()?);
+            let size = at.u32()? as usize;
+            Ok((name, kind, at.take(size)?.rest()))
+        };
+        // What was parsed once does not fail before its end.
+        let all = std::iter::from_fn(move || next().ok());
+        all.filter(|(_, kind, _)| *kind == "string").map(|(name, _, value)| (name, value))
+    }
 }
 
 /// A header under way.
@@ -125,7 +138,7 @@ impl Header {
             views: Vec::new(),
             channels: Vec::new(),
             window: Window { x: 0, y: 0, width: 0, height: 0 },
-            display_height: None,
+            display: None,
             compression: 0,
             chromaticities: None,
             world_to_camera: None,
@@ -165,7 +178,8 @@ impl Header {
                 }
             }
             ("dataWindow", "box2i") => part.window = window(&mut value)?,
-            ("displayWindow", "box2i") => part.display_height = display_height(&mut value)?,
+            // No pixel depends on it.
+            ("displayWindow", "box2i") => part.display = window(&mut value).ok(),
             ("compression", "compression") => self.compression = Some(value.u8()?),
             ("tiles", "tiledesc") => {
                 self.tiles = Some(Tiles { width: value.u32()?, height: value.u32()?, mode: value.u8()? });
@@ -240,7 +254,7 @@ fn channels(at: &mut Cursor<'_>) -> Result<Vec<Channel>> {
     Ok(list)
 }
 
-/// Reads the data window.
+/// Reads a window.
 fn window(at: &mut Cursor<'_>) -> Result<Window> {
     let [x0, y0, x1, y1] = [at.i32()?, at.i32()?, at.i32()?, at.i32()?].map(i64::from);
     let (width, height) = (x1 - x0 + 1, y1 - y0 + 1);
@@ -250,13 +264,6 @@ fn window(at: &mut Cursor<'_>) -> Result<Window> {
     }
     // In range, as was just seen.
     Ok(Window { x: x0 as i32, y: y0 as i32, width: width as usize, height: height as usize })
-}
-
-/// Rows of the display window; none where it has no rows or more than a picture can have.
-fn display_height(at: &mut Cursor<'_>) -> Result<Option<u32>> {
-    let [_, y0, _, y1] = [at.i32()?, at.i32()?, at.i32()?, at.i32()?].map(i64::from);
-    let height = y1 - y0 + 1;
-    Ok((1..=LONGEST_SIDE).contains(&height).then_some(height as u32))
 }
 
 /// The list of channels as the file holds it.

@@ -4,14 +4,16 @@ use std::path::Path;
 
 use super::backend::Backend;
 use super::convert;
-use super::exr::{ExrFile, Guide, Picture};
+use super::exr::{ExrFile, Guide};
 use super::memory::Needs;
-use super::primaries::{AP1, Change, REC709, same};
+use super::mix::{self, Meaning};
+use super::primaries::Change;
 use super::read::{ImageState, Opened};
 use super::reel::{Window, guide_bit};
 use super::space::Space;
+use super::working::WorkingSpace;
 use super::write::Format;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::loader::catalogue::Kind;
 use crate::loader::contract::{
     ISOPHOTE_ALPHA_PREMULTIPLIED, ISOPHOTE_ALPHA_STRAIGHT, ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR,
@@ -23,14 +25,39 @@ use crate::pixels::{Pixels, Precision};
 use crate::stylize::history::{is_stage, split};
 use crate::stylize::style::Style;
 
-/// A style with what it runs on.
+/// What is done to a picture: a style, maybe where a mask is.
+#[derive(Debug)]
+pub struct Look {
+    /// The style.
+    pub style: Style,
+    /// Index of the mask among those of pictures.
+    pub mask: Option<usize>,
+}
+
+impl Look {
+    /// A style for whole pictures.
+    pub fn whole(style: Style) -> Self {
+        Self { style, mask: None }
+    }
+}
+
+/// Looks with what they run on. Each is made from the picture itself, and laid over the results of those before where its
+/// mask is.
 #[derive(Debug)]
 pub struct Filter {
     library: Library,
-    style: Style,
+    layers: Vec<Layer>,
     device: Option<Device>,
     space: Option<Space>,
     threads: u32,
+}
+
+/// A look with what is kept of it.
+#[derive(Debug)]
+struct Layer {
+    look: Look,
+    /// The mask that its graph takes as an input; that of other looks is applied to their results.
+    input: Option<usize>,
     /// What is kept of the frames of each picture.
     sequences: Vec<Kept>,
 }
@@ -44,6 +71,8 @@ struct Kept {
 
 /// Farthest from 0 that a picture may begin, pixels, as the contract has it.
 const MOST_ORIGIN: i32 = 1_000_000;
+/// Bytes a pixel of what is mixed with what, as floats, and of the result.
+const MIXED: u64 = 3 * 16;
 
 /// Results of one frame.
 #[derive(Debug)]
@@ -58,42 +87,125 @@ pub struct Filtered {
 #[derive(Debug)]
 pub struct Planner {
     library: Library,
-    style: Style,
+    layers: Vec<Layer>,
     guides: Vec<Guide>,
     /// What filtering a picture of this size takes, as was found last.
     last: Option<((u32, u32), u64)>,
 }
 
+/// Looks as they are applied: the mask of the only one enters its graph where that takes it.
+///
+/// # Errors
+/// [`crate::error::Error::Input`] for a mask of what is no picture of colours.
+fn layers(looks: Vec<Look>) -> Result<Vec<Layer>> {
+    let is_single = looks.len() == 1;
+    let mut layers = Vec::with_capacity(looks.len());
+    for look in looks {
+        let Look { style, mask } = &look;
+        if (mask.is_some() || !is_single) && style.kind != Kind::Color {
+            return Err(Error::input(
+                &style.name,
+                format!("yields a {}, which no mask can lay over a picture", style.kind.name()),
+                "choose a style that yields a colour",
+            ));
+        }
+        let input = if is_single && style.takes_mask()? { *mask } else { None };
+        layers.push(Layer { look, input, sequences: Vec::new() });
+    }
+    Ok(layers)
+}
+
+/// Frames before and after its own that a frame of any of the looks depends on.
+fn frames(library: &Library, layers: &[Layer]) -> Result<[i64; 2]> {
+    let mut most = [0; 2];
+    for Layer { look: Look { style, .. }, .. } in layers {
+        let frames = library.frames(&style.graph).map_err(|e| e.at(&style.name, "choose another style"))?;
+        most = [0, 1].map(|side| i64::from(frames[side]).max(most[side]));
+    }
+    Ok(most)
+}
+
+impl Layer {
+    /// Bits of guides beside those of the picture.
+    fn bits(&self) -> u32 {
+        self.input.map_or(0, |_| guide_bit("mask"))
+    }
+
+    /// Whether its result is mixed with what is below it.
+    fn is_mixed(&self) -> bool {
+        self.look.mask.is_some() && self.input.is_none()
+    }
+
+    /// Filters one picture, and returns how many samples were replaced.
+    fn process(
+        &mut self,
+        (library, device): (&Library, Option<&Device>),
+        job: &Job<'_>,
+        result: &mut Pixels,
+        control: &mut Control<'_>,
+    ) -> Answer<u64> {
+        let Job { at, there, mut request, color, window } = *job;
+        let Some(picture) = window.own.source.pictures.get(at) else { return Ok(0) };
+        let style = &mut self.look.style;
+        request.reference_height = style.lengths.reference_height();
+        let frames = library.frames(&style.graph)?;
+        let mask = self.input.and_then(|mask| Some(("mask", picture.masks.get(mask)?.as_ref()?)));
+        let guides = picture.guides.iter().map(|(name, pixels)| (*name, pixels)).chain(mask);
+        let inputs = guides.map(|(name, pixels)| Input { name, pixels });
+        if frames == [0, 0] {
+            let mut all = vec![Input { name: "color", pixels: color }];
+            all.extend(inputs);
+            return Ok(style.graph.process(device, &request, &all, result, control)?.replaced);
+        }
+        request.guides = inputs.fold(0, |all, input| all | guide_bit(input.name));
+        let size = (request.width, request.height);
+        self.sequences.truncate(if self.sequences.get(at).is_some_and(|k| k.size != size) {
+            at
+        } else {
+            usize::MAX
+        });
+        if self.sequences.len() <= at {
+            let memory = stages(library, style, &request, frames)?;
+            self.sequences.push(Kept { size, sequence: library.sequence(memory, 0.0)? });
+        }
+        let input = self.input;
+        let footage = |name: &str, frame: i64| match (name, input) {
+            ("mask", Some(mask)) => window.mask(at, mask, frame),
+            _ => window.image(at, name, frame, there),
+        };
+        let sequence = &mut self.sequences[at].sequence;
+        Ok(sequence.process(&mut style.graph, device, &request, &footage, result, control)?.replaced)
+    }
+}
+
 impl Filter {
-    /// A style on the device that `backend` asks for.
+    /// Looks on the device that `backend` asks for; at least one.
     ///
     /// # Errors
-    /// [`crate::error::Error::Failure`] when there is no such device.
+    /// [`Error::Failure`] when there is no such device, [`Error::Input`] for a mask of what is no picture of colours.
     pub fn new(
         library: Library,
-        style: Style,
+        looks: Vec<Look>,
         backend: Backend,
         space: Option<Space>,
         threads: u32,
     ) -> Result<Self> {
         let device = backend.device(&library)?;
-        Ok(Self { library, style, device, space, threads, sequences: Vec::new() })
+        Ok(Self { library, layers: layers(looks)?, device, space, threads })
     }
 
     /// Frames before and after its own that a frame depends on.
     ///
     /// # Errors
-    /// [`crate::error::Error::Failure`] when the library fails.
+    /// [`Error::Failure`] when the library fails.
     pub fn frames(&self) -> Result<[i64; 2]> {
-        let frames = self.library.frames(&self.style.graph);
-        Ok(frames.map_err(|e| e.at(&self.style.name, "choose another style"))?.map(i64::from))
+        frames(&self.library, &self.layers)
     }
 
     /// Filters all pictures of a frame, or the first where `format` holds one; `exr` is the file that they came from.
     ///
     /// # Errors
-    /// [`crate::error::Error::Input`] for pictures that the library refuses,
-    /// [`crate::error::Error::Failure`] when it or the device fails.
+    /// [`Error::Input`] for pictures that the library refuses, [`Error::Failure`] when it or the device fails.
     pub fn run(
         &mut self,
         name: &str,
@@ -104,12 +216,14 @@ impl Filter {
     ) -> Result<Filtered> {
         let (own, source) = (&window.own, &window.own.source);
         if let Some(frame) = own.number {
-            self.style.at_frame(frame)?;
+            for layer in &self.layers {
+                layer.look.style.at_frame(frame)?;
+            }
         }
         let in_place = exr.filter(|_| format == Format::Exr);
         let count = if in_place.is_some() { source.pictures.len() } else { source.pictures.len().min(1) };
         let to = format.state(source.state);
-        let scalar = self.style.kind != Kind::Color;
+        let scalar = self.layers.iter().all(|layer| layer.look.style.kind != Kind::Color);
         let mut filtered = Filtered { results: Vec::with_capacity(count), replaced: 0 };
         for (at, picture) in source.pictures.iter().take(count).enumerate() {
             let channels = match in_place {
@@ -122,21 +236,20 @@ impl Filter {
             let (color, bad) = own.working(at, there).unwrap_or((&picture.pixels, 0));
             filtered.replaced += bad;
             let precision = if to == source.state { color.precision() } else { Precision::F32 };
-            let mut result = Pixels::zeroed(color.width(), color.height(), channels, precision);
             let mut request = self.request(name, color, source.state, working.space)?;
             // Windows farther out than marks can be told apart are windows of their own.
             if picture.origin.iter().all(|o| o.abs() <= MOST_ORIGIN) {
                 [request.origin_x, request.origin_y] = picture.origin.map(f64::from);
             }
-            request.canonical_height = picture.canonical_height;
+            request.canonical_height = picture.display.map_or(0, |window| window.height as u32);
             request.frame = own.number.unwrap_or_default();
+            let job = Job { at, there, request, color, window };
             let share = 1.0 / count as f32;
             let mut report = |done: f32| progress((at as f32 + done) * share);
-            let mut control = Control { threads: self.threads, progress: Some(&mut report), measured: None };
-            let job = Job { at, there, request, color, window };
-            filtered.replaced += self
-                .process(&job, &mut result, &mut control)
-                .map_err(|e| e.at(name, "choose another picture or style"))?;
+            let meaning = Meaning { state: source.state, space: working.space };
+            let (mut result, replaced) =
+                self.layered(name, &job, (channels, precision), meaning, &mut report)?;
+            filtered.replaced += replaced;
             if !scalar {
                 result = convert::between(result, source.state, working.space, to);
                 let is_shown = source.state == ImageState::SceneReferred && to == ImageState::DisplayReferred;
@@ -149,32 +262,36 @@ impl Filter {
         Ok(filtered)
     }
 
-    /// Filters one picture, and returns how many samples were replaced.
-    fn process(&mut self, job: &Job<'_>, result: &mut Pixels, control: &mut Control<'_>) -> Answer<u64> {
-        let Job { at, there, mut request, color, window } = *job;
-        let Some(picture) = window.own.source.pictures.get(at) else { return Ok(0) };
-        let frames = self.library.frames(&self.style.graph)?;
-        if frames == [0, 0] {
-            let mut inputs = vec![Input { name: "color", pixels: color }];
-            inputs.extend(picture.guides.iter().map(|(name, pixels)| Input { name, pixels }));
-            let device = self.device.as_ref();
-            return Ok(self.style.graph.process(device, &request, &inputs, result, control)?.replaced);
+    /// The looks of one picture over each other, and how many samples were replaced.
+    fn layered(
+        &mut self,
+        name: &str,
+        job: &Job<'_>,
+        (channels, precision): (u32, Precision),
+        meaning: Meaning,
+        progress: &mut dyn FnMut(f32),
+    ) -> Result<(Pixels, u64)> {
+        let (color, count) = (job.color, self.layers.len() as f32);
+        let masks = job.window.own.source.pictures.get(job.at).map_or(&[][..], |picture| &picture.masks);
+        let mut replaced = 0;
+        let mut below: Option<Pixels> = None;
+        for (number, layer) in self.layers.iter_mut().enumerate() {
+            let mut result = Pixels::zeroed(color.width(), color.height(), channels, precision);
+            let mut report = |done: f32| progress((number as f32 + done) / count);
+            let mut control = Control { threads: self.threads, progress: Some(&mut report), measured: None };
+            let bad = layer
+                .process((&self.library, self.device.as_ref()), job, &mut result, &mut control)
+                .map_err(|e| e.at(name, "choose another picture or style"))?;
+            // All of them read the same picture.
+            replaced = bad.max(replaced);
+            let mask = layer.look.mask.and_then(|mask| masks.get(mask)?.as_ref());
+            below = Some(match mask.filter(|_| layer.is_mixed()) {
+                Some(mask) => mix::mixed(below.as_ref().unwrap_or(color), result, mask, meaning),
+                None => result,
+            });
         }
-        request.guides = picture.guides.iter().fold(0, |all, (name, _)| all | guide_bit(name));
-        let size = (request.width, request.height);
-        self.sequences.truncate(if self.sequences.get(at).is_some_and(|k| k.size != size) {
-            at
-        } else {
-            usize::MAX
-        });
-        if self.sequences.len() <= at {
-            let memory = stages(&self.library, &self.style, &request, frames)?;
-            self.sequences.push(Kept { size, sequence: self.library.sequence(memory, 0.0)? });
-        }
-        let footage = |input: &str, frame: i64| window.image(at, input, frame, there);
-        let sequence = &mut self.sequences[at].sequence;
-        let device = self.device.as_ref();
-        Ok(sequence.process(&mut self.style.graph, device, &request, &footage, result, control)?.replaced)
+        let nothing = || Error::input(name, "is given no style", "name one");
+        Ok((below.ok_or_else(nothing)?, replaced))
     }
 
     fn request(
@@ -185,8 +302,7 @@ impl Filter {
         space: Space,
     ) -> Result<IsophoteRequest> {
         let size = (color.width(), color.height());
-        let request =
-            self.style.request(&self.library, size).map_err(|e| e.at(name, "use a smaller picture"))?;
+        let request = self.library.request(size).map_err(|e| e.at(name, "use a smaller picture"))?;
         Ok(IsophoteRequest {
             space: match space {
                 Space::Srgb => ISOPHOTE_SPACE_SRGB,
@@ -203,16 +319,19 @@ impl Filter {
 }
 
 impl Planner {
-    /// Of a style of its own, which is the same as the filter's.
+    /// Of looks of its own, which are the same as the filter's.
     ///
     /// # Errors
-    /// [`crate::error::Error::Failure`] when the library fails.
-    pub fn new(library: Library, style: Style) -> Result<Self> {
-        let guides = usable_guides(&library, &style)?;
-        Ok(Self { library, style, guides, last: None })
+    /// As [`Filter::new`].
+    pub fn new(library: Library, looks: Vec<Look>) -> Result<Self> {
+        let mut guides = Vec::new();
+        for look in &looks {
+            guides.extend(usable_guides(&library, &look.style)?);
+        }
+        Ok(Self { library, layers: layers(looks)?, guides, last: None })
     }
 
-    /// Guides that the style can use.
+    /// Guides that the styles can use.
     pub fn guides(&self) -> &[Guide] {
         &self.guides
     }
@@ -220,37 +339,54 @@ impl Planner {
     /// Bytes that filtering a picture of this size takes at most, besides the picture and its result.
     ///
     /// # Errors
-    /// [`crate::error::Error::Input`] for sizes and graphs that the library refuses.
+    /// [`Error::Input`] for sizes and graphs that the library refuses.
     pub fn filter_memory(&mut self, name: &str, frame: Option<i64>, size: (u32, u32)) -> Result<u64> {
-        let is_animated = frame.map_or(Ok(false), |frame| self.style.at_frame(frame))?;
+        let is_animated = frame.map_or(Ok(false), |frame| self.at_frame(frame))?;
         if let Some((_, bytes)) = self.last.filter(|(last, _)| *last == size && !is_animated) {
             return Ok(bytes);
         }
         let refused = |e: crate::loader::Refusal| e.at(name, "choose another picture or style");
-        let mut request = self.style.request(&self.library, size).map_err(refused)?;
-        request.guides = self.guides.iter().fold(0, |all, guide| all | guide_bit(guide.id()));
-        let frames = self.library.frames(&self.style.graph).map_err(refused)?;
-        let plan = match frames {
-            [0, 0] => self.style.graph.plan(&request),
-            [past, _] => self.library.plan_in_order(&self.style.graph, &request, &history(past)),
-        };
-        let plan = plan.map_err(refused)?;
-        let textures: u64 = plan.textures().map_err(refused)?.iter().map(Texture::bytes).sum();
-        let bytes = textures + stages(&self.library, &self.style, &request, frames).map_err(refused)?;
+        let pixels = u64::from(size.0) * u64::from(size.1);
+        let guides = self.guides.iter().fold(0, |all, guide| all | guide_bit(guide.id()));
+        // One look is made at a time; what it keeps of frames stays.
+        let (mut kept, mut most) = (0, 0);
+        for layer in &self.layers {
+            let style = &layer.look.style;
+            let mut request = style.request(&self.library, size).map_err(refused)?;
+            request.guides = guides | layer.bits();
+            let frames = self.library.frames(&style.graph).map_err(refused)?;
+            let plan = match frames {
+                [0, 0] => style.graph.plan(&request),
+                [past, _] => self.library.plan_in_order(&style.graph, &request, &history(past)),
+            };
+            let plan = plan.map_err(refused)?;
+            let textures: u64 = plan.textures().map_err(refused)?.iter().map(Texture::bytes).sum();
+            let mixed = if layer.is_mixed() || self.layers.len() > 1 { pixels * MIXED } else { 0 };
+            most = most.max(textures + mixed);
+            kept += stages(&self.library, style, &request, frames).map_err(refused)?;
+        }
+        let bytes = most + kept;
         self.last = Some((size, bytes));
         Ok(bytes)
+    }
+
+    /// Gives animated parameters their values at a frame, and says whether there are any.
+    fn at_frame(&self, frame: i64) -> Result<bool> {
+        let mut is_animated = false;
+        for layer in &self.layers {
+            is_animated |= layer.look.style.at_frame(frame)?;
+        }
+        Ok(is_animated)
     }
 
     /// Frames before and after `frame` that it depends on.
     ///
     /// # Errors
-    /// [`crate::error::Error::Input`] when an animated parameter cannot have its value.
+    /// [`Error::Input`] when an animated parameter cannot have its value.
     pub fn frames(&self, frame: Option<i64>) -> Result<[i64; 2]> {
         let Some(frame) = frame else { return Ok([0, 0]) };
-        self.style.at_frame(frame)?;
-        let frames = self.library.frames(&self.style.graph);
-        let frames = frames.map_err(|e| e.at(&self.style.name, "choose another style"))?;
-        Ok(frames.map(i64::from))
+        self.at_frame(frame)?;
+        frames(&self.library, &self.layers)
     }
 
     /// How many frames are held while `frame` is done: it and all that it depends on.
@@ -269,37 +405,10 @@ impl Planner {
     pub fn needs(&mut self, file: &Path, frame: Option<i64>, opened: &Opened) -> Result<Option<Needs>> {
         let Some(size) = opened.size() else { return Ok(None) };
         let filter = self.filter_memory(&file.display().to_string(), frame, size)?;
-        Ok(Some(Needs { frame: opened.weight(), filter }))
-    }
-}
-
-/// The colour space in which a picture is filtered, and the change of primaries to it, which the library does not
-/// know and which is done here.
-pub struct WorkingSpace {
-    /// The space of the request.
-    pub space: Space,
-    /// To Rec.709 and back, for primaries that a request cannot name.
-    pub change: Option<(Change, Change)>,
-}
-
-impl WorkingSpace {
-    /// What `space` says, or what the file says without.
-    pub fn of(space: Option<Space>, state: ImageState, picture: &Picture) -> Self {
-        let known = |space| Self { space, change: None };
-        let primaries = match (space, state) {
-            (Some(Space::P3 | Space::Rec2020), _) => space.and_then(Space::primaries),
-            (Some(space), _) => return known(space),
-            (None, ImageState::DisplayReferred) => return known(Space::Srgb),
-            (None, ImageState::SceneReferred) => picture.chromaticities,
-        };
-        let change = |from| Some((Change::new(from, REC709)?, Change::new(REC709, from)?));
-        match primaries {
-            Some(c) if same(c, AP1) => known(Space::Acescg),
-            Some(c) if !same(c, REC709) && picture.pixels.channels() > 1 => {
-                Self { space: Space::Linear, change: change(c) }
-            }
-            _ => known(Space::Linear),
-        }
+        // Each as it is read, as it is kept and as one of all frames.
+        let masks = self.layers.iter().filter(|layer| layer.look.mask.is_some()).count() as u64;
+        let masks = u64::from(size.0) * u64::from(size.1) * 4 * 3 * masks;
+        Ok(Some(Needs { frame: opened.weight().saturating_add(masks), filter }))
     }
 }
 

@@ -47,6 +47,16 @@ pub struct Source {
     pub exr: Option<ExrFile>,
 }
 
+impl Source {
+    /// Makes sure that there can be results of all pictures.
+    ///
+    /// # Errors
+    /// Why there can be none.
+    pub fn check(&self) -> Result<()> {
+        self.pictures.iter().find_map(|picture| picture.refused.clone()).map_or(Ok(()), Err)
+    }
+}
+
 /// Reads a picture, of an EXR file what `selection` chooses.
 ///
 /// # Errors
@@ -73,6 +83,15 @@ enum Kind {
 /// `selection` chooses.
 pub fn open(path: &Path, selection: &Selection) -> Result<Opened> {
     Unread::open(path)?.read(path, selection)
+}
+
+/// A file in memory, by its kind.
+#[derive(Debug)]
+pub enum Any {
+    /// The bytes of an EXR file.
+    Exr(Vec<u8>),
+    /// Another picture.
+    Other(Opened),
 }
 
 /// An open file of which nothing is read yet. Whatever takes its place on disk meanwhile, this is what is read.
@@ -116,6 +135,19 @@ impl Unread {
             return Ok(Opened(Kind::Exr(Box::new(opened))));
         }
         Ok(Opened(Kind::Other(bytes, selection.option())))
+    }
+
+    /// Reads it without taking anything apart.
+    ///
+    /// # Errors
+    /// As [`open`].
+    pub fn any(self, path: &Path) -> Result<Any> {
+        let bytes = self.bytes(path)?;
+        Ok(if bytes.starts_with(&EXR) {
+            Any::Exr(bytes)
+        } else {
+            Any::Other(Opened(Kind::Other(bytes, None)))
+        })
     }
 
     /// All of it.
@@ -311,7 +343,7 @@ fn picture(path: &Path, mut decoder: impl ImageDecoder, kind: &str) -> Result<So
     };
     let pixels = Pixels::new(width, height, channels, samples)
         .ok_or_else(|| Error::malformed(path, kind, "it does not hold as many pixels as it says"))?;
-    let picture = Picture { pixels, guides: Vec::new(), chromaticities: None, origin: [0; 2], canonical_height: 0 };
+    let picture = Picture::alone(pixels);
     let state = match picture.pixels.precision() {
         Precision::F16 | Precision::F32 => ImageState::SceneReferred,
         Precision::U8 | Precision::U16 => ImageState::DisplayReferred,

@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use super::exr::{self, Selection};
 use super::filter::Planner;
+use super::masks::Masks;
 use super::memory::{Budget, Needs, too_large};
 use super::read::{Opened, Source, Unread};
 use super::reel::{Held, Window};
@@ -26,6 +27,8 @@ pub struct Footage<'a> {
     pub motion: Option<&'a Pattern>,
     /// What is read of EXR files.
     pub selection: &'a Selection,
+    /// Masks of the run.
+    pub masks: &'a Masks,
     /// Memory of frames in flight.
     pub budget: &'a Budget,
 }
@@ -64,6 +67,7 @@ impl<'a> Reader<'a> {
     pub fn window(&mut self, task: &Task) -> Result<Window<'a>> {
         let Some(frame) = task.frame else {
             let own = Arc::new(self.read(&task.input, None, 1)?);
+            own.source.check()?;
             return Ok(Window { own: Arc::clone(&own), frames: vec![own] });
         };
         let [past, future] = self.planner.frames(task.frame)?;
@@ -71,6 +75,7 @@ impl<'a> Reader<'a> {
         self.held.retain(|(number, _)| wanted.contains(number));
         let span = self.planner.span(task.frame)?;
         let own = self.frame(frame, &task.input, span)?;
+        own.source.check()?;
         for towards in [-1, 1] {
             let reach = if towards < 0 { past } else { future };
             for number in (1..=reach).map(|n| frame + towards * n) {
@@ -133,6 +138,7 @@ impl<'a> Reader<'a> {
             add_motion(&mut source, &pattern.file(number), selection)?;
         }
         let is_written = number.is_none_or(|number| self.tasks.contains(&number));
+        self.footage.masks.add(&mut source, number)?;
         Ok(Held::new(number, source, is_written, share))
     }
 }

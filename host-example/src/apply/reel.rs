@@ -59,17 +59,26 @@ pub struct Window<'a> {
 impl Window<'_> {
     /// What an input of picture `at` shows in a frame, if that is like the frame itself; `change` leads to the working space.
     pub fn image(&self, at: usize, input: &str, frame: i64, change: Option<&Change>) -> Option<&Pixels> {
+        let (held, picture) = self.alike(at, frame)?;
+        match input {
+            "color" => held.working(at, change).map(|(pixels, _)| pixels),
+            _ => picture.guides.iter().find(|(name, _)| *name == input).map(|(_, pixels)| pixels),
+        }
+    }
+
+    /// A mask of picture `at` in a frame, if that is like the frame itself.
+    pub fn mask(&self, at: usize, mask: usize, frame: i64) -> Option<&Pixels> {
+        self.alike(at, frame)?.1.masks.get(mask)?.as_ref()
+    }
+
+    /// Picture `at` in a frame, if that is like the frame itself.
+    fn alike(&self, at: usize, frame: i64) -> Option<(&Held<'_>, &Picture)> {
         let held = self.frames.iter().find(|held| held.number.unwrap_or_default() == frame)?;
         let (own, other): (&Picture, &Picture) =
             (self.own.source.pictures.get(at)?, held.source.pictures.get(at)?);
         let size = |picture: &Picture| (picture.pixels.width(), picture.pixels.height());
-        if size(own) != size(other) || self.own.source.state != held.source.state {
-            return None;
-        }
-        match input {
-            "color" => held.working(at, change).map(|(pixels, _)| pixels),
-            _ => other.guides.iter().find(|(name, _)| *name == input).map(|(_, pixels)| pixels),
-        }
+        let is_alike = size(own) == size(other) && self.own.source.state == held.source.state;
+        is_alike.then_some((held, other))
     }
 }
 
@@ -79,6 +88,7 @@ pub fn guide_bit(input: &str) -> u32 {
         "normal" => contract::ISOPHOTE_GUIDE_NORMAL,
         "depth" => contract::ISOPHOTE_GUIDE_DEPTH,
         "object_id" => contract::ISOPHOTE_GUIDE_OBJECT_ID,
+        "mask" => contract::ISOPHOTE_GUIDE_MASK,
         "motion" => contract::ISOPHOTE_GUIDE_MOTION,
         "motion_forward" => contract::ISOPHOTE_GUIDE_MOTION_FORWARD,
         "rest_position" => contract::ISOPHOTE_GUIDE_REST_POSITION,

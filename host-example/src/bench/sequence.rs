@@ -3,7 +3,7 @@
 use super::Subject;
 use super::throughput::{Throughput, measure};
 use crate::apply::backend::Backend;
-use crate::apply::filter::{Filter, Planner};
+use crate::apply::filter::{Filter, Look, Planner};
 use crate::apply::memory::{self, Bytes};
 use crate::error::{Error, Result};
 use crate::loader::Library;
@@ -20,14 +20,14 @@ pub fn run(subjects: &[Subject], picture: &Pixels, frames: u32, json: bool) -> R
     let mut results = Vec::with_capacity(subjects.len());
     for subject in subjects {
         let library = Library::open()?;
-        let style = || {
+        let looks = || {
             let mut style = Style::load(&library, &subject.node, &subject.settings)?;
             // As in the other tables.
             style.lengths = Lengths::Pixels;
-            Ok::<_, Error>(style)
+            Ok::<_, Error>(vec![Look::whole(style)])
         };
-        let planner = Planner::new(library.clone(), style()?)?;
-        let filter = Filter::new(library.clone(), style()?, Backend::Cpu, None, 0)?;
+        let planner = Planner::new(library.clone(), looks()?)?;
+        let filter = Filter::new(library.clone(), looks()?, Backend::Cpu, None, 0)?;
         let result = measure(filter, planner, picture, frames, memory::usual().0)?;
         if !json {
             output::print(&text(subject, picture, &result))?;

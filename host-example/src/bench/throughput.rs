@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::apply::exr::{Selection, components};
 use crate::apply::filter::{Filter, Planner};
+use crate::apply::masks::Masks;
 use crate::apply::memory::Budget;
 use crate::apply::read;
 use crate::apply::reader::{Footage, Reader};
@@ -64,7 +65,9 @@ pub fn measure(
     let selection = Selection { wanted: planner.guides().to_vec(), ..Selection::default() };
     let mut filter_seconds = 0.0;
     let (budget, report) = (Budget::new(bound), Report::new(tasks.len(), false, false));
-    let footage = Footage { frames: None, motion: None, selection: &selection, budget: &budget };
+    let masks = Masks::default();
+    let footage =
+        Footage { frames: None, motion: None, selection: &selection, masks: &masks, budget: &budget };
     // The first of these runs makes the plan and is not counted.
     for (at, task) in tasks.iter().take(1).chain(&tasks).enumerate() {
         let source = read::read(&task.input, &selection)?;

@@ -4,6 +4,8 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::str::FromStr;
 
+use serde_json::{Map, Value};
+
 use super::lengths::Lengths;
 use super::preset::{self, Animated, Preset, Track};
 use crate::error::{Error, Result};
@@ -77,15 +79,29 @@ impl Style {
     /// [`Error::Input`] for names that are neither, files that cannot be read, graphs that yield something
     /// that is no picture, and parameters that do not exist or cannot have their value.
     pub fn load(library: &Library, name: impl AsRef<OsStr>, settings: &[Setting]) -> Result<Self> {
-        let style = Self::any(library, name, settings)?;
-        if !style.kind.is_picture() {
-            return Err(Error::input(
-                &style.name,
-                format!("yields a {}, which is no picture", style.kind.name()),
-                "choose a node that yields a colour or a scalar; `isophote nodes` lists them",
-            ));
+        Self::any(library, name, settings)?.picture()
+    }
+
+    /// The style of a preset that is written in the file `path`.
+    ///
+    /// # Errors
+    /// As [`Style::load`].
+    pub fn of_preset(library: &Library, path: &Path, preset: &Preset) -> Result<Self> {
+        let mut style = Self::of(inside(library, path, preset)?, path.as_os_str())?;
+        style.follow_all(preset)?;
+        style.picture()
+    }
+
+    /// Itself, where it yields a picture.
+    fn picture(self) -> Result<Self> {
+        if self.kind.is_picture() {
+            return Ok(self);
         }
-        Ok(style)
+        Err(Error::input(
+            &self.name,
+            format!("yields a {}, which is no picture", self.kind.name()),
+            "choose a node that yields a colour or a scalar; `isophote nodes` lists them",
+        ))
     }
 
     /// As [`Style::load`], but of graphs that yield anything.
@@ -96,13 +112,8 @@ impl Style {
         let mut opened = open(library, name.as_ref())?;
         let preset = opened.preset.take();
         let mut style = Self::of(opened, name.as_ref())?;
-        style.lengths = preset.as_ref().and_then(|preset| preset.lengths).unwrap_or_default();
-        let mut faults = Vec::new();
-        for (param, track) in preset.iter().flat_map(|p| &p.params) {
-            style.follow(param, track, &mut faults);
-        }
-        if let Some(fault) = faults.into_iter().next() {
-            return Err(fault);
+        if let Some(preset) = &preset {
+            style.follow_all(preset)?;
         }
         for setting in settings {
             let (node, _) = style.set(setting)?;
@@ -185,6 +196,16 @@ impl Style {
         self.animated.iter().find(|a| a.name == name).map(|a| a.at(frame))
     }
 
+    /// Takes over all that a preset says.
+    fn follow_all(&mut self, preset: &Preset) -> Result<()> {
+        self.lengths = preset.lengths.unwrap_or_default();
+        let mut faults = Vec::new();
+        for (param, track) in &preset.params {
+            self.follow(param, track, &mut faults);
+        }
+        faults.into_iter().next().map_or(Ok(()), Err)
+    }
+
     /// Takes over what a preset says of a parameter. What it cannot take is added to `faults`.
     fn follow(&mut self, name: &str, track: &Track, faults: &mut Vec<Error>) {
         let place = format!("{}: parameter '{name}'", self.name);
@@ -265,6 +286,18 @@ impl Style {
             }
         }
         Ok(false)
+    }
+
+    /// Whether a node of the graph reads the mask that enters it.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the library fails.
+    pub fn takes_mask(&self) -> Result<bool> {
+        let json = self.graph.to_json().map_err(|e| e.at(&self.name, "choose another style"))?;
+        let graph: Value = serde_json::from_str(&json).unwrap_or_default();
+        let nodes = graph["nodes"].as_array().into_iter().flatten();
+        let mut sources = nodes.filter_map(|node| node["inputs"].as_object()).flat_map(Map::values);
+        Ok(sources.any(|source| source == "@mask"))
     }
 
     /// Lets all nodes that can be steady over time estimate motion from the pictures themselves.

@@ -7,8 +7,10 @@ use clap::Args;
 use super::shared::LengthArgs;
 use crate::apply::backend::Backend;
 use crate::apply::dry_run::DryRun;
-use crate::apply::exr::{Convention, Guide, GuideChoice, Selection};
-use crate::apply::filter::{self, Filter, Planner};
+use crate::apply::exr::{Convention, Guide, GuideChoice, MaskSource, OnUnknown, Selection};
+use crate::apply::filter::{self, Filter, Look, Planner};
+use crate::apply::looks::{self, Entry};
+use crate::apply::masks::{MaskChoice, Masks};
 use crate::apply::memory::{self, Budget, Bytes, too_large};
 use crate::apply::read::{self, Opened};
 use crate::apply::reader::{Footage, Reader};
@@ -32,18 +34,22 @@ const ESTIMATE: &str = "estimate";
 /// Options of `apply`.
 #[derive(Args, Debug)]
 pub struct ApplyArgs {
-    /// The id of a node, or a graph file or preset (.json). Left out where --preset is given.
+    /// The id of a node, or a graph file or preset (.json). Left out where --preset or --layered is given.
     pub style: PathBuf,
     /// The picture: PNG, JPEG, TIFF, WebP, HDR or EXR. A sequence: shot.####.exr, shot.@@@@.exr or shot.%04d.exr. A video
     /// that ffmpeg reads, such as .mp4, .mov, .mkv or .webm; or - for YUV4MPEG on standard input.
     pub input: PathBuf,
     /// The result: .png, .jpg, .tif or .exr; may be the input itself. For a sequence with #### as well. For a video another
     /// one, or - for YUV4MPEG on standard output.
-    #[arg(required_unless_present = "preset")]
+    #[arg(required_unless_present_any = ["preset", "layered"])]
     pub output: Option<PathBuf>,
     /// A preset file with the style and its parameters.
     #[arg(long, value_name = "FILE")]
     pub preset: Option<PathBuf>,
+    /// A JSON file with a list of looks instead of a style, each made from the picture and laid over those before where its mask
+    /// is: [{"style": "watercolor"}, {"preset": "hero.json", "params": {"sigma": 2}, "mask": "cryptomatte:hero", "invert": false}].
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["preset", "set", "mask"])]
+    pub layered: Option<PathBuf>,
     /// Frames of the sequence, such as 1001-1100x2,1200 [default: all that are on disk].
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub frames: Option<FrameList>,
@@ -79,6 +85,9 @@ pub struct ApplyArgs {
     /// The layer of an EXR file that is read and replaced [default: the main layer].
     #[arg(long, value_name = "LAYER")]
     pub layer: Option<String>,
+    /// Reads and replaces the layer even where its name says that it holds data, such as N, Z, P or a Cryptomatte.
+    #[arg(long, requires = "layer")]
+    pub force_layer: bool,
     /// The view of a multi-view EXR file [default: all views, each filtered by itself].
     #[arg(long, value_name = "VIEW")]
     pub view: Option<String>,
@@ -90,9 +99,25 @@ pub struct ApplyArgs {
     pub into: Option<String>,
     /// The layer of an EXR file that guides the filter: normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER,
     /// motion_forward=LAYER or rest_position=LAYER, or none instead of a layer. Without it guides are found by names such as
-    /// N, normal, Z, depth, P, id, backward, Vector, velocity, Pref and rest. May be repeated.
+    /// N, normal, Z, depth, P, id, backward, Vector, velocity, Pref and rest; where there is no id, the Cryptomatte of objects
+    /// stands for it, which is object_id=cryptomatte, or `object_id=cryptomatte[LAYER]` for another. May be repeated.
     #[arg(long, value_name = "GUIDE=LAYER")]
     pub guide: Vec<GuideChoice>,
+    /// How much of the result is used where: a file such as mask.png, one for each frame (mask.####.exr), a layer or channel of
+    /// the EXR file, or things of its Cryptomatte: `cryptomatte:hero,props/*` or `cryptomatte[crypto_material]:skin`. A star in
+    /// a name stands for any letters, ? for one, and a backslash makes either ordinary. Files of colours count by luminance;
+    /// alpha never counts.
+    #[arg(long, value_name = "MASK")]
+    pub mask: Option<MaskSource>,
+    /// EXR files that have the mask's layer or Cryptomatte, such as ids.####.exr [default: the input].
+    #[arg(long, value_name = "FILES")]
+    pub mask_from: Option<PathBuf>,
+    /// Uses the result where the mask is not.
+    #[arg(long, requires = "mask")]
+    pub invert: bool,
+    /// What to do in frames that do not know a name of the mask's.
+    #[arg(long, value_enum, default_value_t = OnUnknown::Fail)]
+    pub on_unknown: OnUnknown,
     /// How steady frames of a sequence are, from 0 to 1: neighbouring frames are carried along motion and averaged before
     /// the style decides anything. Needs motion vectors in the EXR files, or --motion [default: what the style says].
     #[arg(long, value_name = "S")]
@@ -127,18 +152,22 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let tasks = args.tasks()?;
     let library = Library::open()?;
     let threads = limits::start_threads(args.threads as usize)?;
-    let style = args.style_of(&library, files.style)?;
+    let entries = args.entries()?;
+    let looks = args.looks(&library, files.style, &entries)?;
     if tasks.is_sequence() {
         let frames: Vec<i64> =
             tasks.ready.iter().chain(&tasks.missing).filter_map(|task| task.frame).collect();
-        style.warn_of_keys_beyond(&frames);
+        looks.iter().for_each(|look| look.style.warn_of_keys_beyond(&frames));
     }
-    let selection = args.selection(&library, &style, format)?;
+    let choices = args.masks(&entries);
+    let masks = Masks::new(&choices, args.mask_from.as_deref(), args.on_unknown)?;
+    masks.check(Some(&tasks))?;
+    let selection = args.selection(&library, &looks, choices, format)?;
     let motion = args.motion_files(&tasks, &selection)?;
     let opened = args.open_first(&tasks, &selection)?;
     let backend = if args.dry_run { Backend::Cpu } else { args.backend };
-    let mut planner = Planner::new(library.clone(), args.style_of(&library, files.style)?)?;
-    let mut filter = Filter::new(library, style, backend, args.space, args.threads)?;
+    let mut planner = Planner::new(library.clone(), args.looks(&library, files.style, &entries)?)?;
+    let mut filter = Filter::new(library, looks, backend, args.space, args.threads)?;
     let most = args.memory.unwrap_or_else(memory::usual);
     let first = &tasks.ready[0];
     let needs = match &opened {
@@ -175,6 +204,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         frames: tasks.sequence.as_ref(),
         motion: motion.as_ref(),
         selection: &selection,
+        masks: &masks,
         budget: &budget,
     };
     let run = Run {
@@ -224,14 +254,20 @@ struct Files<'a> {
 impl ApplyArgs {
     /// With a preset the style is left out, and the other two move up.
     fn files(&self) -> Result<Files<'_>> {
-        match (&self.output, &self.preset) {
+        match (&self.output, self.preset.as_ref().or(self.layered.as_ref())) {
             (Some(output), None) => Ok(Files { style: &self.style, input: &self.input, output }),
-            (None, Some(preset)) => Ok(Files { style: preset, input: &self.style, output: &self.input }),
-            _ => Err(Error::input(
-                "--preset",
-                "the preset names the style",
-                "give the picture and the result alone, or leave --preset out",
-            )),
+            (None, Some(style)) => Ok(Files { style, input: &self.style, output: &self.input }),
+            _ => {
+                let (option, problem) = match self.preset {
+                    Some(_) => ("--preset", "the preset names the style"),
+                    None => ("--layered", "its looks name the styles"),
+                };
+                Err(Error::input(
+                    option,
+                    problem,
+                    format!("give the picture and the result alone, or leave {option} out"),
+                ))
+            }
         }
     }
 
@@ -263,24 +299,71 @@ impl ApplyArgs {
         }
         let library = Library::open()?;
         limits::start_threads(self.threads as usize)?;
-        let style = self.style_of(&library, files.style)?;
-        let mut filter = Filter::new(library, style, self.backend, self.space, self.threads)?;
+        let entries = self.entries()?;
+        let looks = self.looks(&library, files.style, &entries)?;
+        let choices = self.masks(&entries);
+        let is_file = |mask: &MaskChoice| matches!(mask.source, MaskSource::File(_));
+        if !(self.mask_from.is_some() || choices.iter().all(is_file)) {
+            return wrong(
+                "--mask",
+                "a video has no layers",
+                "name files of masks, or EXR files by --mask-from",
+            );
+        }
+        let masks = Masks::new(&choices, self.mask_from.as_deref(), self.on_unknown)?;
+        masks.check(None)?;
+        let mut filter = Filter::new(library, looks, self.backend, self.space, self.threads)?;
         let stop = Stop::on_signals();
         let (input, output, encode) = (files.input, files.output, self.encode.as_deref());
-        video::run(&video::Job { input, output, encode, json: self.json, stop: &stop }, &mut filter)
+        video::run(
+            &video::Job { input, output, encode, json: self.json, masks: &masks, stop: &stop },
+            &mut filter,
+        )
     }
 
-    /// The style with its parameters.
-    fn style_of(&self, library: &Library, name: &Path) -> Result<Style> {
-        let mut style = Style::load(library, name, &self.set)?;
-        self.lengths.apply(&mut style);
-        if let Some(steadiness) = self.steadiness {
-            style.steady(steadiness)?;
+    /// The looks of a file; none where there is a style.
+    fn entries(&self) -> Result<Vec<Entry>> {
+        self.layered.as_deref().map_or_else(|| Ok(Vec::new()), looks::read)
+    }
+
+    /// What is done to every picture: the looks of a file, or else the style.
+    fn looks(&self, library: &Library, name: &Path, entries: &[Entry]) -> Result<Vec<Look>> {
+        let mut masks = 0..;
+        let looks = if entries.is_empty() {
+            let style = Style::load(library, name, &self.set)?;
+            vec![Look { style, mask: self.mask.as_ref().and_then(|_| masks.next()) }]
+        } else {
+            let look = |entry: &Entry| {
+                let style = entry.style(library)?;
+                Ok(Look { style, mask: entry.mask.as_ref().and_then(|_| masks.next()) })
+            };
+            entries.iter().map(look).collect::<Result<_>>()?
+        };
+        self.timed(looks)
+    }
+
+    /// Where it is done.
+    fn masks(&self, entries: &[Entry]) -> Vec<MaskChoice> {
+        let choice = |source: &MaskSource| MaskChoice { source: source.clone(), invert: self.invert };
+        let own = self.mask.iter().map(choice);
+        own.chain(entries.iter().filter_map(|entry| entry.mask.clone())).collect()
+    }
+
+    /// The looks with what the command line says of time and lengths. Of several, one that knows of time is enough.
+    fn timed(&self, mut looks: Vec<Look>) -> Result<Vec<Look>> {
+        let mut refused = Vec::new();
+        for Look { style, .. } in &mut looks {
+            self.lengths.apply(style);
+            refused.extend(self.steadiness.and_then(|steadiness| style.steady(steadiness).err()));
+            if self.estimates_motion() {
+                style.estimate_motion()?;
+            }
         }
-        if self.estimates_motion() {
-            style.estimate_motion()?;
+        if refused.len() < looks.len() {
+            Ok(looks)
+        } else {
+            refused.into_iter().next().map_or(Ok(looks), Err)
         }
-        Ok(style)
     }
 
     /// Whether motion is to be found in the pictures themselves.
@@ -357,14 +440,23 @@ impl ApplyArgs {
     }
 
     /// Guides that are looked for.
-    fn wanted(&self, library: &Library, style: &Style) -> Result<Vec<Guide>> {
-        let mut wanted = filter::usable_guides(library, style)?;
+    fn wanted(&self, library: &Library, looks: &[Look]) -> Result<Vec<Guide>> {
+        let mut wanted = Vec::new();
+        for look in looks {
+            wanted.extend(filter::usable_guides(library, &look.style)?);
+        }
         wanted.retain(|guide| !(self.estimates_motion() && guide.is_motion()));
         Ok(wanted)
     }
 
     /// What is read of EXR files.
-    fn selection(&self, library: &Library, style: &Style, format: Format) -> Result<Selection> {
+    fn selection(
+        &self,
+        library: &Library,
+        looks: &[Look],
+        masks: Vec<MaskChoice>,
+        format: Format,
+    ) -> Result<Selection> {
         if self.into.is_some() && format != Format::Exr {
             return Err(Error::input(
                 "--into",
@@ -384,12 +476,19 @@ impl ApplyArgs {
         }
         Ok(Selection {
             layer: self.layer.clone(),
+            force: self.force_layer,
             view: self.view.clone(),
             alpha: self.alpha.clone(),
             into: self.into.clone(),
             guides: self.guide.clone(),
-            wanted: self.wanted(library, style)?,
+            wanted: self.wanted(library, looks)?,
             convention: self.motion_convention,
+            // What lies in other files is not looked for in the picture's.
+            masks: masks
+                .into_iter()
+                .map(|mask| self.mask_from.clone().map_or(mask.source, MaskSource::File))
+                .collect(),
+            on_unknown: self.on_unknown,
         })
     }
 }

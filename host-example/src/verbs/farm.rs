@@ -11,6 +11,7 @@ use clap::{Args, FromArgMatches, Subcommand};
 use serde_json::{Value, json};
 
 use super::apply::ApplyArgs;
+use crate::apply::exr::MaskSource;
 use crate::error::{Error, Result};
 use crate::frames::range_expression;
 use crate::{files, output};
@@ -135,8 +136,13 @@ fn words(command: &[String], parsed: &ApplyArgs) -> Result<Vec<String>> {
     let mut files: Vec<&Path> = vec![&parsed.input];
     files.extend(parsed.output.as_deref());
     files.extend(parsed.preset.as_deref());
-    // A node is no file; with a preset the first word is the picture.
-    if parsed.preset.is_some() || parsed.style.is_file() {
+    files.extend(parsed.layered.as_deref());
+    files.extend(parsed.mask_from.as_deref());
+    if let Some(MaskSource::File(path)) = &parsed.mask {
+        files.push(path);
+    }
+    // A node is no file; with a preset or looks the first word is the picture.
+    if parsed.preset.is_some() || parsed.layered.is_some() || parsed.style.is_file() {
         files.push(&parsed.style);
     }
     let mut words = Vec::new();
@@ -145,8 +151,11 @@ fn words(command: &[String], parsed: &ApplyArgs) -> Result<Vec<String>> {
         if word == "--frames" {
             rest.next();
         } else if word.starts_with("--frames=") {
-        } else if let Some(preset) = word.strip_prefix("--preset=") {
-            words.push(format!("--preset={}", full(Path::new(preset))?));
+        } else if let Some((option, file)) = word.split_once('=').filter(|(option, file)| {
+            ["--preset", "--layered", "--mask-from"].contains(option)
+                || *option == "--mask" && files.contains(&Path::new(file))
+        }) {
+            words.push(format!("{option}={}", full(Path::new(file))?));
         } else if files.contains(&Path::new(word)) {
             words.push(full(Path::new(word))?);
         } else {

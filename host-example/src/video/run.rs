@@ -12,6 +12,7 @@ use super::process::{Process, at, command, file};
 use super::stream::Stream;
 use crate::apply::exr::Picture;
 use crate::apply::filter::Filter;
+use crate::apply::masks::Masks;
 use crate::apply::memory::Budget;
 use crate::apply::read::{ImageState, Source};
 use crate::apply::reel::{Held, Window};
@@ -40,6 +41,8 @@ pub struct Job<'a> {
     pub encode: Option<&'a str>,
     /// Whether lines of JSON are wanted.
     pub json: bool,
+    /// Masks of the frames, which count from 1.
+    pub masks: &'a Masks,
     /// Set when the run shall end early.
     pub stop: &'a Stop,
 }
@@ -111,10 +114,12 @@ impl Job<'_> {
         let name = self.input.display().to_string();
         let [past, future] = filter.frames()?;
         let hold = |(pixels, number)| {
-            let picture = Picture { pixels, guides: Vec::new(), chromaticities: None, origin: [0; 2], canonical_height: 0 };
+            let picture = Picture::alone(pixels);
             let state = ImageState::DisplayReferred;
-            let source = Source { pictures: vec![picture], state, profile: None, exr: None };
-            Arc::new(Held::new(Some(number), source, false, budget.share()))
+            let mut source = Source { pictures: vec![picture], state, profile: None, exr: None };
+            self.masks.add(&mut source, Some(number))?;
+            source.check()?;
+            Ok::<_, Error>(Arc::new(Held::new(Some(number), source, false, budget.share())))
         };
         let mut decoded = decoded.into_iter().zip(1..).map(hold);
         let mut frames: VecDeque<Arc<Held<'_>>> = VecDeque::new();
@@ -125,7 +130,7 @@ impl Job<'_> {
             }
             let number = count + 1;
             while frames.back().and_then(|last| last.number).is_none_or(|last| last < number + future) {
-                let Some(next) = decoded.next() else { break };
+                let Some(next) = decoded.next().transpose()? else { break };
                 frames.push_back(next);
             }
             frames.retain(|held| held.number >= Some(number - past));

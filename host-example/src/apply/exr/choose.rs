@@ -1,11 +1,15 @@
 //! Choosing what of a file is the picture and what guides it.
 
+use std::path::Path;
 use std::str::FromStr;
 
 use isophote_exr_edit::{File, Sample};
 use isophote_motion::{Convention, Rule};
 
+use super::cryptomatte::MatteChoice;
 use super::fault::Fault;
+use super::mask::{ChosenMask, MaskSource, OnUnknown};
+use super::mattes::{Matte, Ranks, mattes, pick};
 use super::motion;
 use super::names::{Group, Model, REST, groups, is_matte, rank};
 
@@ -14,6 +18,8 @@ use super::names::{Group, Model, REST, groups, is_matte, rank};
 pub struct Selection {
     /// The layer; the main one without.
     pub layer: Option<String>,
+    /// Whether that layer may hold data instead of colours.
+    pub force: bool,
     /// The view; all without.
     pub view: Option<String>,
     /// The channel that is alpha, or `none`; `A` of the layer without.
@@ -26,6 +32,10 @@ pub struct Selection {
     pub wanted: Vec<Guide>,
     /// What motion vectors mean; what the names of their layers say without.
     pub convention: Option<Convention>,
+    /// Where masks come from.
+    pub masks: Vec<MaskSource>,
+    /// What becomes of frames that do not know a name of a mask.
+    pub on_unknown: OnUnknown,
 }
 
 impl Selection {
@@ -38,6 +48,7 @@ impl Selection {
             ("--into", self.into.is_some()),
             ("--guide", self.guides.iter().any(|g| g.layer.is_some())),
             ("--motion-convention", self.convention.is_some()),
+            ("--mask", self.masks.iter().any(|mask| !matches!(mask, MaskSource::File(_)))),
         ];
         asked.into_iter().find(|(_, asked)| *asked).map(|(name, _)| name)
     }
@@ -124,6 +135,17 @@ pub struct Chosen {
     pub alpha: Option<usize>,
     /// What guides it.
     pub guides: Vec<Source>,
+    /// The masks that are in the file, one for each that was asked for.
+    pub masks: Vec<Option<ChosenMask>>,
+}
+
+impl Chosen {
+    /// The parts of which it reads, some of them several times.
+    pub fn parts(&self) -> impl Iterator<Item = usize> {
+        let masks = self.masks.iter().flatten().flat_map(|mask| &mask.layers);
+        let guides = self.guides.iter().map(|guide| guide.part);
+        guides.chain(masks.map(|layer| layer.part)).chain([self.group.part])
+    }
 }
 
 /// Where a guide comes from.
@@ -148,31 +170,28 @@ pub enum Meaning {
     Position,
     /// Vectors of some convention.
     Vectors(Rule),
+    /// Ids of a Cryptomatte.
+    Hashes,
 }
 
-/// The pictures of a file that are asked for: one for every view that has the layer.
-pub fn choose(exr: &File, selection: &Selection) -> Result<Vec<Chosen>, Fault> {
+/// The pictures of a file in `folder` that are asked for: one for every view that has the layer.
+pub fn choose(exr: &File, folder: &Path, selection: &Selection) -> Result<Vec<Chosen>, Fault> {
     let groups = groups(exr);
+    let mattes = mattes(exr);
     let mut found = Vec::new();
     for group in &groups {
         let named = selection.layer.as_deref().is_some_and(|wanted| is_named(exr, group, wanted));
-        let rank = if selection.layer.is_some() { named.then_some(0) } else { rank(group) };
+        let rank = if selection.layer.is_some() { named.then_some(0) } else { likely(group, &mattes) };
         if let (Some(rank), Some((model, colors))) = (rank, group.picture(exr, named)) {
             found.push((rank, model, group.part, group, colors));
         }
     }
     found.sort_by_key(|(rank, model, part, ..)| (*rank, *model, *part));
-    let Some((_, _, _, first, _)) = found.first() else {
-        return Err(match &selection.layer {
-            Some(layer) => Fault::Choice {
-                problem: format!("has no layer '{layer}' with colours"),
-                fix: format!("choose from {}", layers(exr, &groups)),
-            },
-            None => Fault::Choice {
-                problem: "has no layer with channels R, G and B of floats".into(),
-                fix: "name a layer by --layer, or a picture with colours".into(),
-            },
-        });
+    let first = found.first().map(|(_, _, _, group, _)| *group);
+    let refused =
+        |group: &Group| selection.layer.is_some() && !selection.force && likely(group, &mattes).is_none();
+    let Some(first) = first.filter(|group| !refused(group)) else {
+        return Err(no_picture(exr, &groups, &mattes, selection, first));
     };
     let layer = first.layer.clone();
     let mut chosen: Vec<Chosen> = Vec::new();
@@ -184,7 +203,9 @@ pub fn choose(exr: &File, selection: &Selection) -> Result<Vec<Chosen>, Fault> {
         if group.layer != layer || !is_wanted || chosen.iter().any(|c| c.group.view == group.view) {
             continue;
         }
+        let masks = selection.masks.iter().map(|mask| ChosenMask::of(exr, folder, group, mask));
         chosen.push(Chosen {
+            masks: masks.collect::<Result<_, _>>()?,
             group: (*group).clone(),
             model: *model,
             colors: colors.clone(),
@@ -192,20 +213,51 @@ pub fn choose(exr: &File, selection: &Selection) -> Result<Vec<Chosen>, Fault> {
             guides: sources(exr, &groups, group, selection)?,
         });
     }
-    if chosen.is_empty() {
-        let mut views: Vec<&str> = groups.iter().filter_map(|g| g.view.as_deref()).collect();
-        views.dedup();
-        let view = selection.view.as_deref().unwrap_or_default();
-        return Err(Fault::Choice {
-            problem: format!("does not show the layer in a view '{view}'"),
-            fix: if views.is_empty() {
-                "leave --view out: the file has only one".into()
-            } else {
-                format!("choose from {}", unique(views.into_iter()))
-            },
-        });
+    if chosen.is_empty() { Err(no_view(&groups, selection)) } else { Ok(chosen) }
+}
+
+/// Why a file has no picture that could be taken; `found` is a layer that holds something else.
+fn no_picture(
+    exr: &File,
+    groups: &[Group],
+    mattes: &[Matte<'_>],
+    selection: &Selection,
+    found: Option<&Group>,
+) -> Fault {
+    let Some(layer) = &selection.layer else {
+        return Fault::Choice {
+            problem: "has no layer with channels R, G and B of floats".into(),
+            fix: "name a layer by --layer, or a picture with colours".into(),
+        };
+    };
+    let names = groups.iter().filter(|g| g.picture(exr, true).is_some() && likely(g, mattes).is_some());
+    let list = unique(names.map(|g| g.layer.as_str()).filter(|l| !l.is_empty()));
+    let list = if list.is_empty() { "none: leave --layer out".into() } else { list };
+    match found {
+        Some(_) => Fault::Choice {
+            problem: format!("holds data in the layer '{layer}', no colours, and a style would spoil it"),
+            fix: format!("choose from {list}, or add --force-layer"),
+        },
+        None => Fault::Choice {
+            problem: format!("has no layer '{layer}' with colours"),
+            fix: format!("choose from {list}"),
+        },
     }
-    Ok(chosen)
+}
+
+/// Why a file has no picture of the view that was asked for.
+fn no_view(groups: &[Group], selection: &Selection) -> Fault {
+    let mut views: Vec<&str> = groups.iter().filter_map(|g| g.view.as_deref()).collect();
+    views.dedup();
+    let view = selection.view.as_deref().unwrap_or_default();
+    Fault::Choice {
+        problem: format!("does not show the layer in a view '{view}'"),
+        fix: if views.is_empty() {
+            "leave --view out: the file has only one".into()
+        } else {
+            format!("choose from {}", unique(views.into_iter()))
+        },
+    }
 }
 
 fn is_named(exr: &File, group: &Group, wanted: &str) -> bool {
@@ -215,10 +267,9 @@ fn is_named(exr: &File, group: &Group, wanted: &str) -> bool {
         || (group.prefix.is_empty() && part == wanted)
 }
 
-fn layers(exr: &File, groups: &[Group]) -> String {
-    let names = groups.iter().filter(|g| g.picture(exr, true).is_some());
-    let list = unique(names.map(|g| g.layer.as_str()).filter(|l| !l.is_empty()));
-    if list.is_empty() { "none: leave --layer out".into() } else { list }
+/// How likely a layer is the picture that is meant, as [`rank`], where Cryptomattes may have any name.
+fn likely(group: &Group, mattes: &[Matte<'_>]) -> Option<u32> {
+    rank(group).filter(|_| mattes.iter().all(|matte| !matte.has(&group.layer)))
 }
 
 fn unique<'a>(names: impl Iterator<Item = &'a str>) -> String {
@@ -263,6 +314,10 @@ fn sources(
             continue;
         }
         let name = choice.and_then(|c| c.layer.as_deref());
+        if let Some(matte) = name.filter(|_| guide == Guide::ObjectId).and_then(MatteChoice::layer_of) {
+            sources.push(hashes(exr, groups, picture, matte)?);
+            continue;
+        }
         // A part that is not read guides nothing, unless it is asked for, which is refused.
         let is_near = |g: &&Group| {
             (g.view == picture.view || g.view.is_none()) && (name.is_some() || exr.can_decode(g.part))
@@ -282,6 +337,11 @@ fn sources(
                 Some(Source { guide, part: group.part, channels, meaning: Meaning::Position })
             })
         });
+        let found = found.or_else(|| {
+            // Front objects of a Cryptomatte, which no other than the one of objects is asked for by itself.
+            (guide == Guide::ObjectId && name.is_none()).then_some(())?;
+            hashes(exr, groups, picture, None).ok().filter(|source| exr.can_decode(source.part))
+        });
         match (found, name) {
             (Some(source), _) => sources.push(source),
             (None, Some(name)) => {
@@ -296,6 +356,15 @@ fn sources(
     // Channels with fewer samples than pixels guide nothing.
     sources.retain(|s| s.channels.iter().all(|c| exr.parts()[s.part].channels[*c].sampling == (1, 1)));
     Ok(sources)
+}
+
+/// The ids in front, of a Cryptomatte or of the one of objects.
+fn hashes(exr: &File, groups: &[Group], picture: &Group, matte: Option<&str>) -> Result<Source, Fault> {
+    let mattes = mattes(exr);
+    let ranks = pick(&mattes, matte)?.ranks(exr, groups, picture)?;
+    let Ranks { part, channels } = &ranks[0];
+    let (channels, meaning) = (vec![channels[0]], Meaning::Hashes);
+    Ok(Source { guide: Guide::ObjectId, part: *part, channels, meaning })
 }
 
 /// Motion vectors in a file of their own, where they may lie in its main layer.

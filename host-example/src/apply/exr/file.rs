@@ -6,9 +6,10 @@ use isophote_exr_edit::{Decoded, Edit, File, Limits, PartEdit, Sample, Window};
 
 use super::choose::{self, Chosen, Selection};
 use super::fault::Fault;
+use super::mask::{self, ChosenMask, MaskSource, OnUnknown};
 use super::picture::{self, Picture};
 use crate::error::Result;
-use crate::pixels::{MOST_PIXELS, Pixels};
+use crate::pixels::{MOST_PIXELS, Pixels, Samples};
 
 /// What one file may take at most, whatever it says of itself. How many files are in memory at the same time is
 /// decided by what they weigh; see [`Opened::weight`].
@@ -25,12 +26,7 @@ pub fn motion_of(
     selection: &Selection,
     picture: &Picture,
 ) -> Result<Vec<(&'static str, Pixels)>> {
-    let window = Window {
-        x: picture.origin[0],
-        y: picture.origin[1],
-        width: picture.pixels.width() as usize,
-        height: picture.pixels.height() as usize,
-    };
+    let window = picture.window();
     let read = || -> std::result::Result<_, Fault> {
         let exr = File::parse(bytes, LIMITS)?;
         let sources = choose::motion(&exr, selection)?;
@@ -62,6 +58,54 @@ pub fn motion_of(
     read().map_err(|fault| fault.of(path))
 }
 
+/// The mask of a file of its own, or the one that `source` names in it, over the window that `place` finds for the file's data
+/// and display windows.
+///
+/// # Errors
+/// [`Error::Input`](crate::error::Error::Input) for damaged files, those of several channels or without what is named, and
+/// where `place` finds no window, which says what is wrong.
+pub fn mask_of(
+    path: &Path,
+    bytes: Vec<u8>,
+    (source, on_unknown): (Option<&MaskSource>, OnUnknown),
+    place: impl FnOnce(Window, Option<Window>) -> std::result::Result<Window, String>,
+) -> Result<Pixels> {
+    let read = || -> std::result::Result<_, Fault> {
+        let exr = File::parse(bytes, LIMITS)?;
+        let named = match source {
+            Some(source) => ChosenMask::alone(&exr, folder(path), source)?,
+            None => None,
+        };
+        let main = if named.is_none() { Some(mask::main_channels(&exr)?) } else { None };
+        let number = main.as_ref().map_or(0, |(part, _)| *part);
+        let part = &exr.parts()[number];
+        let window = place(part.window, part.display)
+            .map_err(|problem| Fault::Choice { problem, fix: "make masks of the picture's size".into() })?;
+        let values = match (named, main) {
+            (Some(named), _) => {
+                let mut decoded: Vec<Option<Decoded>> = exr.parts().iter().map(|_| None).collect();
+                for layer in &named.layers {
+                    if decoded[layer.part].is_none() {
+                        decoded[layer.part] = Some(exr.decode(layer.part)?);
+                    }
+                }
+                named.read(&exr, &decoded, window, on_unknown, path)?
+            }
+            (None, Some((part, channels))) => mask::whole(&exr, part, &channels, window)?,
+            (None, None) => Vec::new(),
+        };
+        let (width, height) = (window.width as u32, window.height as u32);
+        let unequal = || isophote_exr_edit::Error::Damaged("its channels are of unequal size".into());
+        Ok(Pixels::new(width, height, 1, Samples::F32(values)).ok_or_else(unequal)?)
+    };
+    read().map_err(|fault| fault.of(path))
+}
+
+/// The folder of a file.
+fn folder(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
 /// Whether all chunks of a file are there.
 pub fn is_whole(bytes: Vec<u8>) -> bool {
     File::parse(bytes, LIMITS).is_ok()
@@ -83,7 +127,7 @@ impl Opened {
     pub fn new(path: &Path, bytes: Vec<u8>, selection: &Selection) -> Result<Self> {
         let open = || -> std::result::Result<Self, Fault> {
             let exr = File::parse(bytes, LIMITS)?;
-            let chosen = choose::choose(&exr, selection)?;
+            let chosen = choose::choose(&exr, folder(path), selection)?;
             Ok(Self { exr, selection: selection.clone(), chosen })
         };
         open().map_err(|fault| fault.of(path))
@@ -107,7 +151,9 @@ impl Opened {
             let bytes = if is_half { 2 } else { 4 };
             // As read, as result and twice as floats; guides are floats.
             total += pixels * 4 * (2 * bytes + 4 + 4) + pixels * 16 * picture.guides.len() as u64;
-            parts.extend(picture.guides.iter().map(|g| g.part).chain([picture.group.part]));
+            // A mask with the planes that it is made of.
+            total += pixels * 4 * 3 * picture.masks.len() as u64;
+            parts.extend(picture.parts());
         }
         parts.sort_unstable();
         parts.dedup();
@@ -160,8 +206,7 @@ impl ExrFile {
         }
         let mut decoded: Vec<Option<Decoded>> = exr.parts().iter().map(|_| None).collect();
         for picture in &chosen {
-            let needed = picture.guides.iter().map(|g| g.part).chain([picture.group.part]);
-            for part in needed {
+            for part in picture.parts() {
                 if decoded[part].is_none() {
                     decoded[part] = Some(exr.decode(part)?);
                 }
@@ -176,7 +221,7 @@ impl ExrFile {
     /// # Errors
     /// [`Error::Input`](crate::error::Error::Input) when channels are of unequal size.
     pub fn pictures(&self, path: &Path) -> Result<Vec<Picture>> {
-        let read = |chosen| picture::read(&self.exr, &self.decoded, chosen);
+        let read = |chosen| picture::read(&self.exr, &self.decoded, chosen, &self.selection, path);
         let pictures: std::result::Result<Vec<Picture>, Fault> = self.chosen.iter().map(read).collect();
         pictures.map_err(|fault| fault.of(path))
     }

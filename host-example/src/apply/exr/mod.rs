@@ -4,14 +4,18 @@
 //! writes the result, and keeps every other byte of the file.
 
 mod choose;
+mod cryptomatte;
 mod fault;
 mod file;
+mod mask;
+mod mattes;
 mod motion;
 mod names;
 mod picture;
 
 pub use self::choose::{Guide, GuideChoice, Selection};
-pub use self::file::{ExrFile, Opened, is_whole, motion_of};
+pub use self::file::{ExrFile, Opened, is_whole, mask_of, motion_of};
+pub use self::mask::{MaskSource, OnUnknown, add};
 pub use self::names::components;
 pub use self::picture::Picture;
 pub use isophote_motion::Convention;

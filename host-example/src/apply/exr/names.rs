@@ -128,7 +128,7 @@ pub const REST: [&str; 6] = ["pref", "__pref", "p_ref", "rest", "restposition", 
 /// How likely a layer is the picture that an artist means when naming none: less is more likely.
 pub fn rank(group: &Group) -> Option<u32> {
     const MAIN: [&str; 9] = ["rgba", "rgb", "beauty", "combined", "color", "colour", "main", "c", "image"];
-    const DATA: [&str; 26] = [
+    const DATA: [&str; 37] = [
         "n",
         "normal",
         "normals",
@@ -155,6 +155,17 @@ pub fn rank(group: &Group) -> Option<u32> {
         "object_id",
         "disparityl",
         "disparityr",
+        "worldposition",
+        "world_position",
+        "worldnormal",
+        "world_normal",
+        "zdepth",
+        "zbuffer",
+        "objectid",
+        "materialid",
+        "material_id",
+        "tangent",
+        "tangents",
     ];
     let word = group.word();
     if word.is_empty() {

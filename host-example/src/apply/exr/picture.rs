@@ -1,12 +1,15 @@
 //! A picture and its guides out of a file's channels, and a result back into them.
 
-use isophote_exr_edit::{Channel, Decoded, Edit, Error, File, Part, Plane, Window};
+use std::path::Path;
+
+use isophote_exr_edit::{Channel, Decoded, Edit, Error as ExrError, File, Part, Plane, Window};
 
 use super::choose::{Chosen, Meaning, Selection, Source};
 use super::fault::Fault;
 use super::motion::applied;
 use super::names::{Model, components};
 use crate::apply::primaries;
+use crate::error::Error;
 use crate::pixels::{Pixels, Samples};
 
 /// Numbers up to here are exact as floats.
@@ -23,16 +26,41 @@ pub struct Picture {
     pub chromaticities: Option<[f32; 8]>,
     /// Where its first pixel stands in the display window's coordinates.
     pub origin: [i32; 2],
-    /// Rows of the display window; 0 where the picture is all there is.
-    pub canonical_height: u32,
+    /// The display window, where the picture may be a part of it or more.
+    pub display: Option<Window>,
+    /// How much of results is used, 0 to 1: a mask for each that was asked for.
+    pub masks: Vec<Option<Pixels>>,
+    /// Why there can be no result of it, for want of masks; neighbouring frames may depend on it all the same.
+    pub refused: Option<Error>,
+}
+
+impl Picture {
+    /// A picture of which nothing else is known.
+    pub fn alone(pixels: Pixels) -> Self {
+        let (guides, masks) = (Vec::new(), Vec::new());
+        Self { pixels, guides, chromaticities: None, origin: [0; 2], display: None, masks, refused: None }
+    }
+
+    /// The window that its pixels fill.
+    pub fn window(&self) -> Window {
+        let [x, y] = self.origin;
+        let (width, height) = (self.pixels.width() as usize, self.pixels.height() as usize);
+        Window { x, y, width, height }
+    }
 }
 
 /// Reads a picture.
 ///
 /// # Errors
 /// [`Fault::File`] when its channels are of unequal size or take too much memory.
-pub fn read(exr: &File, decoded: &[Option<Decoded>], chosen: &Chosen) -> Result<Picture, Fault> {
-    let unequal = || Error::Damaged("its channels are of unequal size".into());
+pub fn read(
+    exr: &File,
+    decoded: &[Option<Decoded>],
+    chosen: &Chosen,
+    selection: &Selection,
+    path: &Path,
+) -> Result<Picture, Fault> {
+    let unequal = || ExrError::Damaged("its channels are of unequal size".into());
     let part = &exr.parts()[chosen.group.part];
     let data = decoded[chosen.group.part].as_ref().ok_or_else(unequal)?;
     let mut planes: Vec<Plane> = chosen.colors.iter().map(|c| data.plane(*c)).collect::<Result<_, _>>()?;
@@ -54,13 +82,32 @@ pub fn read(exr: &File, decoded: &[Option<Decoded>], chosen: &Chosen) -> Result<
             guides.push((source.guide.id(), pixels));
         }
     }
+    let mut masks = Vec::with_capacity(chosen.masks.len());
+    let mut refused = None;
+    for mask in &chosen.masks {
+        let Some(mask) = mask else {
+            masks.push(None);
+            continue;
+        };
+        let (width, height) = (part.window.width as u32, part.window.height as u32);
+        match mask.read(exr, decoded, part.window, selection.on_unknown, path) {
+            Ok(values) => masks.push(Pixels::new(width, height, 1, Samples::F32(values))),
+            Err(fault @ Fault::File(_)) => return Err(fault),
+            Err(fault) => {
+                masks.push(None);
+                refused.get_or_insert(fault.of(path));
+            }
+        }
+    }
     let pixels = interleaved(part.window, &planes).ok_or_else(unequal)?;
     Ok(Picture {
         pixels,
         guides,
         chromaticities: part.chromaticities,
         origin: [part.window.x, part.window.y],
-        canonical_height: part.display_height.unwrap_or_default(),
+        display: part.display,
+        masks,
+        refused,
     })
 }
 
@@ -77,14 +124,14 @@ pub fn result_channels(chosen: &Chosen, selection: &Selection, scalar: bool) -> 
 /// Puts a result into the edit of the part that its picture came from.
 ///
 /// # Errors
-/// [`Error::Argument`] when it does not fit the part.
+/// [`ExrError::Argument`] when it does not fit the part.
 pub fn replace(
     edit: &mut Edit,
     part: &Part,
     chosen: &Chosen,
     selection: &Selection,
     result: &Pixels,
-) -> Result<(), Error> {
+) -> Result<(), ExrError> {
     let numbers = result.to_f32();
     let count = result.channels() as usize;
     let plane = |offset: usize| -> Vec<f32> { numbers.iter().skip(offset).step_by(count).copied().collect() };
@@ -162,10 +209,14 @@ pub fn guide(
     source: &Source,
     window: Window,
     world_to_camera: Option<[f32; 16]>,
-) -> Result<Option<Pixels>, Error> {
+) -> Result<Option<Pixels>, ExrError> {
     let part = &exr.parts()[source.part];
     let Some(data) = decoded[source.part].as_ref() else { return Ok(None) };
-    let plane = |channel: &usize| Ok::<_, Error>(numbers(&data.plane(*channel)?));
+    let numbers = match source.meaning {
+        Meaning::Hashes => hashes,
+        _ => numbers,
+    };
+    let plane = |channel: &usize| Ok::<_, ExrError>(numbers(&data.plane(*channel)?));
     let planes: Vec<Vec<f32>> = source.channels.iter().map(plane).collect::<Result<_, _>>()?;
     let count = planes.len();
     // What a motion does not tell is unknown.
@@ -216,8 +267,16 @@ pub fn guide(
 /// As floats; integers that floats do not tell apart are folded into those that they do.
 fn numbers(plane: &Plane) -> Vec<f32> {
     let Plane::Uint(ids) = plane else { return plane.to_f32() };
-    let folded = |id: u32| if id < EXACT { id } else { 1 + (id ^ id.rotate_right(13)) % (EXACT - 1) };
-    ids.iter().map(|id| folded(*id) as f32).collect()
+    ids.iter().map(|id| folded(*id)).collect()
+}
+
+/// The bits of floats as numbers of objects.
+fn hashes(plane: &Plane) -> Vec<f32> {
+    plane.to_f32().iter().map(|id| folded(id.to_bits())).collect()
+}
+
+fn folded(id: u32) -> f32 {
+    (if id < EXACT { id } else { 1 + (id ^ id.rotate_right(13)) % (EXACT - 1) }) as f32
 }
 
 fn luminance(numbers: &[f32], count: usize, weights: [f32; 3]) -> Vec<f32> {
