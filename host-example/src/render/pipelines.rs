@@ -185,8 +185,9 @@ impl Pipelines {
         let in_shadow = variant.pass == Pass::Shadow;
         let multisampled = matches!(variant.pass, Pass::Depth | Pass::Surface);
         let no_fragments = in_shadow && variant.alpha == 0;
-        let entry = |stage| format!("{name}_{stage}");
-        let (vertex_entry, fragment_entry) = (entry("vertex"), entry("fragment"));
+        let has_holes = variant.pass == Pass::Surface && variant.alpha == 1;
+        let vertex_entry = format!("{name}_vertex");
+        let fragment_entry = format!("{name}_{}fragment", if has_holes { "holed_" } else { "" });
         // Constants may only be given to stages whose module declares them, and the vertex stage shares it.
         let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -206,7 +207,6 @@ impl Pipelines {
             depth_stencil: Some(depth_state(variant)),
             multisample: wgpu::MultisampleState {
                 count: if multisampled { SAMPLES } else { 1 },
-                alpha_to_coverage_enabled: variant.pass == Pass::Surface && variant.alpha == 1,
                 ..Default::default()
             },
             fragment: (!no_fragments).then_some(wgpu::FragmentState {

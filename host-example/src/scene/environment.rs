@@ -22,7 +22,11 @@ const FEW_ACROSS: usize = 256;
 
 /// Mean light that pictures are brought to where they have less or more: files count in units of any magnitude.
 const LEAST_MEAN: f32 = 0.1;
-const MOST_MEAN: f32 = 0.6;
+const MOST_MEAN: f32 = 0.45;
+
+/// Brightest light that counts, in multiples of the mean: what is brighter is a lamp or the sun, which the sun of the
+/// scene stands for.
+const BRIGHTEST: f32 = 4.0;
 
 /// How one-sided the light must be for its direction to be that of a sun, and how high that must stand.
 const ONE_SIDED: f32 = 0.25;
@@ -89,8 +93,14 @@ impl Environment {
     }
 
     fn new(map: Map) -> Self {
-        let few = reduced(map.clone(), FEW_ACROSS);
-        let sums = Sums::of(&few);
+        let mut few = reduced(map.clone(), FEW_ACROSS);
+        let mut sums = Sums::of(&few);
+        let sun = sums.sun;
+        // The second time the mean is one without lamps.
+        for _ in 0..2 {
+            few.limit(BRIGHTEST * sums.mean.dot(LUMINANCE));
+            sums = Sums::of(&few);
+        }
         let mean = sums.mean.dot(LUMINANCE);
         // A black picture stays black.
         let scale = if mean > 0.0 { mean.clamp(LEAST_MEAN, MOST_MEAN) / mean } else { 1.0 };
@@ -106,7 +116,7 @@ impl Environment {
             zenith: sums.zenith * scale,
             horizon: sums.horizon * scale,
             ground: sums.ground * scale,
-            sun: sums.sun,
+            sun,
         }
     }
 }
@@ -116,6 +126,15 @@ impl Environment {
 struct Map {
     width: usize,
     colors: Vec<Vec3>,
+}
+
+impl Map {
+    /// Makes light that is brighter than this as bright as this.
+    fn limit(&mut self, most: f32) {
+        for color in &mut self.colors {
+            *color *= (most / color.dot(LUMINANCE).max(1e-12)).min(1.0);
+        }
+    }
 }
 
 /// Halves a map until it has at most so many pixels across.
