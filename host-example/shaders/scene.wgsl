@@ -25,6 +25,13 @@ struct Frame {
     // Depth in the view at which each shadow map ends, and the size of its texels in the world.
     cascade_ends: vec4f,
     cascade_texels: vec4f,
+    // The light of a picture of the surroundings that falls on a diffuse surface, divided by pi, as a polynomial of
+    // its normal: 1, y, z, x, xy, yz, 3zz-1, zx, xx-yy. The first w is 1 where there is such a picture.
+    irradiance: array<vec4f, 9>,
+    // Least corner of the ground that shadows fall on, with the share of light that full shadow takes; its greatest
+    // corner, with how far shadows reach.
+    ground_low: vec4f,
+    ground_high: vec4f,
     // x exposure, y number of lights, z number of shadow maps, w factor on the light of the sky.
     settings: vec4f,
 }

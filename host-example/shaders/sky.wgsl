@@ -1,5 +1,5 @@
 // The surroundings: a gradient from the ground over the horizon to the zenith, without any texture. It
-// lights diffuse surfaces and is mirrored by glossy ones.
+// lights diffuse surfaces, unless a picture of the surroundings does, and is mirrored by glossy ones.
 
 // Radiance from a direction; blur 0 is the sky itself, 1 its mean over most of a hemisphere.
 fn sky(direction: vec3f, blur: f32) -> vec3f {
@@ -12,6 +12,14 @@ fn sky(direction: vec3f, blur: f32) -> vec3f {
 
 // Light that falls on a diffuse surface, divided by pi.
 fn sky_irradiance(normal: vec3f) -> vec3f {
+    if frame.irradiance[0].w > 0.5 {
+        let n = normal;
+        let sum = frame.irradiance[0] + frame.irradiance[1] * n.y + frame.irradiance[2] * n.z
+            + frame.irradiance[3] * n.x + frame.irradiance[4] * n.x * n.y + frame.irradiance[5] * n.y * n.z
+            + frame.irradiance[6] * (3.0 * n.z * n.z - 1.0) + frame.irradiance[7] * n.z * n.x
+            + frame.irradiance[8] * (n.x * n.x - n.y * n.y);
+        return max(sum.rgb, vec3f(0.0));
+    }
     let upper = 0.5 * (frame.zenith.rgb + frame.horizon.rgb);
     let lower = 0.5 * (frame.ground.rgb + 0.6 * frame.horizon.rgb);
     return mix(lower, upper, 0.5 + 0.5 * normal.y);

@@ -176,8 +176,8 @@ fn specular_integral(roughness: f32, n_dot_v: f32) -> vec2f {
     return vec2f(-1.04, 1.04) * a + r.zw;
 }
 
-@fragment
-fn surface_fragment(in: SurfaceInput, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+// Colour and coverage.
+fn shaded(in: SurfaceInput, front: bool) -> vec4f {
     let base = base_color(in.uv0, in.uv1, in.color);
     let side = select(-1.0, 1.0, front);
     let smooth_normal = safe_normalize(in.normal) * side;
@@ -254,4 +254,23 @@ fn surface_fragment(in: SurfaceInput, @builtin(front_facing) front: bool) -> @lo
         return vec4f(color * coverage, coverage);
     }
     return vec4f(color, coverage);
+}
+
+@fragment
+fn surface_fragment(in: SurfaceInput, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    return shaded(in, front);
+}
+
+struct Holed {
+    @location(0) color: vec4f,
+    @builtin(sample_mask) samples: u32,
+}
+
+// Covers as many samples as its coverage says. Those are opaque, which they would not be if the device made samples
+// of alpha.
+@fragment
+fn surface_holed_fragment(in: SurfaceInput, @builtin(front_facing) front: bool) -> Holed {
+    let color = shaded(in, front);
+    let covered = vec4f(color.a) > vec4f(0.0, 0.25, 0.5, 0.75);
+    return Holed(vec4f(color.rgb, 1.0), dot(vec4u(covered), vec4u(1u, 2u, 4u, 8u)));
 }

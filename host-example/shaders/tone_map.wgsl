@@ -1,8 +1,12 @@
 // From scene-linear radiance to linear display light in [0, 1]: exposure, then the Khronos PBR Neutral tone
-// mapper, which keeps the colours of materials and compresses only highlights.
+// mapper, which keeps the colours of materials and compresses only highlights. A colour of the user's choice is
+// put behind afterwards, so that it stays what it is.
 
 struct Settings {
+    // x is the exposure, y 1 where the radiance has transparent parts.
     exposure: vec4f,
+    // What is behind those, premultiplied display light.
+    behind: vec4f,
 }
 
 @group(0) @binding(0) var radiance: texture_2d<f32>;
@@ -32,6 +36,11 @@ fn neutral(input: vec3f) -> vec3f {
 
 @fragment
 fn tone_map_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let color = textureLoad(radiance, vec2u(position.xy), 0).rgb;
-    return vec4f(neutral(max(color, vec3f(0.0)) * settings.exposure.x), 1.0);
+    let texel = textureLoad(radiance, vec2u(position.xy), 0);
+    if settings.exposure.y < 0.5 {
+        return vec4f(neutral(max(texel.rgb, vec3f(0.0)) * settings.exposure.x), 1.0);
+    }
+    let alpha = saturate(texel.a);
+    let color = max(texel.rgb, vec3f(0.0)) / max(alpha, 1e-4);
+    return vec4f(neutral(color * settings.exposure.x) * alpha, alpha) + (1.0 - alpha) * settings.behind;
 }

@@ -6,19 +6,20 @@ use crate::error::Result;
 use crate::loader::Library;
 use crate::output::Picture;
 use crate::render::Renderer;
+use crate::render::background::Background;
 use crate::render::gpu::Gpu;
 use crate::render::look::Look;
 use crate::render::readback::Readback;
 use crate::render::targets::{Target, Targets};
 use crate::scene::Scene;
-use crate::scene::camera::{self, Direction, Orbit, View};
+use crate::scene::camera::{Direction, Framing, Orbit, View};
 use crate::scene::pose::Pose;
 use crate::stylize::Stylizer;
 use crate::stylize::plan_runner::Kernels;
 use crate::stylize::style::Style;
 
 /// What is rendered of a scene.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Options {
     /// Size of the pictures in pixels.
     pub size: (u32, u32),
@@ -26,8 +27,16 @@ pub struct Options {
     pub range: (i64, u64),
     /// Whether the camera turns once around the scene over all frames.
     pub turntable: bool,
-    /// From where the default camera and turntables see the scene.
-    pub direction: Direction,
+    /// How the default camera and turntables frame the scene.
+    pub framing: Framing,
+    /// Node of the camera of the file that is looked through, but for turntables; the default camera otherwise.
+    pub camera: Option<usize>,
+    /// Where the sun is, seen from the camera, if not where it usually is.
+    pub light: Option<Direction>,
+    /// What is behind the scene.
+    pub background: Background,
+    /// Whether the scene casts its shadow on an invisible ground.
+    pub ground: bool,
     /// The animation that plays.
     pub animation: Option<usize>,
     /// Time of frame 1 in seconds.
@@ -64,6 +73,10 @@ impl Shot {
     pub fn new(scene: Scene, style: Option<(&Library, Style)>, options: Options) -> Result<Self> {
         let gpu = Gpu::open()?;
         let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &scene, options.size)?;
+        renderer.set_background(&options.background, options.scene_referred)?;
+        if options.ground {
+            renderer.add_ground();
+        }
         let mut stylizer = None;
         if let Some((library, style)) = style {
             let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
@@ -75,9 +88,11 @@ impl Shot {
         }
         gpu.check()?;
         let pose = Pose::at_rest(&scene);
+        let camera = Camera::choose(&options, &scene);
+        let view = camera.view(&scene, &pose, 0.0);
         let mut shot = Self {
-            look: Look::for_scene(&scene, &pose),
-            camera: Camera::choose(&options, &scene),
+            look: Look::for_scene(&scene, &pose, &view, options.light, options.background.environment()),
+            camera,
             readback: Readback::default(),
             drawn: None,
             options,
@@ -192,10 +207,10 @@ enum Camera {
 impl Camera {
     fn choose(options: &Options, scene: &Scene) -> Self {
         let aspect = options.size.0 as f32 / options.size.1 as f32;
-        match camera::file_camera(scene) {
-            _ if options.turntable => Self::Turntable(Orbit::turntable(scene, aspect, options.direction)),
-            Some(node) => Self::File(node, Orbit::framing(scene, aspect, options.direction)),
-            None => Self::Framing(Orbit::framing(scene, aspect, options.direction)),
+        match options.camera {
+            _ if options.turntable => Self::Turntable(Orbit::turntable(scene, aspect, options.framing)),
+            Some(node) => Self::File(node, Orbit::framing(scene, aspect, options.framing)),
+            None => Self::Framing(Orbit::framing(scene, aspect, options.framing)),
         }
     }
 

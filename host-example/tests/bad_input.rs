@@ -273,6 +273,16 @@ fn options_of_render() {
         (&["--animate"], &["no animation"]),
         (&["--animation", "run"], &["'run'"]),
         (&["--fps", "nan"], &["--fps"]),
+        (&["--up", "x"], &["--up", "y, z"]),
+        (&["--background", "blue"], &["--background", "#aabbcc"]),
+        (&["--background", "#12345"], &["--background", "#aabbcc"]),
+        (&["--light", "30"], &["--light", "-60,40"]),
+        (&["--light", "30,91"], &["--light", "from -90 to 90"]),
+        (&["--distance", "0"], &["--distance", "from 0.1 to 100"]),
+        (&["--fov", "180"], &["--fov", "from 1 to 150"]),
+        (&["--azimuth", "nan"], &["--azimuth"]),
+        (&["--camera", "0"], &["'0'", "the scene has no cameras"]),
+        (&["--camera", "0", "--turntable"], &["--camera", "--turntable"]),
     ] {
         let more: Vec<&str> =
             if more[0] == "--size" { more.to_vec() } else { [more, &["--size", "16x16"]].concat() };

@@ -15,7 +15,7 @@ use isophote_host::render::look::Look;
 use isophote_host::render::readback::Readback;
 use isophote_host::render::targets::Targets;
 use isophote_host::scene::Scene;
-use isophote_host::scene::camera::{Direction, Orbit};
+use isophote_host::scene::camera::{Framing, Orbit};
 use isophote_host::scene::pose::Pose;
 use isophote_host::stylize::Stylizer;
 use isophote_host::stylize::plan_runner::{Counts, Kernels};
@@ -41,8 +41,8 @@ impl Stage {
         let gpu = Gpu::open().expect("a graphics adapter");
         let scene = Scene::load(&support::cube(folder), None).expect("the cube is a scene");
         let pose = Pose::at_rest(&scene);
-        let look = Look::for_scene(&scene, &pose);
-        let orbit = Orbit::turntable(&scene, SIZE.0 as f32 / SIZE.1 as f32, Direction::default());
+        let orbit = Orbit::turntable(&scene, SIZE.0 as f32 / SIZE.1 as f32, Framing::default());
+        let look = Look::for_scene(&scene, &pose, &orbit.view(), None, None);
         let renderer = Renderer::new(&gpu.device, &gpu.queue, &scene, SIZE).expect("the scene fits");
         let library = Library::from_file(support::library()).expect("the library");
         Self { gpu, scene, pose, look, orbit, renderer, library }

@@ -5,8 +5,10 @@
 //! geometry buffer with one sample per pixel, and the tone mapping. They are recorded into the caller's
 //! command encoder; nothing is allocated once every pipeline that the scene needs has been used.
 
+pub mod background;
 pub(crate) mod buffers;
 pub mod gpu;
+mod ground;
 pub(crate) mod layouts;
 pub mod look;
 pub(crate) mod pipelines;
@@ -24,6 +26,7 @@ mod visible;
 
 use glam::Mat4;
 
+use self::background::{Backdrop, Background};
 use self::layouts::{Layouts, bind_buffer};
 use self::look::Look;
 use self::pipelines::{Pass, Pipelines, Variant};
@@ -43,7 +46,13 @@ use crate::scene::{AlphaMode, Scene};
 pub struct Renderer {
     device: wgpu::Device,
     queue: wgpu::Queue,
+    layouts: Layouts,
     pipelines: Pipelines,
+    backdrop: Backdrop,
+    /// Draws the shadow on the ground, where there is to be one.
+    ground: Option<wgpu::RenderPipeline>,
+    /// Whether this frame has one.
+    shows_ground: bool,
     targets: Targets,
     primitives: Vec<Vec<GpuPrimitive>>,
     materials: Vec<wgpu::BindGroup>,
@@ -119,6 +128,10 @@ impl Renderer {
         let tone_map = ToneMap::new(device, &targets);
         Ok(Self {
             pipelines: Pipelines::new(device, &layouts),
+            layouts,
+            backdrop: Backdrop::sky(),
+            ground: None,
+            shows_ground: false,
             device: device.clone(),
             queue: queue.clone(),
             targets,
@@ -168,6 +181,21 @@ impl Renderer {
         }
         let size = (self.targets.width, self.targets.height);
         self.targets.rest = Some(Target::new(&self.device, "rest position", REST_FORMAT, 1, size));
+    }
+
+    /// Takes another background from now on. `scene_referred` says that colours are wanted before tone mapping.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Input`] for pictures beyond the limits of the device.
+    pub fn set_background(&mut self, background: &Background, scene_referred: bool) -> Result<()> {
+        let (device, queue) = (&self.device, &self.queue);
+        self.backdrop = Backdrop::new(device, queue, &self.layouts, background, scene_referred)?;
+        Ok(())
+    }
+
+    /// Lets the scene cast its shadow on an invisible ground at its lowest point from now on.
+    pub fn add_ground(&mut self) {
+        self.ground.get_or_insert_with(|| ground::pipeline(&self.device, &self.layouts));
     }
 
     /// Makes the next frame the first of a sequence: its motion vectors are 0.
@@ -247,7 +275,9 @@ impl Renderer {
         let size = (self.targets.width, self.targets.height);
         let cascades = Cascades::new(scene, look, view, size.0 as f32 / size.1 as f32);
         self.cascades = look.sun_color.map(|_| cascades);
-        let mut frame = FrameBlock::new(view, look, &cascades, size, self.history.view_projection);
+        let ground = self.ground.as_ref().and_then(|_| ground::plane(scene, look, view));
+        self.shows_ground = ground.is_some();
+        let mut frame = FrameBlock::new(view, look, &cascades, ground, size, self.history.view_projection);
         frame.settings.y = scratch.lights.len() as f32;
         let write = |buffer: &wgpu::Buffer, bytes: &[u8]| {
             if !bytes.is_empty() {
@@ -259,7 +289,7 @@ impl Renderer {
         write(&self.buffers.joints, bytemuck::cast_slice(&scratch.joints));
         write(&self.buffers.weights, bytemuck::cast_slice(&scratch.weights));
         write(&self.buffers.lights, bytemuck::cast_slice(&scratch.lights));
-        self.tone_map.set_exposure(&self.queue, look.exposure);
+        self.tone_map.set(&self.queue, look.exposure, self.backdrop.behind);
         frame
     }
 
@@ -303,7 +333,7 @@ impl Renderer {
 
     fn surface_pass(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene) {
         let targets = &self.targets;
-        let mut color = layouts::cleared(&targets.multisampled.view, wgpu::Color::BLACK);
+        let mut color = layouts::cleared(&targets.multisampled.view, self.backdrop.clear);
         color.resolve_target = Some(&targets.radiance.view);
         color.ops.store = wgpu::StoreOp::Discard;
         let depth = layouts::depth(&targets.multisampled_depth.view, 0.0, wgpu::StoreOp::Discard);
@@ -324,8 +354,12 @@ impl Renderer {
         for &(_, index) in &self.visible.solid {
             self.draw(&mut pass, scene, index, Pass::Surface);
         }
-        pass.set_pipeline(&self.pipelines.background);
-        pass.draw(0..3, 0..1);
+        self.backdrop.draw(&mut pass, &self.pipelines.background);
+        if let Some(ground) = self.ground.as_ref().filter(|_| self.shows_ground) {
+            pass.set_pipeline(ground);
+            pass.set_bind_group(1, &self.shadow_maps.group, &[]);
+            pass.draw(0..4, 0..1);
+        }
         for &(_, index) in &self.visible.blended {
             self.draw(&mut pass, scene, index, Pass::Surface);
         }

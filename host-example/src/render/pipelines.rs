@@ -69,19 +69,38 @@ pub struct Pipelines {
     pub background: wgpu::RenderPipeline,
 }
 
-const SCENE: &str = include_str!("../../shaders/scene.wgsl");
+/// What every shader of the scene begins with.
+pub const SCENE: &str = include_str!("../../shaders/scene.wgsl");
 const MATERIAL: &str = include_str!("../../shaders/material.wgsl");
 const SKY: &str = include_str!("../../shaders/sky.wgsl");
+
+/// The parts of the shader of the sky behind everything.
+pub const BACKGROUND_PARTS: [&str; 3] = [SCENE, SKY, include_str!("../../shaders/background.wgsl")];
+
+/// Compiles a shader from its parts.
+pub fn module(device: &wgpu::Device, label: &str, parts: &[&str]) -> wgpu::ShaderModule {
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(label),
+        source: wgpu::ShaderSource::Wgsl(parts.concat().into()),
+    })
+}
+
+/// Depth of what is drawn where nothing is yet.
+pub fn behind_everything() -> wgpu::DepthStencilState {
+    wgpu::DepthStencilState {
+        format: DEPTH_FORMAT,
+        depth_write_enabled: Some(false),
+        // Depth is reversed.
+        depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
+        stencil: Default::default(),
+        bias: Default::default(),
+    }
+}
 
 impl Pipelines {
     /// Compiles the shaders.
     pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
-        let module = |label, parts: &[&str]| {
-            device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(label),
-                source: wgpu::ShaderSource::Wgsl(parts.concat().into()),
-            })
-        };
+        let module = |label, parts: &[&str]| module(device, label, parts);
         let pipeline_layout = |label, groups: &[Option<&wgpu::BindGroupLayout>]| {
             device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(label),
@@ -90,15 +109,8 @@ impl Pipelines {
             })
         };
         let scene = [Some(&layouts.frame), Some(&layouts.geometry), Some(&layouts.material)];
-        let background = module("background", &[SCENE, SKY, include_str!("../../shaders/background.wgsl")]);
+        let background = module("background", &BACKGROUND_PARTS);
         let background_layout = pipeline_layout("background", &scene[..1]);
-        let behind_everything = wgpu::DepthStencilState {
-            format: DEPTH_FORMAT,
-            depth_write_enabled: Some(false),
-            depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
-            stencil: Default::default(),
-            bias: Default::default(),
-        };
         Self {
             layout: pipeline_layout("scene", &[scene[0], scene[1], scene[2], Some(&layouts.shadow)]),
             shadow_layout: pipeline_layout("shadow", &[scene[0], scene[1], scene[2], Some(&layouts.cascade)]),
@@ -114,7 +126,7 @@ impl Pipelines {
                 &background,
                 "background",
                 COLOR_FORMAT,
-                Some(behind_everything),
+                Some(behind_everything()),
                 SAMPLES,
             ),
             made: HashMap::new(),
@@ -173,8 +185,9 @@ impl Pipelines {
         let in_shadow = variant.pass == Pass::Shadow;
         let multisampled = matches!(variant.pass, Pass::Depth | Pass::Surface);
         let no_fragments = in_shadow && variant.alpha == 0;
-        let entry = |stage| format!("{name}_{stage}");
-        let (vertex_entry, fragment_entry) = (entry("vertex"), entry("fragment"));
+        let has_holes = variant.pass == Pass::Surface && variant.alpha == 1;
+        let vertex_entry = format!("{name}_vertex");
+        let fragment_entry = format!("{name}_{}fragment", if has_holes { "holed_" } else { "" });
         // Constants may only be given to stages whose module declares them, and the vertex stage shares it.
         let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -194,7 +207,6 @@ impl Pipelines {
             depth_stencil: Some(depth_state(variant)),
             multisample: wgpu::MultisampleState {
                 count: if multisampled { SAMPLES } else { 1 },
-                alpha_to_coverage_enabled: variant.pass == Pass::Surface && variant.alpha == 1,
                 ..Default::default()
             },
             fragment: (!no_fragments).then_some(wgpu::FragmentState {

@@ -206,7 +206,7 @@ impl ShadowMaps {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::camera::{Direction, Orbit};
+    use crate::scene::camera::{Framing, Orbit};
     use crate::scene::tests::build::Builder;
 
     fn scene(scale: f32) -> Scene {
@@ -218,7 +218,7 @@ mod tests {
     #[test]
     fn an_object_has_one_map_and_a_landscape_three() {
         let object = scene(1.0);
-        let orbit = Orbit::framing(&object, 1.5, Direction::default());
+        let orbit = Orbit::framing(&object, 1.5, Framing::default());
         assert_eq!(Cascades::new(&object, &Look::default(), &orbit.view(), 1.5).count, 1);
         let landscape = scene(1000.0);
         let inside = Orbit { target: landscape.bounds.center(), distance: 5.0, ..orbit };

@@ -1,5 +1,7 @@
 //! The last pass of a frame: from scene-linear radiance to display light.
 
+use glam::Vec4;
+
 use super::layouts::{self, bind_buffer, bind_view};
 use super::targets::{COLOR_FORMAT, Targets};
 use super::{buffers, pipelines};
@@ -33,7 +35,7 @@ impl ToneMap {
         });
         let pipeline =
             pipelines::full_screen(device, &pipeline_layout, &module, "tone_map", COLOR_FORMAT, None, 1);
-        let settings = buffers::filled_buffer(device, "tone map", &[0; 16], wgpu::BufferUsages::UNIFORM);
+        let settings = buffers::filled_buffer(device, "tone map", &[0; 32], wgpu::BufferUsages::UNIFORM);
         let bind_group = Self::group(device, &layout, &settings, targets);
         Self { layout, pipeline, settings, bind_group }
     }
@@ -56,9 +58,12 @@ impl ToneMap {
         self.bind_group = Self::group(device, &self.layout, &self.settings, targets);
     }
 
-    /// Sets the factor on the radiance from the next frame on.
-    pub fn set_exposure(&self, queue: &wgpu::Queue, exposure: f32) {
-        queue.write_buffer(&self.settings, 0, bytemuck::bytes_of(&[exposure, 0.0, 0.0, 0.0]));
+    /// Sets from the next frame on the factor on the radiance, and what is behind its transparent parts
+    /// (premultiplied display light), if it may have any.
+    pub fn set(&self, queue: &wgpu::Queue, exposure: f32, behind: Option<Vec4>) {
+        let has_transparent = if behind.is_some() { 1.0 } else { 0.0 };
+        let block = [Vec4::new(exposure, has_transparent, 0.0, 0.0), behind.unwrap_or_default()];
+        queue.write_buffer(&self.settings, 0, bytemuck::bytes_of(&block));
     }
 
     /// Records the pass from radiance to colour.

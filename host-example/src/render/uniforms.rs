@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
 
+use super::ground::Plane;
 use super::look::{Look, visible_lights};
 use super::shadow::{CASCADES, Cascades};
 use crate::scene::camera::View;
@@ -29,6 +30,8 @@ pub struct FrameBlock {
     pub size: Vec4,
     pub cascade_ends: Vec4,
     pub cascade_texels: Vec4,
+    pub irradiance: [Vec4; 9],
+    pub ground_plane: Plane,
     pub settings: Vec4,
 }
 
@@ -76,7 +79,7 @@ pub struct MaterialBlock {
     pub transforms: [Vec4; 10],
 }
 
-const _: () = assert!(size_of::<FrameBlock>() == 6 * 64 + 12 * 16);
+const _: () = assert!(size_of::<FrameBlock>() == 6 * 64 + 23 * 16);
 const _: () = assert!(size_of::<InstanceBlock>() == 224);
 const _: () = assert!(size_of::<LightBlock>() == 64);
 const _: () = assert!(size_of::<MaterialBlock>() == 64 + 160);
@@ -120,6 +123,7 @@ impl FrameBlock {
         view: &View,
         look: &Look,
         shadow: &Cascades,
+        ground: Option<Plane>,
         size: (u32, u32),
         previous: Option<Mat4>,
     ) -> Self {
@@ -150,6 +154,8 @@ impl FrameBlock {
             size: Vec4::new(width, height, 1.0 / width, 1.0 / height),
             cascade_ends: Vec3::from(shadow.ends).extend(0.0),
             cascade_texels: Vec3::from(shadow.texels).extend(0.0),
+            irradiance: look.irradiance.map_or([Vec4::ZERO; 9], |light| light.map(|v| v.extend(1.0))),
+            ground_plane: ground.unwrap_or_default(),
             settings: Vec4::new(look.exposure, 0.0, shadow.count as f32, look.sky_scale),
         }
     }

@@ -37,9 +37,15 @@ impl View {
         self.world_to_view.inverse().w_axis.truncate()
     }
 
+    /// Where the camera stands around the vertical, as [`Orbit::azimuth`].
+    pub fn azimuth(&self) -> f32 {
+        let backward = self.world_to_view.row(2);
+        backward.x.atan2(backward.z)
+    }
+
     /// The camera at a node of the file.
     pub fn from_node(scene: &Scene, pose: &Pose, node: usize) -> Option<Self> {
-        let projection = *scene.cameras.get(scene.nodes.get(node)?.camera?)?;
+        let projection = scene.cameras.get(scene.nodes.get(node)?.camera?)?.projection;
         // Cameras are placed without the scale of their node.
         let (_, rotation, translation) = pose.world.get(node)?.to_scale_rotation_translation();
         let world_to_view = Mat4::from_rotation_translation(rotation, translation).inverse();
@@ -47,9 +53,38 @@ impl View {
     }
 }
 
+/// Visible nodes with a camera.
+fn file_cameras(scene: &Scene) -> impl Iterator<Item = usize> + '_ {
+    (0..scene.nodes.len()).filter(|&n| scene.nodes[n].visible && scene.nodes[n].camera.is_some())
+}
+
 /// First visible node with a camera.
 pub fn file_camera(scene: &Scene) -> Option<usize> {
-    scene.nodes.iter().position(|n| n.visible && n.camera.is_some())
+    file_cameras(scene).next()
+}
+
+/// What the camera at a node is called: by its node, or else by itself.
+fn names(scene: &Scene, node: usize) -> [&str; 2] {
+    let entry = &scene.nodes[node];
+    let own = entry.camera.and_then(|camera| scene.cameras.get(camera)).map_or("", |camera| &camera.name);
+    [&entry.name, own]
+}
+
+/// Visible node with the camera of this name (case ignored) or number (from 0).
+pub fn find_file_camera(scene: &Scene, name: &str) -> Option<usize> {
+    let is_named = |node: &usize| names(scene, *node).iter().any(|own| own.eq_ignore_ascii_case(name));
+    file_cameras(scene)
+        .find(is_named)
+        .or_else(|| name.parse().ok().and_then(|index: usize| file_cameras(scene).nth(index)))
+}
+
+/// Numbers and names of the cameras of the file, for messages.
+pub fn list_file_cameras(scene: &Scene) -> Vec<String> {
+    let text = |(index, node): (usize, usize)| match names(scene, node) {
+        ["", ""] => index.to_string(),
+        ["", name] | [name, _] => format!("{index} ({name})"),
+    };
+    file_cameras(scene).enumerate().map(text).collect()
 }
 
 /// A camera on a sphere around a target.
@@ -83,6 +118,32 @@ impl Default for Direction {
     }
 }
 
+impl Direction {
+    /// The unit vector that way.
+    pub fn vector(self) -> Vec3 {
+        let (sin_e, cos_e) = self.elevation.sin_cos();
+        let (sin_a, cos_a) = self.azimuth.sin_cos();
+        Vec3::new(sin_a * cos_e, sin_e, cos_a * cos_e)
+    }
+}
+
+/// How the default camera and turntables frame a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Framing {
+    /// From where.
+    pub direction: Direction,
+    /// How far away, as a factor on the distance from which the scene fills the picture.
+    pub distance: f32,
+    /// Vertical field of view in radians.
+    pub vertical_fov: f32,
+}
+
+impl Default for Framing {
+    fn default() -> Self {
+        Self { direction: Direction::default(), distance: 1.0, vertical_fov: 0.6 }
+    }
+}
+
 /// Steepest elevation; straight up has no defined azimuth.
 const STEEPEST: f32 = 1.55;
 
@@ -91,16 +152,17 @@ const MARGIN: f32 = 0.06;
 
 impl Orbit {
     /// A view that frames the whole scene in a picture of this aspect (width over height).
-    pub fn framing(scene: &Scene, aspect: f32, direction: Direction) -> Self {
-        let mut orbit = Self::towards(scene.bounds.center(), direction);
+    pub fn framing(scene: &Scene, aspect: f32, framing: Framing) -> Self {
+        let mut orbit = Self::towards(scene.bounds.center(), framing);
         orbit.fit(&scene.bounds.extremes, aspect);
+        orbit.distance *= framing.distance;
         orbit
     }
 
     /// Like [`Orbit::framing`], but the scene stays in frame at every azimuth.
-    pub fn turntable(scene: &Scene, aspect: f32, direction: Direction) -> Self {
+    pub fn turntable(scene: &Scene, aspect: f32, framing: Framing) -> Self {
         let center = scene.bounds.center();
-        let mut orbit = Self::towards(center, direction);
+        let mut orbit = Self::towards(center, framing);
         let swept: Vec<Vec3> = scene
             .bounds
             .extremes
@@ -113,15 +175,14 @@ impl Orbit {
                 })
             })
             .collect();
-        let (target, distance) = (center, orbit.fit_distance(&swept, aspect));
-        (orbit.target, orbit.distance) = (target, distance);
+        orbit.distance = orbit.fit_distance(&swept, aspect) * framing.distance;
         orbit
     }
 
-    fn towards(target: Vec3, direction: Direction) -> Self {
-        let Direction { azimuth, elevation } = direction;
+    fn towards(target: Vec3, framing: Framing) -> Self {
+        let Direction { azimuth, elevation } = framing.direction;
         let elevation = elevation.clamp(-STEEPEST, STEEPEST);
-        Self { target, distance: 1.0, azimuth, elevation, vertical_fov: 0.6 }
+        Self { target, distance: 1.0, azimuth, elevation, vertical_fov: framing.vertical_fov }
     }
 
     /// This orbit with another azimuth added, in radians.
@@ -144,9 +205,8 @@ impl Orbit {
 
     /// Unit vector from the target to the camera.
     pub fn direction(&self) -> Vec3 {
-        let (sin_e, cos_e) = self.elevation.clamp(-STEEPEST, STEEPEST).sin_cos();
-        let (sin_a, cos_a) = self.azimuth.sin_cos();
-        Vec3::new(sin_a * cos_e, sin_e, cos_a * cos_e)
+        let elevation = self.elevation.clamp(-STEEPEST, STEEPEST);
+        Direction { azimuth: self.azimuth, elevation }.vector()
     }
 
     /// Turns by angles in radians, as when dragging.
@@ -217,8 +277,9 @@ mod tests {
             .collect();
         for aspect in [0.3, 1.0, 1.78, 4.0] {
             for azimuth in [0.0, 0.55, 2.0] {
-                let mut orbit =
-                    Orbit::towards(Vec3::new(4.5, 1.5, 0.5) - 40.0, Direction { azimuth, elevation: 0.28 });
+                let direction = Direction { azimuth, elevation: 0.28 };
+                let framing = Framing { direction, ..Framing::default() };
+                let mut orbit = Orbit::towards(Vec3::new(4.5, 1.5, 0.5) - 40.0, framing);
                 orbit.fit(&points, aspect);
                 let view = orbit.view();
                 let clip = view.projection_matrix(aspect) * view.world_to_view;
@@ -253,7 +314,9 @@ mod tests {
 
     #[test]
     fn an_orbit_can_be_steered() {
-        let mut orbit = Orbit::towards(Vec3::ZERO, Direction { azimuth: 0.0, elevation: 0.0 });
+        let direction = Direction { azimuth: 0.0, elevation: 0.0 };
+        let mut orbit = Orbit::towards(Vec3::ZERO, Framing { direction, ..Framing::default() });
+        assert_eq!(orbit.turned(2.0).view().azimuth(), 2.0);
         assert!(orbit.view().eye().abs_diff_eq(Vec3::Z, 1e-6));
         orbit.rotate(std::f32::consts::FRAC_PI_2, 0.0);
         assert!(orbit.view().eye().abs_diff_eq(Vec3::X, 1e-6));

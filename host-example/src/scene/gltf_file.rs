@@ -20,7 +20,7 @@ use gltf::json::validation::{Error as Flaw, Validate};
 use self::accessors::{Accessors, Pick};
 use self::animations::Outline;
 use super::budget::Budget;
-use super::model::{Bounds, Light, LightKind, Node, Projection, Scene, Skin, Transform};
+use super::model::{Bounds, Camera, Light, LightKind, Node, Projection, Scene, Skin, Transform};
 use crate::error::{Error, Result};
 pub use sources::open;
 
@@ -188,23 +188,26 @@ fn read_buffers(
     Ok(buffers)
 }
 
-fn read_cameras(document: &gltf::Document) -> Vec<Projection> {
+fn read_cameras(document: &gltf::Document) -> Vec<Camera> {
     let positive = |value: f32, default: f32| if value.is_finite() && value > 0.0 { value } else { default };
     document
         .cameras()
-        .map(|camera| match camera.projection() {
-            gltf::camera::Projection::Perspective(p) => Projection::Perspective {
-                vertical_fov: positive(p.yfov(), 0.8).min(3.0),
-                near: positive(p.znear(), 0.01),
-            },
-            gltf::camera::Projection::Orthographic(o) => {
-                let near = if o.znear().is_finite() { o.znear().max(0.0) } else { 0.0 };
-                Projection::Orthographic {
-                    half_height: positive(o.ymag().abs(), 1.0),
-                    near,
-                    far: positive(o.zfar(), 100.0).max(near + 1e-3),
+        .map(|camera| Camera {
+            name: camera.name().unwrap_or_default().to_owned(),
+            projection: match camera.projection() {
+                gltf::camera::Projection::Perspective(p) => Projection::Perspective {
+                    vertical_fov: positive(p.yfov(), 0.8).min(3.0),
+                    near: positive(p.znear(), 0.01),
+                },
+                gltf::camera::Projection::Orthographic(o) => {
+                    let near = if o.znear().is_finite() { o.znear().max(0.0) } else { 0.0 };
+                    Projection::Orthographic {
+                        half_height: positive(o.ymag().abs(), 1.0),
+                        near,
+                        far: positive(o.zfar(), 100.0).max(near + 1e-3),
+                    }
                 }
-            }
+            },
         })
         .collect()
 }

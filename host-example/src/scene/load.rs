@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
+use glam::{Mat4, Vec4};
+
 use super::budget::Budget;
-use super::model::{Draw, Scene};
+use super::model::{Draw, Node, Scene, Transform};
 use super::{gltf_file, obj_file, pose};
 use crate::error::{Error, Result};
 
@@ -41,6 +43,21 @@ impl Scene {
         }
         scene.finish(path)?;
         Ok(scene)
+    }
+
+    /// Turns a scene whose +Z points up so that +Y does, and -Z is where its +Y was.
+    pub fn turn_z_up(&mut self) {
+        let turn = Mat4::from_cols(Vec4::X, -Vec4::Z, Vec4::Y, Vec4::W);
+        let root = self.nodes.len();
+        for node in self.nodes.iter_mut().filter(|node| node.parent.is_none()) {
+            node.parent = Some(root);
+        }
+        self.nodes.push(Node { transform: Transform::Matrix(turn), ..Node::default() });
+        self.order.insert(0, root);
+        // Bounds were finite, and stay so.
+        if let Some(bounds) = pose::bounds(self) {
+            self.bounds = bounds;
+        }
     }
 
     /// Derives what both loaders leave open: the order of nodes, the list of draws and the bounds.

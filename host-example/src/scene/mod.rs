@@ -6,6 +6,8 @@
 pub mod animation;
 pub mod budget;
 pub mod camera;
+pub mod environment;
+pub mod floor;
 pub mod geometry;
 pub mod gltf_file;
 mod load;
@@ -18,6 +20,6 @@ pub(crate) mod tests;
 
 pub use material::{AlphaMode, ColorSpace, Image, Material, Sampler, Texture, TextureUse};
 pub use model::{
-    Bounds, Draw, Influence, Light, LightKind, Mesh, MorphDelta, Node, Primitive, Projection, Scene, Skin,
-    Transform, Vertex,
+    Bounds, Camera, Draw, Influence, Light, LightKind, Mesh, MorphDelta, Node, Primitive, Projection, Scene,
+    Skin, Transform, Vertex,
 };

@@ -214,6 +214,15 @@ pub enum Projection {
     },
 }
 
+/// A camera of the file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// Name from the file, or empty.
+    pub name: String,
+    /// How it projects.
+    pub projection: Projection,
+}
+
 /// A punctual light (KHR_lights_punctual). It shines along -Z of its node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
@@ -295,7 +304,7 @@ pub struct Scene {
     /// Indices of all nodes, parents before their children.
     pub order: Vec<usize>,
     /// Cameras of the file.
-    pub cameras: Vec<Projection>,
+    pub cameras: Vec<Camera>,
     /// Lights of the file.
     pub lights: Vec<Light>,
     /// Skins.

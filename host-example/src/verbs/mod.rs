@@ -9,4 +9,5 @@ pub mod preset;
 pub mod render;
 mod shared;
 pub mod sheet;
+mod staging;
 pub mod view;

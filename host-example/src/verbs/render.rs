@@ -6,6 +6,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::shared::{LengthArgs, SceneArgs, parse_size};
+use super::staging::StagingArgs;
 use crate::apply::read;
 use crate::error::{Error, Result};
 use crate::files;
@@ -15,7 +16,6 @@ use crate::loader::Library;
 use crate::output::{self, Layer, Picture, Precision};
 use crate::render::targets::{Target, Targets};
 use crate::scene::Scene;
-use crate::scene::camera::Direction;
 use crate::shot::{Options, Shot};
 use crate::stop::Stop;
 use crate::stylize::style::{Setting, Style};
@@ -25,20 +25,23 @@ use crate::stylize::style::{Setting, Style};
 pub struct RenderArgs {
     #[command(flatten)]
     scene: SceneArgs,
+    #[command(flatten)]
+    staging: StagingArgs,
     /// The picture: .png; or .exr with the scene-linear colour, normals, depth, object numbers, motion and rest
     /// positions. out.####.exr, out.@@@@.exr or out.%04d.exr for a sequence; .#### is added where it lacks.
     out: PathBuf,
     /// Size of the picture in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
     size: (u32, u32),
-    /// How many frames, from 1; or which, such as 1001-1100x2,1200.
+    /// How many frames, from 1; or which, such as 1001-1100x2,1200. Of an animation, frame 1 is at --start: with 24 frames
+    /// per second, 49-72 is its third second.
     #[arg(long, value_name = "N|LIST", default_value = "1", value_parser = FrameList::or_count, allow_hyphen_values = true)]
     frames: FrameList,
     /// Leaves pictures alone that are there already and whole.
     #[arg(long)]
     skip_existing: bool,
     /// Turns the camera once around the scene over all frames.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "camera")]
     turntable: bool,
     /// Plays the file's animation, in a loop.
     #[arg(long)]
@@ -52,12 +55,6 @@ pub struct RenderArgs {
     /// Frames per second of the animation.
     #[arg(long, value_name = "N", default_value_t = 24.0)]
     fps: f32,
-    /// Degrees by which the default camera and turntables are turned to the right around the scene.
-    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true)]
-    azimuth: f32,
-    /// Height of the default camera and turntables above the horizon in degrees, below 90.
-    #[arg(long, value_name = "DEGREES", default_value_t = 16.0, allow_negative_numbers = true)]
-    elevation: f32,
     /// Exposes and tone-maps the colour of EXR files too, as PNG files and the window have it.
     #[arg(long)]
     tone_mapped: bool,
@@ -156,9 +153,6 @@ impl RenderArgs {
                 "use 24 and 0",
             ));
         }
-        if !self.azimuth.is_finite() || !self.elevation.is_finite() {
-            return Err(Error::input("--azimuth, --elevation", "must be finite", "give angles in degrees"));
-        }
         Ok(())
     }
 
@@ -171,10 +165,11 @@ impl RenderArgs {
             size: self.size,
             range: (first, last.abs_diff(first) + 1),
             turntable: self.turntable,
-            direction: Direction {
-                azimuth: Direction::default().azimuth + self.azimuth.to_radians(),
-                elevation: self.elevation.to_radians(),
-            },
+            framing: self.staging.framing(),
+            camera: self.staging.camera(scene)?,
+            light: self.staging.light(),
+            background: self.staging.background()?,
+            ground: self.staging.ground(scene),
             animation: choose_animation(self, scene)?,
             start: self.start,
             fps: self.fps,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use crate::error::Result;
 use crate::output;
@@ -19,6 +19,18 @@ pub struct SceneArgs {
     /// Image that colours an OBJ without textures.
     #[arg(long, value_name = "FILE")]
     pub texture: Option<PathBuf>,
+    /// Which axis of the file points up: z turns scenes of programs that have it so.
+    #[arg(long, value_name = "AXIS", default_value = "y")]
+    pub up: Up,
+}
+
+/// An axis that points up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Up {
+    /// As glTF has it.
+    Y,
+    /// As CAD programs and scanners have it.
+    Z,
 }
 
 impl SceneArgs {
@@ -27,7 +39,10 @@ impl SceneArgs {
     /// # Errors
     /// As [`Scene::load`].
     pub fn load(&self) -> Result<Scene> {
-        let scene = Scene::load(&self.scene, self.texture.as_deref())?;
+        let mut scene = Scene::load(&self.scene, self.texture.as_deref())?;
+        if self.up == Up::Z {
+            scene.turn_z_up();
+        }
         for warning in &scene.warnings {
             output::warn(format_args!("{}: {warning}", self.scene.display()));
         }

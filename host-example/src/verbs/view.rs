@@ -3,6 +3,7 @@
 use clap::Args;
 
 use super::shared::{LengthArgs, SceneArgs, parse_size};
+use super::staging::StagingArgs;
 use crate::error::Result;
 use crate::loader::Library;
 use crate::stylize::style::Setting;
@@ -15,6 +16,8 @@ use crate::view::viewer::{Options, Viewer, usable_styles};
 pub struct ViewArgs {
     #[command(flatten)]
     scene: SceneArgs,
+    #[command(flatten)]
+    staging: StagingArgs,
     /// A style for the keys 1, 2, ...: none, the id of a node, or a graph file or preset (.json). May be repeated
     /// [default: none and every node of the group styles].
     #[arg(long, value_name = "STYLE")]
@@ -50,6 +53,11 @@ pub fn run(args: &ViewArgs) -> Result<()> {
         settings: args.set.clone(),
         lengths: args.lengths.lengths,
         size: args.size,
+        framing: args.staging.framing(),
+        camera: args.staging.camera(&scene)?,
+        light: args.staging.light(),
+        background: args.staging.background()?,
+        ground: args.staging.ground(&scene),
         frames: args.frames,
     };
     view::show(Viewer::new(library, scene, options), args.report)

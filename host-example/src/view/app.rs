@@ -85,7 +85,7 @@ impl App {
                 Arc::clone(self.window.insert(Arc::new(window)))
             }
         };
-        let mut stage = Stage::new(&window, event_loop.owned_display_handle(), &self.viewer.scene)?;
+        let mut stage = Stage::new(&window, event_loop.owned_display_handle(), &self.viewer)?;
         stage.set_style(&self.viewer.library, self.viewer.load(self.viewer.style())?)?;
         self.viewer.adapter = stage.adapter();
         self.stage = Some(stage);

@@ -10,6 +10,7 @@ use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
 use super::present::Present;
+use super::viewer::Viewer;
 use crate::error::{Error, Result};
 use crate::loader::Library;
 use crate::loader::catalogue::Kind;
@@ -48,7 +49,7 @@ impl Stage {
     ///
     /// # Errors
     /// [`Error::Failure`] when there is no adapter for the window or the device refuses.
-    pub fn new(window: &Arc<Window>, display: OwnedDisplayHandle, scene: &Scene) -> Result<Self> {
+    pub fn new(window: &Arc<Window>, display: OwnedDisplayHandle, viewer: &Viewer) -> Result<Self> {
         let descriptor = wgpu::InstanceDescriptor::new_with_display_handle_from_env(Box::new(display));
         let instance = wgpu::Instance::new(descriptor);
         let surface = surface(&instance, window)?;
@@ -65,7 +66,11 @@ impl Stage {
         config.format = formats.iter().copied().find(wgpu::TextureFormat::is_srgb).unwrap_or(config.format);
         config.present_mode = wgpu::PresentMode::AutoVsync;
         surface.configure(&gpu.device, &config);
-        let renderer = Renderer::new(&gpu.device, &gpu.queue, scene, size)?;
+        let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &viewer.scene, size)?;
+        renderer.set_background(&viewer.background, false)?;
+        if viewer.ground {
+            renderer.add_ground();
+        }
         let present = Present::new(&gpu.device, config.format);
         let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
         gpu.check()?;

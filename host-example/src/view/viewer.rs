@@ -5,9 +5,10 @@ use std::time::{Duration, Instant};
 
 use crate::error::Result;
 use crate::loader::Library;
+use crate::render::background::Background;
 use crate::render::look::Look;
 use crate::scene::Scene;
-use crate::scene::camera::{self, Direction, Orbit, View};
+use crate::scene::camera::{self, Direction, Framing, Orbit, View};
 use crate::scene::pose::Pose;
 use crate::stylize::lengths::Lengths;
 use crate::stylize::style::{Setting, Style};
@@ -25,6 +26,10 @@ pub struct Viewer {
     pub pose: Pose,
     /// Sun and sky.
     pub look: Look,
+    /// What is behind the scene.
+    pub background: Background,
+    /// Whether the scene casts its shadow on an invisible ground.
+    pub ground: bool,
     /// Styles in the order of the keys 1, 2, ...
     pub styles: Vec<String>,
     /// Parameters for the styles that have them.
@@ -38,6 +43,7 @@ pub struct Viewer {
     pub adapter: String,
     name: String,
     current: usize,
+    framing: Framing,
     orbit: Orbit,
     file_camera: Option<usize>,
     from_file: bool,
@@ -72,6 +78,16 @@ pub struct Options {
     pub lengths: Option<Lengths>,
     /// Size of the window in pixels.
     pub size: (u32, u32),
+    /// How the default camera frames the scene.
+    pub framing: Framing,
+    /// Node of the camera of the file that is looked through at first; the default camera otherwise.
+    pub camera: Option<usize>,
+    /// Where the sun is, seen from the camera, if not where it usually is.
+    pub light: Option<Direction>,
+    /// What is behind the scene.
+    pub background: Background,
+    /// Whether the scene casts its shadow on an invisible ground.
+    pub ground: bool,
     /// Closes the window after so many frames.
     pub frames: Option<u32>,
 }
@@ -101,18 +117,35 @@ pub fn usable_styles(library: &Library, wanted: &[String], settings: &[Setting])
 impl Viewer {
     /// A viewer of `scene`, at rest.
     pub fn new(library: Library, scene: Scene, options: Options) -> Self {
-        let Options { name, styles, settings, lengths, size, frames } = options;
+        let Options {
+            name,
+            styles,
+            settings,
+            lengths,
+            size,
+            framing,
+            camera,
+            light,
+            background,
+            ground,
+            frames,
+        } = options;
         let pose = Pose::at_rest(&scene);
-        let look = Look::for_scene(&scene, &pose);
-        let aspect = size.0 as f32 / size.1 as f32;
-        let file_camera = camera::file_camera(&scene);
+        let orbit = Orbit::framing(&scene, size.0 as f32 / size.1 as f32, framing);
+        let view = camera.and_then(|node| View::from_node(&scene, &pose, node));
+        let view = view.unwrap_or_else(|| orbit.view());
+        let look = Look::for_scene(&scene, &pose, &view, light, background.environment());
+        let file_camera = camera.or_else(|| camera::file_camera(&scene));
         Self {
-            orbit: Orbit::framing(&scene, aspect, Direction::default()),
-            from_file: file_camera.is_some(),
+            framing,
+            orbit,
+            from_file: camera.is_some(),
             playing: !scene.animations.is_empty(),
             library,
             pose,
             look,
+            background,
+            ground,
             styles,
             settings,
             lengths,
@@ -180,7 +213,7 @@ impl Viewer {
     /// Frames the whole scene.
     pub fn frame_all(&mut self) {
         let aspect = self.size.0 as f32 / self.size.1.max(1) as f32;
-        self.orbit = Orbit::framing(&self.scene, aspect, Direction::default());
+        self.orbit = Orbit::framing(&self.scene, aspect, self.framing);
         self.from_file = false;
     }
 
