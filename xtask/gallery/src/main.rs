@@ -117,8 +117,9 @@ impl Gallery<'_> {
         let _ =
             writeln!(self.page, "<p>{} § {}</p>", escaped(text(node, "doc")), escaped(text(node, "section")));
         for (index, shot) in shots(node).iter().enumerate() {
-            // Options are compared on one picture; the defaults are shown on all.
-            let shown = if index == 0 { subjects } else { &subjects[..1] };
+            // Options of filters are compared on one picture; defaults and styles are shown on all.
+            let is_style = text(node, "group") == "styles";
+            let shown = if index == 0 || is_style { subjects } else { &subjects[..1] };
             let _ = writeln!(self.page, "<h3>{}</h3><div class=\"row\">", escaped(&shot.title));
             for subject in shown {
                 let name = format!("{id}-{index}-{}.png", subject.name);

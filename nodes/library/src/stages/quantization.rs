@@ -5,7 +5,7 @@ use crate::spec::{Param, Scope};
 use crate::stages::LOOK;
 
 pub(crate) const POSTERIZE: Param = Param::int("posterize", "Posterize", BINS.default_int(), [0, 64])
-    .slider(0.0, 24.0)
+    .slider(2.0, 16.0)
     .structural()
     .group(LOOK)
     .doc("Levels of lightness between black and white; 0 leaves tones continuous.");

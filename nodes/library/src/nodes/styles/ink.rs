@@ -427,7 +427,9 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
             [smooth, tensor, flow.response(scope.plan, lightness, tensor, &guides)]
         });
     let edges = flow.decided(scope.plan, response, tensor, shares);
-    let tinted = lab_to_rgb::pass(scope.plan, smooth, scope.float("saturation"));
+    // Where no own colour shows, saturation has no part in the plan, so that panels can tell.
+    let saturation = if drawing.colour > 0.0 { scope.float("saturation") } else { 1.0 };
+    let tinted = lab_to_rgb::pass(scope.plan, smooth, saturation);
     let lines = lines_on_white(scope, tinted, edges, tensor, drawing.sigma_a * scale);
     let (strokes, deviation) = strokes(scope, tensor, own.stroke);
     let tones = Tones {
