@@ -219,7 +219,8 @@ fn the_default_camera_goes_away_and_widens() {
     assert!((0.17..0.3).contains(&share), "{share}");
     // A wide view comes closer to keep the scene in the picture.
     let nearest = |z: &[f32]| z.iter().copied().filter(|z| *z > 0.0).fold(f32::MAX, f32::min);
-    assert!(nearest(&wide) < 0.5 * nearest(&usual) && covered(&wide) > 0.6 * covered(&usual));
+    let (closer, share) = (nearest(&wide) / nearest(&usual), covered(&wide) / covered(&usual));
+    assert!(closer < 0.5 && (0.2..1.5).contains(&share), "{closer} {share}");
 }
 
 #[test]
@@ -234,7 +235,11 @@ fn models_cast_a_shadow_on_the_ground_and_nothing_else() {
         .map(|(x, y, _)| (x, y))
         .collect();
     assert!(darker.len() > 60, "{} pixels are darker", darker.len());
-    assert!(darker.iter().all(|(x, y)| *y > 20 && *off.get_pixel(*x, *y) == Rgba([192, 192, 192, 255])));
+    let cut = picture(&cube, &BARE);
+    assert!(
+        darker.iter().all(|(x, y)| *y > 20 && cut.get_pixel(*x, *y)[3] < 255),
+        "the model is darker, too"
+    );
     assert!(on.pixels().zip(off.pixels()).all(|(on, off)| on.0.iter().zip(off.0).all(|(a, b)| *a <= b)));
     // Where nothing is behind, the shadow is all that is there.
     let shadow = picture(&cube, &["--background", "transparent"]);
