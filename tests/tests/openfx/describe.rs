@@ -143,7 +143,7 @@ pub fn controls_are_the_parameters_of_the_nodes(binary: &Binary, effect: Expecte
             _ => vec![(effect.node, "")],
         };
         let mut names: BTreeSet<String> =
-            ["working_space", "process_alpha"].map(str::to_owned).into_iter().collect();
+            ["working_space", "process_alpha", "reference_height"].map(str::to_owned).into_iter().collect();
         names.extend(general.then(|| "mask_apply".to_owned()));
         if general && effect.node.is_steady() {
             names.extend(["motion_from", "motion_convention"].map(str::to_owned));

@@ -104,7 +104,7 @@ fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: boo
                 host.temporal && (settings.graph.frames() != [0, 0] || scene.frames == Frames::NONE)
             }
             Target::MotionConvention => scene.reads_vectors && settings.graph.frames() != [0, 0],
-            Target::LinesOutput | Target::WorkingSpace => true,
+            Target::LinesOutput | Target::WorkingSpace | Target::ReferenceHeight => true,
         };
         enable(host, params, &control.name, has_effect);
     }

@@ -179,6 +179,10 @@ fn labels(set: Properties<'_>, label: &'static CStr) {
     }
 }
 
+/// The largest reference height, and the largest that a slider offers.
+const MOST_HEIGHT: c_int = 65536;
+const USUAL_HEIGHT: c_int = 2160;
+
 fn define_control(
     effect: &'static Effect,
     host: &Host,
@@ -200,6 +204,20 @@ fn define_control(
         Target::WorkingSpace => {
             let default = SPACES.iter().position(|(_, space)| *space == host.quirks.space).unwrap_or(0);
             choice(define(kOfxParamTypeChoice)?, control, default)
+        }
+        Target::ReferenceHeight => {
+            let set = define(kOfxParamTypeInteger)?;
+            for (name, value) in [
+                (kOfxParamPropDefault, 0),
+                (kOfxParamPropMin, 0),
+                (kOfxParamPropMax, MOST_HEIGHT),
+                (kOfxParamPropDisplayMin, 0),
+                (kOfxParamPropDisplayMax, USUAL_HEIGHT),
+                (kOfxParamPropAnimates, 0),
+            ] {
+                set.set_int(name, value);
+            }
+            set
         }
         Target::ProcessAlpha => switch(define(kOfxParamTypeBoolean)?, false),
         Target::MaskApply => switch(define(kOfxParamTypeBoolean)?, !host.quirks.all_connected),

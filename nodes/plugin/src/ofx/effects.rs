@@ -24,6 +24,7 @@ const PREFIX: &str = "org.isophote.";
 pub const WORKING_SPACE: &CStr = c"working_space";
 pub const PROCESS_ALPHA: &str = "process_alpha";
 pub const MASK_APPLY: &str = "mask_apply";
+pub const REFERENCE_HEIGHT: &str = "reference_height";
 pub const LINES_OUTPUT: &str = "lines_output";
 pub const MOTION_FROM: &str = "motion_from";
 pub const MOTION_CONVENTION: &str = "motion_convention";
@@ -65,6 +66,8 @@ pub enum Target {
     WorkingSpace,
     /// Whether alpha is filtered too, instead of being the source's.
     ProcessAlpha,
+    /// Height of pictures at which lengths are meant.
+    ReferenceHeight,
     /// Whether a connected mask counts. For hosts that call every clip connected.
     MaskApply,
     /// Where motion between frames comes from.
@@ -248,6 +251,7 @@ impl Effect {
             "output",
             Target::WorkingSpace,
         );
+        self.add(REFERENCE_HEIGHT, "Reference height", HEIGHT_HINT, "output", Target::ReferenceHeight);
         self.add(PROCESS_ALPHA, "Process alpha", ALPHA_HINT, "output", Target::ProcessAlpha);
         self.add(MASK_APPLY, "Apply mask", MASK_HINT, "output", Target::MaskApply);
         // Under one heading, controls follow one another.
@@ -315,6 +319,8 @@ fn reads(node: &NodeSpec, input: GraphInput) -> bool {
 const LINES_HINT: &str = "The edge image alone, 1 = paper and 0 = line, or its lines over the picture.";
 const SPACE_HINT: &str = "What the numbers of the pixels mean. Filters are tuned for gamma-encoded colour; linear \
                           pictures are encoded on the way in and decoded on the way out. 'As is' changes nothing.";
+const HEIGHT_HINT: &str = "Height of pictures, in pixels, at which lengths are meant: with 1080 pictures of all sizes get the \
+                           same look. 0: lengths are pixels of the full-size picture.";
 const ALPHA_HINT: &str =
     "Filters alpha together with the colour. Off, the result has the alpha of the source.";
 const MASK_HINT: &str = "Lets the mask decide where the effect shows.";

@@ -22,6 +22,8 @@ pub struct Frame {
     pub top: Option<f64>,
     /// Number of the frame.
     pub number: i64,
+    /// Height of pictures at which lengths are meant; 0: any.
+    pub reference_height: u32,
 }
 
 /// What is less than this share of a pixel is rounding.
@@ -98,12 +100,24 @@ impl Frame {
             scale: scale.clamp(1.0 / 1024.0, 64.0) as f32,
             top: None,
             number: 0,
+            reference_height: 0,
         })
     }
 
     /// The same at a time of a project that ends at `top` (canonical).
     pub fn in_project(self, top: Option<f64>, time: f64) -> Self {
         Self { top, number: time.floor() as i64, ..self }
+    }
+
+    /// The same for lengths that are meant at a height of pictures; 0: at any.
+    pub fn for_reference(self, reference_height: u32) -> Self {
+        Self { reference_height, ..self }
+    }
+
+    /// The height that a reference is compared with, in canonical units: the project's; 0 where that is not known.
+    pub fn canonical_height(&self) -> u32 {
+        let height = self.top.map_or(0.0, f64::round);
+        if (1.0..=f64::from(MAX_SIDE)).contains(&height) { height as u32 } else { 0 }
     }
 
     /// Where its left top corner stands in the project, in canonical units downwards from the project's; marks are anchored

@@ -101,7 +101,8 @@ pub fn regions_of_interest(
     let settings = Settings::read(effect, host, instance, moment.time)?;
     let defined = defined(effect, host, instance, moment.time, &settings)?;
     let frame = Frame::new(host, defined, moment.scale, source.aspect(), None)
-        .map(|frame| frame.in_project(extent(host, instance).map(|[_, top]| top), moment.time));
+        .map(|frame| frame.in_project(extent(host, instance).map(|[_, top]| top), moment.time))
+        .map(|frame| frame.for_reference(settings.reference_height));
     let wanted = args.doubles::<4>(kOfxImageEffectPropRegionOfInterest).map(|[x1, y1, x2, y2]| OfxRectD {
         x1,
         y1,

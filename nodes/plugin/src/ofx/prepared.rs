@@ -38,6 +38,8 @@ impl Prepared {
                     frames: known.frames,
                     origin: frame.origin(),
                     frame: frame.number,
+                    reference_height: frame.reference_height,
+                    canonical_height: frame.canonical_height(),
                     ..Request::new(width, height)
                 },
             )

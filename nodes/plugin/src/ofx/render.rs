@@ -54,7 +54,8 @@ pub fn render(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -
     let defined = instance::defined(effect, host, instance, moment.time, &settings)?;
     let frame = Frame::new(host, defined, moment.scale, aspect, Some(source.bounds))
         .ok_or(kOfxStatFailed)?
-        .in_project(instance::extent(host, instance).map(|[_, top]| top), moment.time);
+        .in_project(instance::extent(host, instance).map(|[_, top]| top), moment.time)
+        .for_reference(settings.reference_height);
     if let Some(name) = clip.properties.string(kOfxImageClipPropColourspace, 0) {
         settings.space = settings.space_of(&name);
     }

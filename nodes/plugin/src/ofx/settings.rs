@@ -22,6 +22,8 @@ pub struct Settings {
     pub space: ColourSpace,
     /// Whether the user says so, whatever the host does.
     pub as_is: bool,
+    /// Height of pictures at which lengths are meant; 0: any.
+    pub reference_height: u32,
     /// Whether alpha is filtered too.
     pub process_alpha: bool,
     /// Whether a mask counts.
@@ -47,6 +49,7 @@ impl Settings {
         let values = Values { host, set: host.params(instance)?, time };
         let mut over = false;
         let (mut space, mut as_is) = (host.quirks.space, false);
+        let mut reference_height = 0;
         let (mut process_alpha, mut mask_apply) = (false, !host.quirks.all_connected);
         let (mut motion_from, mut convention) = (MotionFrom::default(), Convention::OWN);
         for control in &effect.controls {
@@ -57,6 +60,10 @@ impl Settings {
                     if let Some((label, listed)) = values.index(name).and_then(|i| SPACES.get(i)) {
                         (space, as_is) = (*listed, *label == AS_IS);
                     }
+                }
+                Target::ReferenceHeight => {
+                    let height = values.int(name).and_then(|height| u32::try_from(height).ok());
+                    reference_height = height.unwrap_or_default();
                 }
                 Target::ProcessAlpha => process_alpha = values.bool(name).unwrap_or(process_alpha),
                 Target::MaskApply => mask_apply = values.bool(name).unwrap_or(mask_apply),
@@ -85,7 +92,18 @@ impl Settings {
                 least[kind] = least[kind].min(value.form().numbers[0].abs() as f32);
             }
         }
-        Ok(Self { graph, ids, space, as_is, process_alpha, mask_apply, motion_from, convention, least })
+        Ok(Self {
+            graph,
+            ids,
+            space,
+            as_is,
+            reference_height,
+            process_alpha,
+            mask_apply,
+            motion_from,
+            convention,
+            least,
+        })
     }
 
     /// What the pixels are by the host's name of their colour space, which counts more than what they
