@@ -4,6 +4,10 @@ mod support;
 #[path = "support/two_parts.rs"]
 mod two_parts;
 
+use exr::prelude::{
+    AnyChannel, AnyChannels, AttributeValue, Encoding as ExrEncoding, FlatSamples, Image, IntegerBounds,
+    Layer, LayerAttributes, Vec2, WritableImage,
+};
 use isophote_exr_edit::{Channel, Edit, Error, File, Limits, PartEdit, Plane, Sample};
 use support::{assets, encodings, file};
 
@@ -118,4 +122,31 @@ fn what_does_not_fit_is_refused() {
     refused(first.write(&[PartEdit { decoded: &decoded, edit: &wrong }], &mut Vec::new()));
     assert!(matches!(first.decode(1), Err(Error::Argument(_))));
     assert!(matches!(decoded.plane(9), Err(Error::Argument(_))));
+}
+
+#[test]
+fn texts_and_windows_of_headers_are_told() {
+    let mut layer = Layer::new(
+        (3, 2),
+        LayerAttributes { layer_position: Vec2(4, -5), ..Default::default() },
+        ExrEncoding::UNCOMPRESSED,
+        AnyChannels::sort(std::iter::once(AnyChannel::new("Y", FlatSamples::F32(vec![0.5; 6]))).collect()),
+    );
+    let other = &mut layer.attributes.other;
+    other.insert("cryptomatte/1/name".into(), AttributeValue::Text("objects".into()));
+    other.insert("seed".into(), AttributeValue::I32(7));
+    let mut image = Image::from_layer(layer);
+    image.attributes.display_window = IntegerBounds::new((-1, -9), (30, 20));
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image.write().to_buffered(&mut bytes).unwrap();
+
+    let file = parse(bytes.into_inner());
+    let texts: Vec<_> = file.texts(0).filter(|(name, _)| name.starts_with("crypto")).collect();
+    assert_eq!(texts, [("cryptomatte/1/name", &b"objects"[..])]);
+    assert!(file.texts(0).all(|(name, _)| name != "seed"));
+    assert_eq!(file.texts(1).count(), 0);
+    let part = &file.parts()[0];
+    let display = part.display.unwrap();
+    assert_eq!((part.window.x, part.window.y), (4, -5));
+    assert_eq!((display.x, display.y, display.width, display.height), (-1, -9, 30, 20));
 }
