@@ -23,7 +23,7 @@ struct Params {
     cover: u32,
     /// How much of the grain follows the strokes instead of the paper, 0..=1.
     follow: f32,
-    /// How far lines, too, break on the grain, 0..=1.
+    /// How far what is drawn solidly, too, breaks on the grain, 0..=1.
     dryness: f32,
     /// Where the picture stands in the canonical one, pixels.
     origin: vec2f,
@@ -66,10 +66,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let line = 1.0 - clamp(fetch(lines, 0u, pixel(id)).x, 0.0, 1.0);
     let mark = fetch(marks, 3u, pixel(id)).xy;
     // A dry tool leaves out the valleys of the paper even where it presses hard; in light tones nothing breaks.
-    let dry = params.dryness * params.grain;
-    let pressed = line * (1.0 - dry * max(height - 0.6, 0.0));
-    let toned = catches(mark.x, height, params.grain * mark.y);
-    let ink = (1.0 - (1.0 - catches(pressed, height, dry)) * (1.0 - toned)) * params.line.a * alpha;
+    let dry = params.dryness * max(height - 0.55, 0.0);
+    let pressed = catches(line, height, params.dryness * params.grain) * (1.0 - dry);
+    let toned = catches(mark.x, height, params.grain * mark.y) * (1.0 - dry * mark.y);
+    let ink = (1.0 - (1.0 - pressed) * (1.0 - toned)) * params.line.a * alpha;
 
     // Chalk: the picture's own colours, a little lighter, where the paper catches them.
     let own = clamp(v.rgb, vec3f(0.0), vec3f(1.0));

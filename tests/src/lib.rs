@@ -16,6 +16,7 @@ pub mod plans;
 pub mod png;
 pub mod random;
 pub mod run;
+pub mod scenery;
 pub mod sequences;
 pub mod shaders;
 pub mod steadiness;

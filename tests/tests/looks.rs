@@ -5,7 +5,8 @@ use isophote::Request;
 use isophote_engine::Image;
 use isophote_tests::pictures::from_fn;
 use isophote_tests::random::Random;
-use isophote_tests::run;
+use isophote_tests::scenery::{forms, landscape};
+use isophote_tests::{png, run};
 
 /// Styles of lines, with what makes their paper plain where that is a pattern of its own.
 const LINE_STYLES: [(&str, &[(&str, &str)]); 7] = [
@@ -15,7 +16,7 @@ const LINE_STYLES: [(&str, &[(&str, &str)]); 7] = [
     ("ink", &[("style", "woodcut")]),
     ("ink", &[("style", "pastel")]),
     ("blueprint", &[("grid", "0")]),
-    ("cartoon", &[]),
+    ("cartoon", &[("posterize", "0")]),
 ];
 /// Those that draw tones by marks.
 const MARKED: [&str; 4] = ["ink", "pencil", "charcoal", "woodcut"];
@@ -148,31 +149,6 @@ fn borders_are_like_the_rest() {
     }
 }
 
-/// A picture that is the same at every size: soft and sharp forms.
-fn scenery(height: u32) -> Image {
-    let h = height as f32;
-    let at = |u: f32, v: f32| {
-        let hill = 0.55 + 0.12 * (u * 4.0).sin();
-        let disc = (u - 0.9).hypot(v - 0.3) < 0.16;
-        let tower = (0.35..0.47).contains(&u) && v > 0.25;
-        match (disc, tower, v > hill) {
-            (true, ..) => [0.95, 0.75, 0.25],
-            (_, true, _) => [0.45, 0.2 + 0.3 * v, 0.25],
-            (_, _, true) => [0.2 + 0.2 * (v - hill), 0.42, 0.2],
-            _ => [0.45 + 0.4 * v, 0.6 + 0.3 * v, 0.9],
-        }
-    };
-    from_fn(height * 4 / 3, height, |x, y| {
-        let mut sum = [0.0; 3];
-        for i in 0..16 {
-            let (dx, dy) = ((i % 4) as f32 * 0.25 + 0.125, (i / 4) as f32 * 0.25 + 0.125);
-            let color = at((x as f32 + dx) / h, (y as f32 + dy) / h);
-            sum = [0, 1, 2].map(|c| sum[c] + color[c] / 16.0);
-        }
-        [sum[0], sum[1], sum[2], 1.0]
-    })
-}
-
 /// A picture made smaller by a whole number.
 fn smaller(image: &Image, by: i32) -> Image {
     let share = 1.0 / (by * by) as f32;
@@ -205,7 +181,7 @@ fn a_picture_looks_the_same_at_every_size() {
     ];
     for (id, least) in looks {
         let result = |height: u32| {
-            let picture = scenery(height);
+            let picture = landscape(height);
             let request =
                 Request { reference_height: 480, ..Request::new(picture.width(), picture.height()) };
             run::graph(&run::single(id, &[]), request, &picture)
@@ -216,4 +192,82 @@ fn a_picture_looks_the_same_at_every_size() {
             assert!(found >= least, "{id}: {found:.1} dB between 240 and {} lines", 240 * by);
         }
     }
+}
+
+/// Mean L, a and b of windows of 8 pixels.
+fn coarse_lab(image: &Image) -> Vec<[f64; 3]> {
+    let small = smaller(image, 8);
+    small.data().chunks_exact(4).map(lab).collect()
+}
+
+/// CIELAB of an sRGB colour, D65.
+fn lab(pixel: &[f32]) -> [f64; 3] {
+    let decoded = [0, 1, 2].map(|c| {
+        let v = f64::from(pixel[c].clamp(0.0, 1.0));
+        if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+    });
+    let rows = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]];
+    let white = [0.950_47, 1.0, 1.088_83];
+    let [x, y, z] = [0, 1, 2].map(|i| {
+        let row: [f64; 3] = rows[i];
+        let v = (0..3).map(|c| row[c] * decoded[c]).sum::<f64>() / white[i];
+        if v > 0.008_856 { v.cbrt() } else { 7.787 * v + 16.0 / 116.0 }
+    });
+    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+}
+
+fn correlation(pairs: &[(f64, f64)]) -> f64 {
+    let count = pairs.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / count;
+    let (a, b) = (mean(|p| p.0), mean(|p| p.1));
+    let sum = |f: &dyn Fn(f64, f64) -> f64| pairs.iter().map(|p| f(p.0 - a, p.1 - b)).sum::<f64>();
+    sum(&|x, y| x * y) / (sum(&|x, _| x * x) * sum(&|_, y| y * y)).sqrt()
+}
+
+/// What is wrong with a style's lightness, hue and mean on a picture.
+fn unlike(id: &str, params: &[(&str, &str)], name: &str, picture: &Image, faults: &mut Vec<String>) {
+    let result = run::node(id, params, picture);
+    let (before, after) = (coarse_lab(picture), coarse_lab(&result));
+    let lightness: Vec<(f64, f64)> = before.iter().zip(&after).map(|(a, b)| (a[0], b[0])).collect();
+    let two_tone = params.iter().any(|p| ["ink", "woodcut"].contains(&p.1));
+    let (found, least) = (correlation(&lightness), if two_tone { 0.8 } else { 0.9 });
+    if found < least {
+        faults.push(format!("{id} {params:?} on {name}: lightness correlates by {found:.3}"));
+    }
+    if id == "ink" {
+        return;
+    }
+    let shift = lightness.iter().map(|(a, b)| b - a).sum::<f64>() / lightness.len() as f64;
+    if shift.abs() > 4.0 {
+        faults.push(format!("{id} on {name}: lightness shifts by {shift:.1}"));
+    }
+    // The mean turn of hues, by chroma.
+    let turned = before.iter().zip(&after).fold([0.0; 2], |[x, y], (a, b)| {
+        let (cross, dot) = (a[1] * b[2] - a[2] * b[1], a[1] * b[1] + a[2] * b[2]);
+        [x + dot, y + cross]
+    });
+    let degrees = turned[1].atan2(turned[0]).to_degrees();
+    if degrees.abs() > 5.0 {
+        faults.push(format!("{id} on {name}: hues turn by {degrees:.1} degrees"));
+    }
+}
+
+#[test]
+fn pictures_are_recognised() {
+    let mut pictures = vec![("forms".to_owned(), forms()[0].1.clone()), ("landscape".into(), landscape(240))];
+    if let Some(assets) = png::assets() {
+        for name in ["astronaut.png", "chelsea.png"] {
+            pictures.push((name.into(), smaller(&png::read(&assets.join("photo").join(name)).unwrap(), 2)));
+        }
+    }
+    let mut faults = Vec::new();
+    for (name, picture) in &pictures {
+        for id in ["cartoon", "watercolor", "oil_paint", "painting", "coherent"] {
+            unlike(id, &[], name, picture, &mut faults);
+        }
+        for style in ["ink", "pencil", "charcoal", "woodcut", "pastel"] {
+            unlike("ink", &[("style", style)], name, picture, &mut faults);
+        }
+    }
+    assert!(faults.is_empty(), "{faults:#?}");
 }

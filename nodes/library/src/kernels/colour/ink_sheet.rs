@@ -40,7 +40,7 @@ pub struct Sheet {
     pub texture: f32,
     /// How much of the grain follows the strokes instead of the paper, 0..=1.
     pub follow: f32,
-    /// How far lines, too, break on the grain, 0..=1.
+    /// How far what is drawn solidly, too, breaks on the grain, 0..=1.
     pub dryness: f32,
     /// Opaque also where the picture is not.
     pub cover: bool,
@@ -113,11 +113,11 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             let line = one - edge.max(zero).min(one);
             let [mark, grained] = block.read(simd, marks);
             // A dry tool leaves out the valleys of the paper even where it presses hard; in light tones nothing breaks.
-            let dry = zero + params.dryness * params.grain;
-            let pressed = line * (one - dry * (height - 0.6).max(zero));
+            let dry = (height - 0.55).max(zero) * params.dryness;
+            let pressed = catches(line, height, zero + params.dryness * params.grain) * (one - dry);
             let grain = grained * params.grain;
-            let toned = catches(mark, height, grain);
-            let drawn = one - (one - catches(pressed, height, dry)) * (one - toned);
+            let toned = catches(mark, height, grain) * (one - dry * grained);
+            let drawn = one - (one - pressed) * (one - toned);
             let ink = drawn * params.line[3] * alpha;
 
             // Chalk: the picture's own colours, a little lighter, where the paper catches them.

@@ -71,7 +71,9 @@ pub fn pass(
     options: &Options,
 ) -> ImageId {
     let Options { sigmas, weight, edge } = *options;
-    let amount = sigmas.map(|sigma| AMOUNT * weight * edge * (sigma / NARROWEST).clamp(0.0, 1.0));
+    // A lone break is the fainter the wider it is smoothed.
+    let amount = sigmas
+        .map(|sigma| AMOUNT * weight * edge * (sigma / NARROWEST).clamp(0.0, 1.0) * sigma.clamp(1.0, 100.0));
     let sigmas = sigmas.map(|sigma| sigma.clamp(NARROWEST, 100.0));
     let falloff = |factor: f32| sigmas.map(|sigma| -0.5 / (factor * sigma * factor * sigma));
     let halfwidth = sigmas.map(|sigma| PRECISION * WIDE * sigma);

@@ -41,7 +41,7 @@ pub static NODE: NodeSpec = NodeSpec {
             .pixels()
             .group(LOOK)
             .doc("Spacing of the grid, every fifth line stronger; 0 for none."),
-        Param::float("paper_texture", "Paper texture", 0.3, [0.0, 1.0])
+        Param::float("paper_texture", "Paper texture", 0.12, [0.0, 1.0])
             .group(LOOK)
             .doc("Strength of the paper's texture."),
         Param::float("fill", "Fill", 0.25, [0.0, 1.0])
