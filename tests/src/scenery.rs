@@ -27,18 +27,18 @@ pub fn forms() -> &'static [(&'static str, Image)] {
                 let zz = 1.0 - dx * dx - dy * dy;
                 if zz > 0.0 {
                     let n = [dx, -dy, zz.sqrt()];
-                    let light = (0.2 + 0.8 * (n[2] * 0.6 - n[0] * 0.5 + n[1] * 0.6)).clamp(0.05, 1.0);
+                    let half = 0.5 + 0.5 * (n[2] * 0.6 - n[0] * 0.5 + n[1] * 0.6);
+                    let light = 0.15 + 0.85 * half * half;
                     let checks = ((dx * 5.0).floor() as i32 + (dy * 5.0).floor() as i32).rem_euclid(2) as f32;
                     let own = if number == 0 { [0.8, 0.3, 0.2] } else { [0.25 + 0.3 * checks, 0.5, 0.75] };
                     return (own.map(|c| c * light), n, 4.0 - n[2] * r, number as f32 + 1.0);
                 }
             }
-            let grain = 0.05 * ((x * 7 + y * 13) % 11) as f32 / 11.0;
             if v > 0.7 {
                 let far = 3.0 / (v - 0.45);
-                ([0.35 + grain, 0.4 + grain + 0.2 * v, 0.25], [0.0, 0.9, 0.44], far, 9.0)
+                ([0.35, 0.4 + 0.2 * v, 0.25], [0.0, 0.9, 0.44], far, 9.0)
             } else {
-                ([0.55 + 0.3 * v, 0.7, 0.9 - 0.1 * u + grain * 0.2], [0.0; 3], 0.0, 0.0)
+                ([0.55 + 0.3 * v, 0.7, 0.9 - 0.1 * u], [0.0; 3], 0.0, 0.0)
             }
         };
         let [width, height] = SIZE;

@@ -4,8 +4,8 @@
 use isophote::Request;
 use isophote::request::Guides;
 use isophote_engine::Image;
-use isophote_tests::run;
 use isophote_tests::scenery::forms;
+use isophote_tests::{png, run};
 
 /// A style, its parameters without tones, and whether a luma is of a line.
 type Style = (&'static str, &'static [(&'static str, &'static str)], fn(f32) -> bool);
@@ -16,13 +16,15 @@ const STYLES: [Style; 3] = [
     ("blueprint", &[("grid", "0"), ("paper_texture", "0"), ("fill", "0")], |luma| luma > 0.5),
 ];
 
-/// Pixels beside a break of what `differs`.
+/// Pixels on both sides of a break of what `differs`.
 fn beside(width: i32, height: i32, differs: impl Fn([i32; 2], [i32; 2]) -> bool) -> Vec<[i32; 2]> {
     let mut found = Vec::new();
     for y in 0..height - 1 {
         for x in 0..width - 1 {
-            if differs([x, y], [x + 1, y]) || differs([x, y], [x, y + 1]) {
-                found.push([x, y]);
+            for other in [[x + 1, y], [x, y + 1]] {
+                if differs([x, y], other) {
+                    found.extend([[x, y], other]);
+                }
             }
         }
     }
@@ -45,6 +47,7 @@ fn drawn((id, params, is_line): Style) -> Vec<bool> {
     let guides = Guides { normal: true, depth: true, object_id: true, ..Guides::default() };
     let request = Request { guides, ..Request::new(color.width(), color.height()) };
     let result = run::whole(run::planned(&run::single(id, params), request).plan(), forms());
+    png::write(&png::results().join(format!("outlines-{id}.png")), &result);
     let pixels = result.data().chunks_exact(4);
     pixels
         .map(|p| {
@@ -100,7 +103,7 @@ fn no_line_is_without_cause() {
             .flat_map(|y| (0..width).map(move |x| [x, y]))
             .filter(|[x, y]| lines[(y * width + x) as usize])
             .collect();
-        let caused = all.iter().filter(|p| is_near(&causes, width, height, **p, 2.5)).count();
+        let caused = all.iter().filter(|p| is_near(&causes, width, height, **p, 2.0)).count();
         let precision = caused as f32 / all.len() as f32;
         assert!(precision >= 0.95, "{}: {precision:.3} of {} line pixels", style.0, all.len());
     }

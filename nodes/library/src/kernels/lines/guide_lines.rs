@@ -33,9 +33,9 @@ crate::kernel!(guide_lines {
 });
 
 /// Response, in units of L, that a unit of the difference of Gaussians takes off at weight 1: next to a
-/// lone break, where the difference is 0.17, the line is as dark as at a step of about 45 units of L, so that
+/// lone break, where the difference is 0.17, the line is as dark as at a step of about 35 units of L, so that
 /// silhouettes are drawn where the ground is light, too.
-const AMOUNT: f32 = 28.0;
+const AMOUNT: f32 = 22.0;
 
 /// Standard deviations, in those of the line filter: the Gaussians cross 1.8 of them from the break, so
 /// that lines are as wide as those of lightness.

@@ -25,7 +25,9 @@ pub static NODE: NodeSpec = NodeSpec {
     output: ports::color_output("The painting."),
     own_params: &[
         BRUSH_SIZE,
-        abstraction::DETAIL.doc("How much fine detail survives: scales `p_s` from 1/4 to 4 times."),
+        abstraction::DETAIL.doc(
+            "How much fine detail survives: scales `p_s` from 1/4 to 2 times; more would change nothing.",
+        ),
         STROKE_LENGTH,
         SHARPNESS,
         tone::SATURATION.structural(),
@@ -78,7 +80,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     // Neutral controls leave whole exponents whole, which are the fast ones.
     painting.options.q =
         (painting.options.q * quadruple(scope.float("sharpness"))).clamp(Q.range[0], Q.range[1]);
-    painting.p_s *= quadruple(scope.float("detail"));
+    let detail = scope.float("detail");
+    painting.p_s *= quadruple(detail.min(0.5)) * 2f32.powf((2.0 * detail - 1.0).max(0.0));
     let painted = painting.apply(scope.plan, color, tensor, scale);
 
     let saturation = scope.float("saturation");
