@@ -446,6 +446,12 @@ typedef struct IsophoteRequest {
   double origin_y;
   // Number of the frame; noise that the parameter `hold` lets last for so many frames is drawn anew by it.
   int64_t frame;
+  // Height of a picture at which parameters in pixels are meant: 1080 gives the same picture the same look at any size.
+  // At least 1/64 of the picture's own height. 0: they are pixels of the full-size picture.
+  uint32_t reference_height;
+  // Height of the canonical picture, in full-size pixels, which the reference is compared with: of the display window
+  // where this is a data window. 0: the height of this picture.
+  uint32_t canonical_height;
 } IsophoteRequest;
 
 // A half-open rectangle of pixels, x0 <= x < x1 and y0 <= y < y1, y down.

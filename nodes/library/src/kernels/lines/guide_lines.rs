@@ -72,8 +72,9 @@ pub fn pass(
 ) -> ImageId {
     let Options { sigmas, weight, edge } = *options;
     // A lone break is the fainter the wider it is smoothed.
-    let amount = sigmas
-        .map(|sigma| AMOUNT * weight * edge * (sigma / NARROWEST).clamp(0.0, 1.0) * sigma.clamp(1.0, 100.0));
+    let evened = |sigma: f32| if sigma < 1.0 { sigma.sqrt() } else { sigma };
+    let strength = |sigma: f32| (sigma / NARROWEST).clamp(0.0, 1.0) * evened(sigma.clamp(NARROWEST, 100.0));
+    let amount = sigmas.map(|sigma| AMOUNT * weight * edge * strength(sigma));
     let sigmas = sigmas.map(|sigma| sigma.clamp(NARROWEST, 100.0));
     let falloff = |factor: f32| sigmas.map(|sigma| -0.5 / (factor * sigma * factor * sigma));
     let halfwidth = sigmas.map(|sigma| PRECISION * WIDE * sigma);

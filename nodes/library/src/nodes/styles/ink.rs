@@ -343,6 +343,9 @@ impl Preset {
     }
 }
 
+/// How much more guides count than where lightness is inhibited: here it counts in full, and light grounds are far from ink.
+const GUIDES: f32 = 1.7;
+
 /// The range of tones with `factor` times the density below the same light.
 fn shaded([light, solid]: [f32; 2], factor: f32) -> [f32; 2] {
     [light, light - (light - solid) / factor.max(1e-3)]
@@ -411,7 +414,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         iterations: 1,
         stepping: Stepping::Along(Integrator::TwoStep),
         kernel: Kernel::Separable,
-        guide_weight,
+        guide_weight: guide_weight * GUIDES,
         texture: scope.float(lines::TEXTURE_LINES.id),
         widths: lines::guide_widths(scope),
     };

@@ -26,7 +26,7 @@ pub static NODE: NodeSpec = NodeSpec {
     own_params: &[
         BRUSH_SIZE,
         abstraction::DETAIL.doc(
-            "How much fine detail survives: scales `p_s` from 1/4 to 2 times; more would change nothing.",
+            "How much fine detail survives: scales `p_s` from 1/4 times on and, above the middle, the brush down to 0.6.",
         ),
         STROKE_LENGTH,
         SHARPNESS,
@@ -81,7 +81,9 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     painting.options.q =
         (painting.options.q * quadruple(scope.float("sharpness"))).clamp(Q.range[0], Q.range[1]);
     let detail = scope.float("detail");
-    painting.p_s *= quadruple(detail.min(0.5)) * 2f32.powf((2.0 * detail - 1.0).max(0.0));
+    painting.p_s *= quadruple(detail.min(0.5));
+    // Beyond the default nearly all that varies is kept already: finer strokes show more.
+    painting.options.radius *= 1.0 - 0.4 * (2.0 * detail - 1.0).max(0.0);
     let painted = painting.apply(scope.plan, color, tensor, scale);
 
     let saturation = scope.float("saturation");
