@@ -58,7 +58,7 @@ fn drawn((id, params, is_line): Style) -> Vec<bool> {
         .collect()
 }
 
-fn at<'i>(image: &'i Image, [x, y]: [i32; 2]) -> &'i [f32] {
+fn at(image: &Image, [x, y]: [i32; 2]) -> &[f32] {
     image.pixel(x, y)
 }
 

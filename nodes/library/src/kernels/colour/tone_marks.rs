@@ -225,7 +225,7 @@ fn border_gain<S: Simd>(
         let cut = near * params.inverse_length / tangent[i].abs().max(1e-3);
         let beside = near / params.stroke_width;
         for d in [cut, beside] {
-            variance = variance * (one + (d * (d * -0.28 - 0.92)).max(-80.0).exp());
+            variance *= one + (d * (d * -0.28 - 0.92)).max(-80.0).exp();
         }
     }
     one / variance.sqrt()
@@ -253,7 +253,7 @@ mod tests {
         inverse_length: 0.1,
         softness: SOFTNESS,
         given_gain: 0.0,
-        padding: [0; 3],
+        padding: [0; 1],
     };
 
     /// The mean of hatches of density `d` over a large field.
