@@ -220,8 +220,14 @@ mod tests {
 
     #[test]
     fn pixels_survive_the_way_to_canonical_units_and_back() {
-        let frame =
-            Frame { picture: [-3, 5, 61, 45], ratio: [0.5 / 1.0667, 0.5], scale: 0.5, top: None, number: 0 };
+        let frame = Frame {
+            picture: [-3, 5, 61, 45],
+            ratio: [0.5 / 1.0667, 0.5],
+            scale: 0.5,
+            top: None,
+            number: 0,
+            reference_height: 0,
+        };
         for bounds in [[-3, 5, 61, 45], [0, 6, 1, 7], [-2, 30, 17, 44]] {
             let [x1, y1, x2, y2] = frame.canonical(bounds);
             assert_eq!(frame.pixels(&OfxRectD { x1, y1, x2, y2 }), Some(bounds));

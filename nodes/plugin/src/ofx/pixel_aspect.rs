@@ -341,7 +341,14 @@ mod tests {
     use isophote::engine::cpu::CallingThread;
 
     fn square(size: [i32; 2], ratio: [f64; 2]) -> SquarePixels {
-        let frame = Frame { picture: [0, 0, size[0], size[1]], ratio, scale: 1.0, top: None, number: 0 };
+        let frame = Frame {
+            picture: [0, 0, size[0], size[1]],
+            ratio,
+            scale: 1.0,
+            top: None,
+            number: 0,
+            reference_height: 0,
+        };
         SquarePixels::of(&frame).unwrap()
     }
 
@@ -367,8 +374,14 @@ mod tests {
         assert_eq!(square([100, 60], [2.0, 1.0]).size(), [100, 120]);
         assert_eq!(square([100, 60], [1.0 / 1.0667, 1.0]).size(), [107, 60]);
         assert!(square([10_000, 10], [0.01, 1.0]).size()[0] <= MAX_SIDE);
-        let frame =
-            Frame { picture: [0, 0, 100, 60], ratio: [0.5, 0.5002], scale: 0.5, top: None, number: 0 };
+        let frame = Frame {
+            picture: [0, 0, 100, 60],
+            ratio: [0.5, 0.5002],
+            scale: 0.5,
+            top: None,
+            number: 0,
+            reference_height: 0,
+        };
         assert_eq!(SquarePixels::of(&frame), None);
         let even = SquarePixels::as_many(&Frame { ratio: [0.5, 1.0], ..frame }).size();
         assert!((i64::from(even[0]) * i64::from(even[1]) - 6000).abs() < 200, "{even:?}");

@@ -121,7 +121,7 @@ mod tests {
     #[test]
     fn what_looks_at_whole_pictures_is_no_band() {
         let picture = [0, 0, 7680, 4320];
-        let frame = Frame { picture, ratio: [1.0; 2], scale: 1.0, top: None, number: 0 };
+        let frame = Frame { picture, ratio: [1.0; 2], scale: 1.0, top: None, number: 0, reference_height: 0 };
         let whole = Rect::of_size(7680, 4320);
         for effect in EFFECTS.iter().filter(|effect| effect.temporal) {
             let (mut graph, ids) = effect.graph(false).unwrap();
@@ -155,6 +155,7 @@ mod tests {
                 scale: 1.0 / par.min(1.0) as f32,
                 top: None,
                 number: 0,
+                reference_height: 0,
             };
             let whole = Rect::of_size(7680, 4320);
             let bytes = |window: Rect| window.area() * 16;
