@@ -9,10 +9,11 @@ use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, WritableImage};
 use image::{GenericImageView, Rgba, RgbaImage};
 use serde_json::Value;
 
-use support::{folder, isophote, listing, picture, succeeds};
+use support::{IN_PIXELS, folder, isophote, listing, picture, succeeds};
 
 fn apply(folder: &Path, style: &str, input: &str, output: &str, more: &[&str]) -> String {
-    succeeds(isophote().current_dir(folder).args(["apply", style, input, output]).args(more)).1
+    succeeds(isophote().current_dir(folder).args(["apply", style, input, output]).args(IN_PIXELS).args(more))
+        .1
 }
 
 /// The catalogue as `nodes --json` prints it.

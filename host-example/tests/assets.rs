@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use image::RgbImage;
 
-use support::{assets, folder, isophote, succeeds};
+use support::{IN_PIXELS, assets, folder, isophote, succeeds};
 
 /// Renders plain and as cartoon at 320x180; returns what was warned of and the plain picture.
 fn looks_right(folder: &Path, scene: &Path, more: &[&str]) -> (String, RgbImage) {
@@ -15,7 +15,13 @@ fn looks_right(folder: &Path, scene: &Path, more: &[&str]) -> (String, RgbImage)
         // EXR, so that what is not a number is seen.
         let out = folder.join(format!("{name}.{style}.exr"));
         let mut command = isophote();
-        command.arg("render").arg(scene).arg(&out).args(["--size", "320x180", "--style", style]).args(more);
+        command
+            .arg("render")
+            .arg(scene)
+            .arg(&out)
+            .args(["--size", "320x180", "--style", style])
+            .args(IN_PIXELS)
+            .args(more);
         let (_, warnings) = succeeds(&mut command);
         let read = exr::prelude::read_first_flat_layer_from_file(&out).expect("an EXR file");
         let list = &read.layer_data.channel_data.list;

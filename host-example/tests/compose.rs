@@ -5,7 +5,7 @@ mod support;
 use std::path::Path;
 
 use exr::prelude::read_first_flat_layer_from_file;
-use support::{folder, isophote, listing, succeeds};
+use support::{IN_PIXELS, folder, isophote, listing, succeeds};
 
 /// Everything of a rendered frame, in the order of EXR files.
 const CHANNELS: [&str; 14] = [
@@ -40,13 +40,22 @@ fn channel(image: &Exr, name: &str) -> Vec<f32> {
 fn render(folder: &Path, out: &str, more: &[&str]) {
     let scene = support::cube(folder);
     let mut command = isophote();
-    command.current_dir(folder).arg("render").arg(scene).arg(out).args(["--size", "96x64"]).args(more);
+    command
+        .current_dir(folder)
+        .arg("render")
+        .arg(scene)
+        .arg(out)
+        .args(["--size", "96x64"])
+        .args(IN_PIXELS)
+        .args(more);
     succeeds(&mut command);
 }
 
 fn apply(folder: &Path, arguments: &[&str]) {
     let mut command = isophote();
-    succeeds(command.current_dir(folder).arg("apply").args(arguments).args(["--backend", "cpu"]));
+    succeeds(
+        command.current_dir(folder).arg("apply").args(arguments).args(IN_PIXELS).args(["--backend", "cpu"]),
+    );
 }
 
 #[test]

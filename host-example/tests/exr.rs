@@ -13,7 +13,7 @@ use exr::prelude::*;
 use isophote_host::loader::{self, Control, Input, contract};
 use isophote_host::pixels::{Pixels, Precision, Samples};
 
-use support::{assets, fails, folder, isophote, listing, succeeds};
+use support::{IN_PIXELS, assets, fails, folder, isophote, listing, succeeds};
 
 type Planes = Vec<(String, FlatSamples)>;
 
@@ -128,7 +128,11 @@ fn usual() -> Vec<(&'static str, FlatSamples)> {
 
 fn apply(folder: &Path, style: &str, input: &str, output: &str, more: &[&str]) -> String {
     let mut command = isophote();
-    command.current_dir(folder).args(["apply", style, input, output, "--backend", "cpu"]).args(more);
+    command
+        .current_dir(folder)
+        .args(["apply", style, input, output, "--backend", "cpu"])
+        .args(IN_PIXELS)
+        .args(more);
     succeeds(&mut command).1
 }
 

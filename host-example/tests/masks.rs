@@ -11,11 +11,15 @@ use exr::prelude::*;
 use image::{GrayImage, Luma, Rgb, RgbImage, Rgba, RgbaImage};
 
 use mattes::*;
-use support::{fails, folder, isophote, listing, picture, succeeds};
+use support::{IN_PIXELS, fails, folder, isophote, listing, picture, succeeds};
 
 fn apply(folder: &Path, input: &str, output: &str, more: &[&str]) -> String {
     let mut command = isophote();
-    command.current_dir(folder).args(["apply", "gaussian", input, output, "--backend", "cpu"]).args(more);
+    command
+        .current_dir(folder)
+        .args(["apply", "gaussian", input, output, "--backend", "cpu"])
+        .args(IN_PIXELS)
+        .args(more);
     succeeds(&mut command).1
 }
 
@@ -67,7 +71,7 @@ fn the_result_is_used_where_the_mask_is() {
         "--backend",
         "cpu",
     ]);
-    succeeds(command.args(["--mask", "cryptomatte:hero"]));
+    succeeds(command.args(["--mask", "cryptomatte:hero"]).args(IN_PIXELS));
     for (mixed, masked) in rgb(&at("graph.exr")).iter().zip(&masked) {
         for c in 0..3 {
             assert!((mixed[c] - masked[c]).abs() <= 2e-3 * (1.0 + masked[c]), "{mixed:?} {masked:?}");

@@ -13,11 +13,16 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant, SystemTime};
 
-use support::{cube, errors, fails, folder, isophote, listing, picture, succeeds};
+use support::{IN_PIXELS, cube, errors, fails, folder, isophote, listing, picture, succeeds};
 
 fn apply(folder: &Path, more: &[&str]) -> Command {
     let mut command = isophote();
-    command.current_dir(folder).args(["apply", "gaussian"]).args(more).args(["--backend", "cpu"]);
+    command
+        .current_dir(folder)
+        .args(["apply", "gaussian"])
+        .args(more)
+        .args(IN_PIXELS)
+        .args(["--backend", "cpu"]);
     command
 }
 

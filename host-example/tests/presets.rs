@@ -61,7 +61,7 @@ fn graphs_are_named_from_where_the_preset_is() {
 fn keyframes_change_a_style_from_frame_to_frame() {
     let folder = folder();
     let scene = cube(folder.path());
-    let keys = r##"{"style": "gaussian", "parameters": {"sigma": {"1": 0, "3": 8}}}"##;
+    let keys = r##"{"style": "gaussian", "lengths": "pixels", "parameters": {"sigma": {"1": 0, "3": 8}}}"##;
     fs::write(folder.path().join("keys.json"), keys).expect("a file can be written");
     let shown = preset(folder.path(), &["show", "keys.json", "--frame", "2"]);
     assert!(shown.contains("sigma = 4"), "{shown}");
@@ -71,7 +71,7 @@ fn keyframes_change_a_style_from_frame_to_frame() {
         succeeds(command.args(["--size", "64x48", "--style", style]).args(more));
     };
     render("keys.json", "keyed.####.png", &["--frames", "3"]);
-    render("gaussian", "two.png", &["--set", "sigma=4"]);
+    render("gaussian", "two.png", &["--set", "sigma=4", "--lengths", "pixels"]);
     let read = |name: &str| image::open(folder.path().join(name)).expect("a picture was written").to_rgb8();
     let [first, second, third] = ["keyed.0001.png", "keyed.0002.png", "keyed.0003.png"].map(read);
     assert_eq!(second, read("two.png"));

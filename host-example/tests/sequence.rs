@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use support::{fails, folder, isophote, listing, succeeds};
+use support::{IN_PIXELS, fails, folder, isophote, listing, succeeds};
 
 /// Writes frames that differ; returns their names.
 fn frames(folder: &Path, numbers: impl Iterator<Item = u32>, size: usize) -> Vec<String> {
@@ -28,7 +28,7 @@ fn frames(folder: &Path, numbers: impl Iterator<Item = u32>, size: usize) -> Vec
 
 fn apply(folder: &Path, more: &[&str]) -> Command {
     let mut command = isophote();
-    command.current_dir(folder).arg("apply").args(more).args(["--backend", "cpu"]);
+    command.current_dir(folder).arg("apply").args(more).args(IN_PIXELS).args(["--backend", "cpu"]);
     command
 }
 

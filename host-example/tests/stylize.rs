@@ -18,6 +18,7 @@ use isophote_host::scene::Scene;
 use isophote_host::scene::camera::{Framing, Orbit};
 use isophote_host::scene::pose::Pose;
 use isophote_host::stylize::Stylizer;
+use isophote_host::stylize::lengths::Lengths;
 use isophote_host::stylize::plan_runner::{Counts, Kernels};
 use isophote_host::stylize::style::{Setting, Style};
 
@@ -36,6 +37,13 @@ struct Stage {
     library: Library,
 }
 
+/// A style whose lengths are pixels, since pictures here have few.
+fn style(library: &Library, name: &str) -> Style {
+    let mut style = Style::load(library, name, &[]).expect("the style is known");
+    style.lengths = Lengths::Pixels;
+    style
+}
+
 impl Stage {
     fn new(folder: &Path) -> Self {
         let gpu = Gpu::open().expect("a graphics adapter");
@@ -49,7 +57,7 @@ impl Stage {
     }
 
     fn stylizer(&self, kernels: &Arc<Kernels>, name: &str) -> Stylizer {
-        let style = Style::load(&self.library, name, &[]).expect("the style is known");
+        let style = style(&self.library, name);
         let mut stylizer = Stylizer::new(kernels, &self.library, style, SIZE).expect("the style fits");
         stylizer.bind(self.renderer.targets()).expect("the targets fit");
         stylizer
@@ -140,8 +148,8 @@ fn the_hosts_device_gives_what_the_librarys_processor_gives() {
             },
         );
         let inputs = inputs.each_ref().map(|(name, pixels)| Input { name, pixels });
-        let mut style = Style::load(&stage.library, name, &[]).expect("the style is known");
-        let request = stage.library.request(SIZE).expect("the size is possible");
+        let mut style = style(&stage.library, name);
+        let request = style.request(&stage.library, SIZE).expect("the size is possible");
         let request = IsophoteRequest { space: ISOPHOTE_SPACE_LINEAR, ..request };
         let mut theirs = Pixels::zeroed(SIZE.0, SIZE.1, 4, Precision::F32);
         style

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use support::{cube, fails, folder, isophote, listing, succeeds};
+use support::{IN_PIXELS, cube, fails, folder, isophote, listing, succeeds};
 
 /// Renders frames of a turning cube with everything that is known of them.
 fn shot(folder: &Path, out: &str, size: &str) {
@@ -17,7 +17,7 @@ fn shot(folder: &Path, out: &str, size: &str) {
 
 fn apply(folder: &Path, more: &[&str]) -> Command {
     let mut command = isophote();
-    command.current_dir(folder).arg("apply").args(more).args(["--backend", "cpu"]);
+    command.current_dir(folder).arg("apply").args(more).args(IN_PIXELS).args(["--backend", "cpu"]);
     command
 }
 

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use support::{fails, folder, isophote, listing, succeeds};
+use support::{IN_PIXELS, fails, folder, isophote, listing, succeeds};
 
 /// Whether ffmpeg is there; where it must be, its absence fails.
 fn has_ffmpeg() -> bool {
@@ -39,7 +39,7 @@ fn clip(folder: &Path, name: &str, more: &str) {
 
 fn apply(folder: &Path, args: &[&str]) -> Command {
     let mut command = isophote();
-    command.current_dir(folder).arg("apply").args(args).args(["--backend", "cpu"]);
+    command.current_dir(folder).arg("apply").args(args).args(IN_PIXELS).args(["--backend", "cpu"]);
     command
 }
 

@@ -9,6 +9,9 @@ use std::sync::OnceLock;
 
 use tempfile::TempDir;
 
+/// Lengths in pixels: of pictures as small as those here, relative ones come to nothing.
+pub const IN_PIXELS: [&str; 2] = ["--lengths", "pixels"];
+
 /// The dynamic library, built with the profile of the running test. `ISOPHOTE_LIBRARY` names another.
 pub fn library() -> &'static Path {
     static PATH: OnceLock<PathBuf> = OnceLock::new();
