@@ -57,9 +57,11 @@ fn rise(t: f32) -> f32 {
     return c * c * (3.0 - 2.0 * c);
 }
 
-// How much of a pixel a band covers, `r` pixels from whose middle it lies and whose half width is `s`.
+// How much of a pixel a band covers, `r` from whose middle it lies and whose half width is `s`, in pixels of the full-size
+// picture.
 fn covered(r: f32, s: f32) -> f32 {
-    return clamp(s - r + 0.5, 0.0, 1.0) - clamp(-s - r + 0.5, 0.0, 1.0);
+    let size = min(params.inverse_scale, 0.5 * params.spacing);
+    return clamp((s - r) / size + 0.5, 0.0, 1.0) - clamp((-s - r) / size + 0.5, 0.0, 1.0);
 }
 
 // Hatches of mean density `d` along `along`, as if drawn by hand.

@@ -167,10 +167,12 @@ fn rise<S: Simd>(t: f32x8<S>) -> f32x8<S> {
     t * t * (t * -2.0 + 3.0)
 }
 
-/// How much of a pixel a band covers, `r` pixels from whose middle it lies and whose half width is `s`.
+/// How much of a pixel a band covers, `r` from whose middle it lies and whose half width is `s`, in pixels of the full-size
+/// picture.
 #[inline(always)]
-fn covered<S: Simd>(r: f32x8<S>, s: f32x8<S>) -> f32x8<S> {
-    (s - r + 0.5).max(0.0).min(1.0) - (-s - r + 0.5).max(0.0).min(1.0)
+fn covered<S: Simd>(r: f32x8<S>, s: f32x8<S>, params: &Params) -> f32x8<S> {
+    let size = 1.0 / params.inverse_scale.min(0.5 * params.spacing);
+    ((s - r) * size + 0.5).max(0.0).min(1.0) - ((-s - r) * size + 0.5).max(0.0).min(1.0)
 }
 
 /// Hatches of mean density `d` along `along`, as if drawn by hand.
@@ -195,8 +197,8 @@ fn hatch<S: Simd>(
     let density = (d + d * (one - d) * pressure * 0.7).max(0.0).min(1.0);
     let r = (phase - line - 0.5).abs() * spacing;
     let half = one * (0.5 * spacing);
-    let light = covered(r, density * half);
-    let dark = one - covered(half - r, (one - density) * half);
+    let light = covered(r, density * half, params);
+    let dark = one - covered(half - r, (one - density) * half, params);
     density.simd_le(0.5).select(light, dark)
 }
 

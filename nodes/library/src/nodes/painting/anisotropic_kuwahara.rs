@@ -2,11 +2,11 @@
 
 use crate::choice::choice;
 use crate::kernels::painting::anisotropic_kuwahara::{self as polynomial, Options};
-use crate::kernels::painting::propagate_colour::{self, Params as Propagation};
+use crate::kernels::painting::propagate_colour::{self, Options as Propagation};
 use crate::kernels::painting::{anisotropic_kuwahara_texture as texture, lanczos_half, propagate_tensor};
 use crate::nodes::painting::generalized_kuwahara::{Q, SECTORS, THRESHOLD, sectors};
 use crate::nodes::structure::flow_map::Flow;
-use crate::nodes::structure::structure_tensor::{self, TensorOptions};
+use crate::nodes::structure::structure_tensor::{self, Guides, TensorOptions, of_color_and_guides};
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Port, STEADINESS, Scope, WINDOW};
 use crate::stages::steady::steadied_picture;
@@ -114,6 +114,8 @@ pub(crate) struct Painting {
     pub flow: Option<Flow>,
     /// Whether coarser scales stay in the range of finer ones.
     pub limited: bool,
+    /// Guides whose edges, with those of strong contrast, coarser scales are not painted across; none: they are.
+    pub guarded: Option<Guides>,
 }
 
 impl Painting {
@@ -135,6 +137,7 @@ impl Painting {
             p_d: scope.float("p_d"),
             tau_v: scope.float("tau_v"),
             limited: scope.bool("limit_range"),
+            guarded: None,
         }
     }
 
@@ -165,8 +168,10 @@ impl Painting {
             let mut merged = *image;
             if let Some([colour, deviations, _]) = below {
                 let gain = self.p_s * self.p_d.powi(k as i32);
-                let params = Propagation { gain, threshold: self.tau_v };
-                merged = propagate_colour::pass(plan, *image, colour, deviations, &params);
+                let guarded = self.guarded.filter(|_| k == 0);
+                let edges = guarded.map(|guides| of_color_and_guides(plan, *image, &guides, &options));
+                let propagation = Propagation { gain, threshold: self.tau_v, edges };
+                merged = propagate_colour::pass(plan, *image, colour, deviations, &propagation);
             }
             let mut orientation = match (tensor, below) {
                 (Some(tensor), _) if k == 0 => tensor,

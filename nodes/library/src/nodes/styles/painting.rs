@@ -2,12 +2,13 @@
 //! direction of features as strokes.
 
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
+use crate::nodes::lines::flow_dog;
 use crate::nodes::painting::anisotropic_kuwahara::{
     ALPHA, LEVELS, LIMIT_RANGE, P_D, P_S, Painting, RADIUS, TAU_V, TAU_W, Weights,
 };
 use crate::nodes::painting::generalized_kuwahara::{Q, SECTORS, THRESHOLD};
 use crate::ports;
-use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::spec::{NodeSpec, Param, Port, STEADINESS, Scope, WINDOW};
 use crate::stages::steady::steadied_picture;
 use crate::stages::{ADVANCED, LOOK, abstraction, tone};
 use crate::value::Value;
@@ -19,9 +20,10 @@ pub static NODE: NodeSpec = NodeSpec {
     label: "Painting",
     group: "styles",
     doc: "Flat strokes of paint that follow the forms of the picture, coarse where little happens and fine \
-          where it varies: the anisotropic Kuwahara filter from coarse to fine scales.",
+          where it varies: the anisotropic Kuwahara filter from coarse to fine scales. No stroke is painted \
+          across strong contrast, nor across edges of normals, depth and object ids, where given.",
     section: "5.5",
-    inputs: &[ports::COLOR, ports::TENSOR],
+    inputs: &[ports::COLOR, ports::TENSOR, NORMAL, DEPTH, OBJECT_ID],
     output: ports::color_output("The painting."),
     own_params: &[
         BRUSH_SIZE,
@@ -51,6 +53,9 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
+const NORMAL: Port = Port { doc: "View-space normals; strokes end at creases.", ..flow_dog::NORMAL };
+const DEPTH: Port = Port { doc: "Distance from the camera; strokes end where it jumps.", ..flow_dog::DEPTH };
+const OBJECT_ID: Port = Port { doc: "Object numbers; strokes end at borders.", ..flow_dog::OBJECT_ID };
 const BRUSH_SIZE: Param = Param::float("brush_size", "Brush size", 12.0, [0.0, 64.0])
     .slider(2.0, 32.0)
     .pixels()
@@ -84,6 +89,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     painting.p_s *= quadruple(detail.min(0.5));
     // Beyond the default nearly all that varies is kept already: finer strokes show more.
     painting.options.radius *= 1.0 - 0.4 * (2.0 * detail - 1.0).max(0.0);
+    // Whatever lines weigh: the guides are all there is to say where things end.
+    painting.guarded = Some(flow_dog::guides(scope, 1.0));
     let painted = painting.apply(scope.plan, color, tensor, scale);
 
     let saturation = scope.float("saturation");
