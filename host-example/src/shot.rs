@@ -15,7 +15,7 @@ use crate::scene::Scene;
 use crate::scene::camera::{Direction, Framing, Orbit, View};
 use crate::scene::pose::Pose;
 use crate::stylize::Stylizer;
-use crate::stylize::plan_runner::Kernels;
+use crate::stylize::kernels::Kernels;
 use crate::stylize::style::Style;
 
 /// What is rendered of a scene.

@@ -18,8 +18,9 @@ use isophote_host::scene::Scene;
 use isophote_host::scene::camera::{Framing, Orbit};
 use isophote_host::scene::pose::Pose;
 use isophote_host::stylize::Stylizer;
+use isophote_host::stylize::kernels::Kernels;
 use isophote_host::stylize::lengths::Lengths;
-use isophote_host::stylize::plan_runner::{Counts, Kernels};
+use isophote_host::stylize::plan_runner::Counts;
 use isophote_host::stylize::style::{Setting, Style};
 
 use support::{folder, isophote, listing, succeeds};

@@ -12,7 +12,8 @@ use crate::loader::plan::Pass;
 use crate::loader::{Answer, Library, Plan, Refusal};
 use crate::pixels::Pixels;
 use crate::render::gpu::Gpu;
-use crate::stylize::plan_runner::{Kernels, PlanRunner};
+use crate::stylize::kernels::Kernels;
+use crate::stylize::plan_runner::PlanRunner;
 use crate::stylize::style::Style;
 
 /// A device to measure on.

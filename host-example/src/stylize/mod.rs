@@ -5,6 +5,7 @@
 //! is one submission.
 
 pub mod history;
+pub mod kernels;
 pub mod lengths;
 pub mod plan_runner;
 pub mod preset;
@@ -13,7 +14,8 @@ pub mod style;
 use std::sync::Arc;
 
 use self::history::Past;
-use self::plan_runner::{Counts, Kernels, PlanRunner};
+use self::kernels::Kernels;
+use self::plan_runner::{Counts, PlanRunner};
 use self::style::{Setting, Style};
 use crate::error::Result;
 use crate::loader::catalogue::Kind;

@@ -1,7 +1,7 @@
 //! A plan of the library on the host's own device, with nothing but wgpu: **the example to copy**.
 //!
 //! The library says what is to be computed, as data: textures, compute passes, uniform bytes and shaders. The
-//! rest is up to the host, and all of it is here:
+//! rest is up to the host, and all of it is here and in [`kernels`](super::kernels):
 //!
 //! 1. [`Kernels`] compiles the shader of a kernel when a plan first names it.
 //! 2. [`PlanRunner::new`] makes the plan's textures and one buffer for all uniform blocks.
@@ -16,116 +16,14 @@
 //! parameters, if it has any, from 2 the textures that are read and then those that are written. wgpu puts the
 //! barriers between passes; `tests/c/vulkan.c` does the same work by hand.
 
-use std::collections::HashMap;
 use std::num::NonZeroU64;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use super::history::{self, Past, Rings};
+use super::kernels::{Kernel, Kernels, block_size, checked, refused, texture_format};
 use crate::error::{Error, Result};
 use crate::loader::Plan;
-use crate::loader::plan::{Format, Pass, Role, Texture};
-
-/// WGSL rounds the size of a uniform block up to its alignment, which is at most this.
-const BLOCK_ALIGNMENT: u64 = 16;
-
-/// The kernels that were compiled for a device; all runners of the device share them.
-#[derive(Debug)]
-pub struct Kernels {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
-    /// Whether kernels hold windows of neighbours in workgroup memory, which pays on hardware alone.
-    shared_windows: bool,
-    compiled: Mutex<HashMap<String, Kernel>>,
-}
-
-#[derive(Clone, Debug)]
-struct Kernel {
-    pipeline: wgpu::ComputePipeline,
-    layout: wgpu::BindGroupLayout,
-}
-
-impl Kernels {
-    /// No kernels yet. Errors that come later than the calls here are for the device's own handler.
-    pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Arc<Self> {
-        let shared_windows = device.adapter_info().device_type != wgpu::DeviceType::Cpu;
-        Arc::new(Self { device, queue, shared_windows, compiled: Mutex::default() })
-    }
-
-    /// The kernel of pass `index`, and whether it had to be compiled.
-    fn get(&self, plan: &Plan, index: u32, pass: &Pass<'_>, formats: &[Format]) -> Result<(Kernel, bool)> {
-        let mut compiled = self.compiled.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(kernel) = compiled.get(pass.kernel) {
-            return Ok((kernel.clone(), false));
-        }
-        let shader = plan.wgsl(index).map_err(refused)?;
-        let label = Some(pass.kernel);
-        let kernel = checked(&self.device, || {
-            let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label,
-                source: wgpu::ShaderSource::Wgsl(shader.source.into()),
-            });
-            let entries = layout_entries(pass, formats);
-            let layout = self
-                .device
-                .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
-            let pipeline_layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label,
-                bind_group_layouts: &[Some(&layout)],
-                ..Default::default()
-            });
-            // Constants may be given to shaders only that declare them.
-            let constants = [("shared_windows", f64::from(u8::from(self.shared_windows)))];
-            let count = usize::from(shader.source.contains("override shared_windows:"));
-            let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label,
-                layout: Some(&pipeline_layout),
-                module: &module,
-                entry_point: Some(shader.entry_point),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &constants[..count],
-                    // Kernels read no workgroup memory that they have not written.
-                    zero_initialize_workgroup_memory: false,
-                },
-                cache: None,
-            });
-            Ok(Kernel { pipeline, layout })
-        })?;
-        compiled.insert(pass.kernel.to_owned(), kernel.clone());
-        Ok((kernel, true))
-    }
-}
-
-/// What a kernel binds, as its first pass shows it; `formats` are those of the textures written.
-fn layout_entries(pass: &Pass<'_>, formats: &[Format]) -> Vec<wgpu::BindGroupLayoutEntry> {
-    let uniform = |block: &[u8]| wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Uniform,
-        has_dynamic_offset: false,
-        min_binding_size: NonZeroU64::new(block_size(block)),
-    };
-    let sampled = |_| wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable: false },
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled: false,
-    };
-    let storage = |format: &Format| wgpu::BindingType::StorageTexture {
-        access: wgpu::StorageTextureAccess::WriteOnly,
-        format: texture_format(*format),
-        view_dimension: wgpu::TextureViewDimension::D2,
-    };
-    let params = Some(pass.params).filter(|p| !p.is_empty());
-    let textures = pass.inputs.iter().map(sampled).chain(formats.iter().map(storage));
-    [(0, uniform(pass.grid))]
-        .into_iter()
-        .chain(params.map(|p| (1, uniform(p))))
-        .chain((2..).zip(textures))
-        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty,
-            count: None,
-        })
-        .collect()
-}
+use crate::loader::plan::{Format, Role, Texture};
 
 /// What a runner has done so far. A warm frame changes neither.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -221,7 +119,7 @@ impl PlanRunner {
         let mut textures = Vec::with_capacity(wanted.len());
         for texture in &wanted {
             let Texture { name, role, format, size } = *texture;
-            let make = || create_texture(&kernels.device, texture_format(format), size, WRITTEN);
+            let make = || create_texture(kernels.device(), texture_format(format), size, WRITTEN);
             let found = old.iter().position(|slot| slot.is_like(texture));
             let views = match (role, found) {
                 (Role::Input, _) => Vec::new(),
@@ -237,7 +135,7 @@ impl PlanRunner {
             };
             textures.push(Slot { name: name.to_owned(), role, format, size, views });
         }
-        let alignment = u64::from(kernels.device.limits().min_uniform_buffer_offset_alignment);
+        let alignment = u64::from(kernels.device().limits().min_uniform_buffer_offset_alignment);
         let mut end = 0;
         let mut place = |block: &[u8]| {
             let block = Block { at: end, bound: block_size(block) };
@@ -262,8 +160,8 @@ impl PlanRunner {
                 groups: Vec::new(),
             });
         }
-        let uniforms = checked(&kernels.device, || {
-            Ok(kernels.device.create_buffer(&wgpu::BufferDescriptor {
+        let uniforms = checked(kernels.device(), || {
+            Ok(kernels.device().create_buffer(&wgpu::BufferDescriptor {
                 label: Some("uniforms of a plan"),
                 size: end,
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
@@ -297,7 +195,7 @@ impl PlanRunner {
             }
         }
         if changed {
-            self.kernels.queue.write_buffer(&self.uniforms, 0, &self.bytes);
+            self.kernels.queue().write_buffer(&self.uniforms, 0, &self.bytes);
             self.counts.uploads += 1;
         }
         Ok(())
@@ -319,7 +217,7 @@ impl PlanRunner {
         for name in self.past.inputs() {
             let texture = given(name)?.texture();
             let (format, size) = (texture.format(), [texture.width(), texture.height()]);
-            let make = || create_texture(&self.kernels.device, format, size, COPIED);
+            let make = || create_texture(self.kernels.device(), format, size, COPIED);
             self.counts.objects += self.rings.hold(name, format, size, Some(texture.clone()), make)?;
         }
         for (index, slot) in (0..).zip(&mut self.textures).filter(|(_, slot)| slot.role == Role::Input) {
@@ -346,8 +244,8 @@ impl PlanRunner {
             let slots = pass.textures.iter().filter_map(|index| self.textures.get(*index as usize));
             let turns = slots.map(|slot| slot.views.len()).max().unwrap_or(1);
             for turn in 0..turns {
-                let group = checked(&self.kernels.device, || {
-                    bind_group(&self.kernels.device, pass, &self.uniforms, &self.textures, turn)
+                let group = checked(self.kernels.device(), || {
+                    bind_group(self.kernels.device(), pass, &self.uniforms, &self.textures, turn)
                 })?;
                 pass.groups.push(group);
                 self.counts.objects += 1;
@@ -462,36 +360,6 @@ fn bind_group(
         layout: &pass.kernel.layout,
         entries: &entries,
     }))
-}
-
-fn block_size(block: &[u8]) -> u64 {
-    (block.len() as u64).next_multiple_of(BLOCK_ALIGNMENT)
-}
-
-fn texture_format(format: Format) -> wgpu::TextureFormat {
-    match format {
-        Format::R32Float => wgpu::TextureFormat::R32Float,
-        Format::Rg32Float => wgpu::TextureFormat::Rg32Float,
-        Format::Rgba32Float => wgpu::TextureFormat::Rgba32Float,
-    }
-}
-
-/// What `make` makes, or what the device has to say against it: wgpu reports errors to scopes, and panics where
-/// nobody listens.
-fn checked<T>(device: &wgpu::Device, make: impl FnOnce() -> Result<T>) -> Result<T> {
-    use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
-    let scopes = [Validation, Internal, OutOfMemory].map(|filter| device.push_error_scope(filter));
-    let made = make();
-    // Scopes end in the reverse of the order in which they began.
-    let errors = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop()));
-    match errors.last() {
-        Some(error) => Err(Error::failure(error, "use a smaller picture or update the graphics driver")),
-        None => made,
-    }
-}
-
-fn refused(refusal: crate::loader::Refusal) -> Error {
-    refusal.at("the plan", "choose another style")
 }
 
 fn unbound() -> Error {

@@ -21,7 +21,7 @@ use crate::scene::Scene;
 use crate::scene::camera::View;
 use crate::scene::pose::Pose;
 use crate::stylize::Stylizer;
-use crate::stylize::plan_runner::Kernels;
+use crate::stylize::kernels::Kernels;
 use crate::stylize::style::Style;
 
 /// Surface, renderer and style of one device. Fields are dropped in order: what uses the device before it.

@@ -19,3 +19,4 @@ pub mod properties;
 mod shapes;
 pub mod state;
 pub mod suites;
+mod threads;

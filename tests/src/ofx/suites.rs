@@ -5,12 +5,10 @@ use super::interface::*;
 use super::objects::{Clip, Effect, MAGIC, Param};
 use super::properties::{self, Set, Value};
 use super::state::{self, Behaviour, Suite, fault, lock};
-use std::cell::Cell;
+use super::threads;
 use std::ffi::{c_char, c_int, c_uint, c_void};
 use std::process::Command;
 use std::sync::OnceLock;
-use std::sync::atomic::Ordering;
-use std::time::Duration;
 
 /// The structures that a host gives out.
 #[derive(Debug)]
@@ -23,35 +21,17 @@ pub struct Suites {
     messages: OfxMessageSuiteV2,
 }
 
-const NO_THREADS: OfxMultiThreadSuiteV1 = OfxMultiThreadSuiteV1 {
-    multiThread: None,
-    multiThreadNumCPUs: None,
-    multiThreadIndex: None,
-    multiThreadIsSpawnedThread: None,
-    mutexCreate: None,
-    mutexDestroy: None,
-    mutexLock: None,
-    mutexUnLock: None,
-    mutexTryLock: None,
-};
-
 impl Suites {
     pub(super) fn new(behaviour: &Behaviour) -> Self {
         let shim = shim();
         let null = behaviour.null_functions;
         let (get, get_at, message) =
             (Some(shim.get), Some(shim.get_at), Some(shim.message).filter(|_| !null));
-        let threads = OfxMultiThreadSuiteV1 {
-            multiThread: Some(multi_thread),
-            multiThreadNumCPUs: Some(processors),
-            multiThreadIsSpawnedThread: Some(is_spawned),
-            ..NO_THREADS
-        };
         Self {
             properties: properties::SUITE,
             effects: EFFECTS,
             params: OfxParameterSuiteV1 { paramGetValue: get, paramGetValueAtTime: get_at, ..PARAMS },
-            threads: if null { NO_THREADS } else { threads },
+            threads: if null { threads::NONE } else { threads::SUITE },
             first_messages: OfxMessageSuiteV1 { message },
             messages: OfxMessageSuiteV2 {
                 message,
@@ -424,79 +404,3 @@ const EFFECTS: OfxImageEffectSuiteV1 = OfxImageEffectSuiteV1 {
     imageMemoryLock: None,
     imageMemoryUnlock: None,
 };
-
-// ----- threads -----
-
-/// How long threads that are left running take to begin.
-const LATE: Duration = Duration::from_millis(2);
-
-thread_local! {
-    static SPAWNED: Cell<bool> = const { Cell::new(false) };
-}
-
-#[derive(Clone, Copy)]
-struct Argument(*mut c_void);
-
-impl Argument {
-    /// The argument, as it was given.
-    fn get(self) -> *mut c_void {
-        self.0
-    }
-}
-
-// SAFETY: the plugin gives it to be used by several threads.
-unsafe impl Sync for Argument {}
-// SAFETY: as above.
-unsafe impl Send for Argument {}
-
-unsafe extern "C" fn multi_thread(
-    work: Option<ThreadFunction>,
-    threads: c_uint,
-    argument: *mut c_void,
-) -> OfxStatus {
-    let Some(work) = work else { return kOfxStatFailed };
-    if SPAWNED.get() {
-        fault("multiThread is entered from a thread that it started");
-        return kOfxStatErrExists;
-    }
-    // The functions of this suite have no argument for the host.
-    let host = state::current();
-    if let Some(host) = &host {
-        host.runs.fetch_add(1, Ordering::SeqCst);
-    }
-    let argument = Argument(argument);
-    if let Some(host) = host.as_ref().filter(|host| host.behaviour.returns_early) {
-        let begin_late = |index| {
-            std::thread::spawn(move || {
-                SPAWNED.set(true);
-                std::thread::sleep(LATE);
-                // SAFETY: the plugin's function; that it is called late is what such a host does.
-                unsafe { work(index, threads, argument.get()) };
-            })
-        };
-        lock(&host.late).extend((0..threads).map(begin_late));
-        return kOfxStatOK;
-    }
-    std::thread::scope(|scope| {
-        for index in 0..threads {
-            let (argument, host) = (&argument, &host);
-            scope.spawn(move || {
-                SPAWNED.set(true);
-                host.iter().for_each(state::enter);
-                // SAFETY: the plugin's function, called as the standard has it.
-                unsafe { work(index, threads, argument.get()) };
-            });
-        }
-    });
-    kOfxStatOK
-}
-
-unsafe extern "C" fn processors(place: *mut c_uint) -> OfxStatus {
-    // SAFETY: the plugin gave a place.
-    unsafe { place.write(state::current().map_or(1, |host| host.behaviour.processors.max(1))) };
-    kOfxStatOK
-}
-
-unsafe extern "C" fn is_spawned() -> c_int {
-    SPAWNED.get().into()
-}

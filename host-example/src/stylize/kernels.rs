@@ -1,0 +1,161 @@
+//! The shaders of the library's kernels, compiled for the host's device.
+
+use std::collections::HashMap;
+use std::num::NonZeroU64;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::error::{Error, Result};
+use crate::loader::plan::{Format, Pass};
+use crate::loader::{Plan, Refusal};
+
+/// WGSL rounds the size of a uniform block up to its alignment, which is at most this.
+const BLOCK_ALIGNMENT: u64 = 16;
+
+/// The kernels that were compiled for a device; all runners of the device share them.
+#[derive(Debug)]
+pub struct Kernels {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    /// Whether kernels hold windows of neighbours in workgroup memory, which pays on hardware alone.
+    shared_windows: bool,
+    compiled: Mutex<HashMap<String, Kernel>>,
+}
+
+/// A compiled kernel, and what it binds.
+#[derive(Clone, Debug)]
+pub(super) struct Kernel {
+    pub pipeline: wgpu::ComputePipeline,
+    pub layout: wgpu::BindGroupLayout,
+}
+
+impl Kernels {
+    /// No kernels yet. Errors that come later than the calls here are for the device's own handler.
+    pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Arc<Self> {
+        let shared_windows = device.adapter_info().device_type != wgpu::DeviceType::Cpu;
+        Arc::new(Self { device, queue, shared_windows, compiled: Mutex::default() })
+    }
+
+    /// The device that they are for.
+    pub(super) fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    /// The queue of the device.
+    pub(super) fn queue(&self) -> &wgpu::Queue {
+        &self.queue
+    }
+
+    /// The kernel of pass `index`, and whether it had to be compiled.
+    pub(super) fn get(
+        &self,
+        plan: &Plan,
+        index: u32,
+        pass: &Pass<'_>,
+        formats: &[Format],
+    ) -> Result<(Kernel, bool)> {
+        let mut compiled = self.compiled.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(kernel) = compiled.get(pass.kernel) {
+            return Ok((kernel.clone(), false));
+        }
+        let shader = plan.wgsl(index).map_err(refused)?;
+        let label = Some(pass.kernel);
+        let kernel = checked(&self.device, || {
+            let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label,
+                source: wgpu::ShaderSource::Wgsl(shader.source.into()),
+            });
+            let entries = layout_entries(pass, formats);
+            let layout = self
+                .device
+                .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
+            let pipeline_layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label,
+                bind_group_layouts: &[Some(&layout)],
+                ..Default::default()
+            });
+            // Constants may be given to shaders only that declare them.
+            let constants = [("shared_windows", f64::from(u8::from(self.shared_windows)))];
+            let count = usize::from(shader.source.contains("override shared_windows:"));
+            let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label,
+                layout: Some(&pipeline_layout),
+                module: &module,
+                entry_point: Some(shader.entry_point),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &constants[..count],
+                    // Kernels read no workgroup memory that they have not written.
+                    zero_initialize_workgroup_memory: false,
+                },
+                cache: None,
+            });
+            Ok(Kernel { pipeline, layout })
+        })?;
+        compiled.insert(pass.kernel.to_owned(), kernel.clone());
+        Ok((kernel, true))
+    }
+}
+
+/// What a kernel binds, as its first pass shows it; `formats` are those of the textures written.
+fn layout_entries(pass: &Pass<'_>, formats: &[Format]) -> Vec<wgpu::BindGroupLayoutEntry> {
+    let uniform = |block: &[u8]| wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: NonZeroU64::new(block_size(block)),
+    };
+    let sampled = |_| wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: false },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let storage = |format: &Format| wgpu::BindingType::StorageTexture {
+        access: wgpu::StorageTextureAccess::WriteOnly,
+        format: texture_format(*format),
+        view_dimension: wgpu::TextureViewDimension::D2,
+    };
+    let params = Some(pass.params).filter(|p| !p.is_empty());
+    let textures = pass.inputs.iter().map(sampled).chain(formats.iter().map(storage));
+    [(0, uniform(pass.grid))]
+        .into_iter()
+        .chain(params.map(|p| (1, uniform(p))))
+        .chain((2..).zip(textures))
+        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty,
+            count: None,
+        })
+        .collect()
+}
+
+/// Bytes that a uniform block takes.
+pub(super) fn block_size(block: &[u8]) -> u64 {
+    (block.len() as u64).next_multiple_of(BLOCK_ALIGNMENT)
+}
+
+/// The format in the words of wgpu.
+pub(super) fn texture_format(format: Format) -> wgpu::TextureFormat {
+    match format {
+        Format::R32Float => wgpu::TextureFormat::R32Float,
+        Format::Rg32Float => wgpu::TextureFormat::Rg32Float,
+        Format::Rgba32Float => wgpu::TextureFormat::Rgba32Float,
+    }
+}
+
+/// What `make` makes, or what the device has to say against it: wgpu reports errors to scopes, and panics where
+/// nobody listens.
+pub(super) fn checked<T>(device: &wgpu::Device, make: impl FnOnce() -> Result<T>) -> Result<T> {
+    use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
+    let scopes = [Validation, Internal, OutOfMemory].map(|filter| device.push_error_scope(filter));
+    let made = make();
+    // Scopes end in the reverse of the order in which they began.
+    let errors = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop()));
+    match errors.last() {
+        Some(error) => Err(Error::failure(error, "use a smaller picture or update the graphics driver")),
+        None => made,
+    }
+}
+
+/// What the library has against a plan, as an error of the host.
+pub(super) fn refused(refusal: Refusal) -> Error {
+    refusal.at("the plan", "choose another style")
+}
