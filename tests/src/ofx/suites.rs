@@ -9,6 +9,7 @@ use super::threads;
 use std::ffi::{c_char, c_int, c_uint, c_void};
 use std::process::Command;
 use std::sync::OnceLock;
+use std::sync::atomic::Ordering;
 
 /// The structures that a host gives out.
 #[derive(Debug)]
