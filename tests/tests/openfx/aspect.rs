@@ -15,6 +15,8 @@ use std::ffi::CStr;
 const LEAST: f64 = 50.0;
 /// By the lines of a structure, which are one pixel thin.
 const LEAST_OF_LINES: f64 = 40.0;
+/// By strokes and hatches, whose edges are as crisp as pixels.
+const LEAST_OF_MARKS: f64 = 45.0;
 
 /// A way to have half as many pixels along one axis.
 #[derive(Clone, Copy, Debug)]
@@ -91,7 +93,11 @@ pub fn oblong_pixels_show_what_square_ones_show(binary: &Binary, effect: Expecte
         least = least.min(psnr(&squeeze.render(&instance, layout), &squeeze.of(&result, 4)));
     }
     println!("{}: {least:.1} dB", effect.plugin(binary).identifier());
-    let wanted = if effect.node.id == "tensor_view" { LEAST_OF_LINES } else { LEAST };
+    let wanted = match effect.node.id {
+        "tensor_view" => LEAST_OF_LINES,
+        "ink" => LEAST_OF_MARKS,
+        _ => LEAST,
+    };
     assert!(least >= wanted, "{least:.1} dB");
     host.no_faults();
 }

@@ -107,10 +107,11 @@ const fn shift(id: &'static str, label: &'static str, most: f32, doc: &'static s
 /// How much more guides count than where lightness is inhibited: here it counts in full, and light grounds are far from ink.
 const GUIDES: f32 = 1.7;
 
-/// Anisotropy that noise exceeds in one of a hundred places, in windows of standard deviation `rho` pixels (2.154, 2.158).
+/// Anisotropy that noise exceeds in one of ten thousand places, in windows of standard deviation `rho` pixels (2.154, 2.158).
+/// So few, because proxies, whose windows have fewer pixels, are to show the same marks.
 fn significant(rho: f32) -> f32 {
     const SAMPLES: f32 = 4.0 * std::f32::consts::PI;
-    least_significant(0.01, SAMPLES * rho * rho)
+    least_significant(1e-4, SAMPLES * rho * rho)
 }
 
 /// Strokes along the flow, 0..=1 about middle grey, and the standard deviation of their values: noise, `width` pixels
@@ -191,7 +192,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         rubbed: drawing.rubbed,
         form: drawing.form,
         spacing: drawing.spacing,
-        significant: significant(drawing.rho * scale),
+        significant: significant(drawing.rho),
         stroke: own.stroke.map(|length| length * scale),
         deviation,
         given_deviation: marks::HATCHING_DEVIATION,
