@@ -349,7 +349,11 @@ fn real_files_keep_everything_else() {
         }
         let started = Instant::now();
         let mut command = isophote();
-        command.args(["apply", "gaussian", "--backend", "cpu", "--set", "sigma=1"]).arg(&path).arg(&out);
+        command
+            .args(["apply", "gaussian", "--backend", "cpu", "--set", "sigma=1"])
+            .args(IN_PIXELS)
+            .arg(&path)
+            .arg(&out);
         if is_damaged || name.contains("Trunks") {
             fails(&mut command, 2, &[]);
             assert!(started.elapsed() < Duration::from_secs(10), "{name}");

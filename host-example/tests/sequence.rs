@@ -332,7 +332,8 @@ fn farm_templates_run_the_command() {
         command.current_dir(folder.path()).args(["farm", "openjd"]).args(more);
         command
     };
-    let job = ["apply", "gaussian", "in.####.exr", "out/o.####.exr", "--backend", "cpu"];
+    let job = [&["apply", "gaussian", "in.####.exr", "out/o.####.exr", "--backend", "cpu"], &IN_PIXELS[..]]
+        .concat();
     succeeds(&mut farm(&[&["-o", "job.json", "--chunk", "2", "--"], job.as_slice()].concat()));
     let text = fs::read_to_string(at("job.json")).expect("a template");
     let template: Value = serde_json::from_str(&text).expect("JSON");

@@ -114,8 +114,9 @@ fn check(name: &str) {
         100.0 * share(halos)
     );
     assert!(change > 0.01, "the picture changed");
-    assert!(after < 0.6 * before, "flat parts became flatter");
-    assert!(few < many * 3 / 4, "there are fewer colours");
+    // Where little changes tones stay continuous.
+    assert!(after < 0.7 * before, "flat parts became flatter");
+    assert!(few < many * 4 / 5, "there are fewer colours");
     assert!(share(drawn) > 0.005 && share(drawn) < 0.25, "there are lines, and not only lines");
     assert!(neighbours as f32 / drawn as f32 > 1.9, "lines hang together");
     assert!(share(speckles) < 0.001, "no speckles");

@@ -16,7 +16,7 @@ const LEAST: f64 = 50.0;
 /// By the lines of a structure, which are one pixel thin.
 const LEAST_OF_LINES: f64 = 40.0;
 /// By strokes and hatches, whose edges are as crisp as pixels.
-const LEAST_OF_MARKS: f64 = 45.0;
+const LEAST_OF_MARKS: f64 = 40.0;
 
 /// A way to have half as many pixels along one axis.
 #[derive(Clone, Copy, Debug)]
