@@ -26,7 +26,7 @@ pub static NODE: NodeSpec = NodeSpec {
         filter::ITERATIONS.group(LOOK),
         DETAIL,
         SHARPNESS,
-        levels::POSTERIZE.with_default(Value::Int(0)),
+        levels::POSTERIZE.with_default(Value::Int(0)).slider(0.0, 16.0),
         levels::POSTERIZE_SMOOTH,
         // Left out where it changes nothing: the way to CIELAB and back costs more than a shock.
         tone::SATURATION.structural(),
