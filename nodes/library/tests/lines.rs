@@ -413,7 +413,9 @@ fn look_controls_do_what_they_say() {
     assert!(sum(&[("line_amount", "0")]) > sum(&[("line_amount", "0.3")]));
     assert!(sum(&[("line_amount", "0.3")]) > default && default > sum(&[("line_amount", "1")]));
     let spots = picture(60, 60, 4, |x, y| grey(if x % 15 < 3 && y % 15 < 3 { 52.0 } else { 60.0 }));
-    assert!(light(&spots, &[("suppress_small", "1")]) > light(&spots, &[]));
+    // Faint ones, which draw lines under strong inhibition.
+    let faint = [("tau", "0.99")];
+    assert!(light(&spots, &[faint[0], ("suppress_small", "1")]) > light(&spots, &faint));
     let step = picture(60, 60, 4, |x, _| grey(if x < 30 { 40.0 } else { 80.0 }));
     assert!(light(&step, &[("line_width", "4")]) < light(&step, &[]));
     assert!(sum(&[("lights", "1")]) > default && sum(&[("darks", "-1")]) < default);
