@@ -72,10 +72,11 @@ fn areas<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             let block = Block::until(window.x1, x, y);
             let at = (x - window.x0) as usize;
             let own = value(simd, rows[1], at + 1, &block);
-            let around = rows.map(
-                #[inline(always)]
-                |row| beside(simd, row, at, &block, own),
-            );
+            let around = [
+                beside(simd, rows[0], at, &block, own),
+                beside(simd, rows[1], at, &block, own),
+                beside(simd, rows[2], at, &block, own),
+            ];
             let [_, total]: [f32x8<S>; 2] = block.read(simd, &pass.inputs[1]);
             let [u, v]: [f32x8<S>; 2] = block.read(simd, &pass.inputs[2]);
             let speed = (u.mul_add(u, v * v).sqrt() * params.inverse_moving).min(1.0);
@@ -95,35 +96,36 @@ fn value<S: Simd>(simd: S, row: &[f32], at: usize, block: &Block) -> f32x8<S> {
 /// The same with those before and behind; `own` where nothing is covered.
 #[inline(always)]
 fn beside<S: Simd>(simd: S, row: &[f32], at: usize, block: &Block, own: f32x8<S>) -> [f32x8<S>; 3] {
-    [0, 1, 2].map(
-        #[inline(always)]
-        |column| {
-            let value = value(simd, row, at + column, block);
-            value.simd_ge(NOT_COVERED).select(own, value)
-        },
-    )
+    // One by one: what maps arrays stays a call in code for wide vectors.
+    let mut values = [own; 3];
+    for (column, beside) in values.iter_mut().enumerate() {
+        let value = value(simd, row, at + column, block);
+        *beside = value.simd_ge(NOT_COVERED).select(own, value);
+    }
+    values
 }
 
 /// The result for pixels with what surrounds them, and how far other frames count.
 #[inline(always)]
 fn area<S: Simd>(params: &Params, rows: [[f32x8<S>; 3]; 3], share: f32x8<S>) -> f32x8<S> {
     let own = rows[1][1];
+    let alone = edge_threshold(own, params.threshold, params.epsilon, params.phi);
+    let counts = share.simd_gt(0.0);
+    if !counts.any_true() {
+        return alone;
+    }
     let around = ((rows[0][1] + rows[2][1]) + (rows[1][0] + rows[1][2])) * 0.25;
     let sharper = share * params.sharpening * (own - around);
     // The outermost of four samples that divide the area evenly.
     let reach = share * (0.375 * params.width);
-    let [top, middle, bottom] = rows.map(
-        #[inline(always)]
-        |[before, own, behind]| samples([before, own, behind], reach),
-    );
+    let (top, middle, bottom) = (samples(rows[0], reach), samples(rows[1], reach), samples(rows[2], reach));
     let mut sum = f32x8::splat(own.simd, 0.0);
     for i in 0..4 {
         for value in samples([top[i], middle[i], bottom[i]], reach) {
             sum += edge_threshold(value + sharper, params.threshold, params.epsilon, params.phi);
         }
     }
-    let alone = edge_threshold(own, params.threshold, params.epsilon, params.phi);
-    share.simd_gt(0.0).select(sum * (1.0 / 16.0), alone)
+    counts.select(sum * (1.0 / 16.0), alone)
 }
 
 /// Four samples across a pixel, from the values before, at and behind it; `reach` is the outermost.

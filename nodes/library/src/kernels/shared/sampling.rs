@@ -152,7 +152,7 @@ fn sample_column2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -
 /// Eight pairs of neighbouring values, from where `at` says, four pairs to a vector: one 64-bit load
 /// each.
 #[inline(always)]
-fn load_pairs<S: Simd>(simd: S, data: &[f32], at: [i32; 8]) -> [f32x8<S>; 2] {
+pub fn load_pairs<S: Simd>(simd: S, data: &[f32], at: [i32; 8]) -> [f32x8<S>; 2] {
     let mut pairs = [0.0f64; 8];
     for (pair, at) in pairs.iter_mut().zip(at) {
         let values = &data[at as usize..at as usize + 2];

@@ -97,8 +97,8 @@ fn shares<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: Block) -
     } else {
         one
     };
-    let counts = known & is_inside(x, y, theirs.full());
-    let weight = counts.select(agreement * guided * params.gain, zero);
+    let weight = known.select(agreement * guided * params.gain, zero);
+    let weight = is_inside(x, y, theirs.full()).select(weight, zero);
     let sum = total + weight;
     [weight / sum, sum]
 }

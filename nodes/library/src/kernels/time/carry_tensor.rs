@@ -6,8 +6,7 @@
 //!
 //! Cost: a bilinear sample of four channels and about 80 operations.
 
-use crate::kernels::shared::motion::beside;
-use crate::kernels::shared::sampling::sample_linear4;
+use crate::kernels::shared::motion::{beside, sample_linear_near4};
 use crate::kernels::simd::pixels::{Block, for_blocks, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -54,15 +53,16 @@ fn taken_in<S: Simd>(simd: S, pass: &CpuPass<'_>, block: Block) -> [f32x8<S>; 4]
     if !counts.any_true() {
         return own;
     }
-    let at: [f32x8<S>; 2] = block.read(simd, &pass.inputs[1]);
-    let near = |dx: i32, dy: i32| beside(simd, &pass.inputs[1], block, [dx, dy]);
-    let (left, right, above, below) = (near(-1, 0), near(1, 0), near(0, -1), near(0, 1));
+    let motion = &pass.inputs[1];
+    let at: [f32x8<S>; 2] = block.read(simd, motion);
+    let (left, right) = (beside(simd, motion, block, [-1, 0]), beside(simd, motion, block, [1, 0]));
+    let (above, below) = (beside(simd, motion, block, [0, -1]), beside(simd, motion, block, [0, 1]));
     let dx = [derivative(left[0], at[0], right[0]), derivative(left[1], at[1], right[1])];
     let dy = [derivative(above[0], at[0], below[0]), derivative(above[1], at[1], below[1])];
     let (a, b, c, d) = (dx[0] + 1.0, dy[0], dx[1], dy[1] + 1.0);
     let [cx, cy] = block.centres(simd);
     let (x, y) = (cx + counts.select(at[0], zero), cy + counts.select(at[1], zero));
-    let [e, f, g, w] = sample_linear4(simd, &pass.inputs[3], x, y);
+    let [e, f, g, w] = sample_linear_near4(simd, &pass.inputs[3], x, y);
     let turned = [
         a * a * e + a * c * f * 2.0 + c * c * g,
         a * b * e + (a * d + b * c) * f + c * d * g,

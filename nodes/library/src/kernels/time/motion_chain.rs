@@ -46,7 +46,11 @@ fn chained<S: Simd>(simd: S, pass: &CpuPass<'_>, block: Block, params: &Params) 
     let (x, y) = (cx + known.select(found[0], zero), cy + known.select(found[1], zero));
     let second = motion_at(simd, &pass.inputs[1], x, y, params.step);
     let whole = bounded([found[0] + second[0], found[1] + second[1]], params.limit);
-    let known = known & is_known(second) & is_inside(x, y, pass.inputs[1].full());
+    let (going_on, inside) = (is_known(second), is_inside(x, y, pass.inputs[1].full()));
     let unknown = f32x8::splat(simd, UNKNOWN);
-    whole.map(|v| known.select(v, unknown))
+    let mut result = whole;
+    for v in &mut result {
+        *v = known.select(going_on.select(inside.select(*v, unknown), unknown), unknown);
+    }
+    result
 }
