@@ -912,6 +912,79 @@ typedef struct IsophoteApi {
 // of that number. The table is the library's and valid until the library is unloaded.
 typedef const struct IsophoteApi *(ISOPHOTE_ABI *IsophoteEntry)(uint32_t abi_version);
 
+// What is kept of a sequence of frames. Its number is never 0.
+typedef struct IsophoteSequence {
+  // The handle.
+  uint64_t id;
+} IsophoteSequence;
+
+// How the library asks for the images of frames.
+typedef struct IsophoteFrames {
+  // Handed to both functions.
+  void *user;
+  // Gives the image that a graph's input, such as "color" or "motion", shows in a frame: fills `image` and returns 1,
+  // or returns 0 where there is none. Neighbouring frames are asked for from the nearest on, up to the first that has
+  // no colour; that one and those behind it count for nothing. The image stays valid until `release` or, without it,
+  // until `sequence_process` returns. Called on the calling thread, and must not call functions on the sequence.
+  int32_t (ISOPHOTE_ABI *input)(void *user, const char *input, int64_t frame, struct IsophoteImage *image);
+  // Takes back an image, which was copied. May be null.
+  void (ISOPHOTE_ABI *release)(void *user, const char *input, int64_t frame, const struct IsophoteImage *image);
+} IsophoteFrames;
+
+// What a plan for frames in order reads and gives besides its images of one frame.
+//
+// The plan's textures of stages: an output "stage0" is what the frame found, an input "stage0@-1" what the frame before
+// did, and so on. A host hands each frame's outputs to the frames after it, and other inputs, such as "depth@-1",
+// likewise.
+typedef struct IsophoteHistory {
+  // Frames before this one that are known, at most those that `frames` names.
+  uint32_t past;
+  // Longest motion from frame to frame that counts, in pixels of the full-size picture; 0 for the library's own.
+  float max_motion;
+} IsophoteHistory;
+
+// The functions of the extension "isophote.sequence/1". Tags and ownership are those of `IsophoteApi`.
+typedef struct IsophoteSequenceApi {
+  // Size of this table in bytes.
+  uint32_t struct_size;
+  // [any-thread, needs-output] Frames before and after its own that a frame of the graph depends on; 0 and 0 for
+  // graphs of stills.
+  IsophoteStatus (ISOPHOTE_ABI *frames)(struct IsophoteGraph graph, uint32_t *past, uint32_t *future);
+  // [any-thread] Makes a sequence, which keeps stages of frames in at most `memory` bytes; with 0 it keeps none, and
+  // computes them again for each frame. `max_motion` is the longest motion from frame to frame that counts, in pixels
+  // of the full-size picture; 0 for the library's own. The caller owns it and destroys it.
+  IsophoteStatus (ISOPHOTE_ABI *create)(uint64_t memory,
+                           float max_motion,
+                           struct IsophoteText *error,
+                           struct IsophoteSequence *sequence);
+  // [any-thread] Destroys a sequence, once the calls that use it have ended.
+  IsophoteStatus (ISOPHOTE_ABI *destroy)(struct IsophoteSequence sequence);
+  // [object-thread, also-while-processing] Message of the last failed call on the sequence; empty before the first.
+  IsophoteStatus (ISOPHOTE_ABI *error)(struct IsophoteSequence sequence, struct IsophoteText *text);
+  // [any-thread] Gives back the memory of all stages. Called when frames of the same numbers show something else, too.
+  IsophoteStatus (ISOPHOTE_ABI *forget)(struct IsophoteSequence sequence);
+  // [any-thread, needs-output] `IsophoteApi::process` of the frame that the request names, with inputs pulled from
+  // `frames` as far as they are needed; `guides` of the request says which there are, in all frames alike. Calls on
+  // one sequence wait for each other. A frame's pixels depend on the frames around it that are known, and never on
+  // which were computed before. Stages are kept where `region` is the whole picture, or null.
+  IsophoteStatus (ISOPHOTE_ABI *process)(struct IsophoteSequence sequence,
+                            struct IsophoteGraph graph,
+                            struct IsophoteDevice device,
+                            const struct IsophoteRequest *request,
+                            const struct IsophoteFrames *frames,
+                            const struct IsophoteRect *region,
+                            const struct IsophoteTarget *target,
+                            const struct IsophoteControl *control,
+                            struct IsophoteReport *report);
+  // [any-thread, needs-output] `IsophoteApi::plan_create` of a frame in order.
+  IsophoteStatus (ISOPHOTE_ABI *plan_create)(struct IsophoteGraph graph,
+                                const struct IsophoteRequest *request,
+                                const struct IsophoteHistory *history,
+                                const struct IsophoteRect *region,
+                                struct IsophoteText *error,
+                                struct IsophotePlan *plan);
+} IsophoteSequenceApi;
+
 // [any-thread] Returns the table of ABI version `abi_version`, or null when this library has none of
 // that number. The table is the library's and valid for the life of the process.
 ISOPHOTE_IMPORT const struct IsophoteApi *ISOPHOTE_ABI isophote_api(uint32_t abi_version);

@@ -166,8 +166,8 @@ fn generate(root: &Path) -> Result<String, Error> {
         documentation_style: DocumentationStyle::C99,
         ..Config::default()
     };
-    // Only the documents name the type of the entry point.
-    config.export.include = vec!["IsophoteEntry".into()];
+    // Only the documents name the type of the entry point, and tables of extensions, which are asked for by a string.
+    config.export.include = vec!["IsophoteEntry".into(), "IsophoteSequenceApi".into()];
     let mut builder = Builder::new().with_config(config);
     for source in SOURCES {
         builder = builder.with_src(root.join(source));
