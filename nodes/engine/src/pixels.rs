@@ -50,6 +50,9 @@ pub fn sanitized(value: f32, replaced: &mut u64) -> f32 {
 /// are dropped. Returns how many samples were NaN or infinite. Pixels beyond the shorter of the two
 /// slices are left alone.
 pub fn read_row(bytes: &[u8], sample: Sample, channels: usize, row: &mut [f32], out_channels: usize) -> u64 {
+    if is_copy(sample, channels, out_channels) {
+        return read_floats(bytes, row);
+    }
     let mut replaced = 0;
     let size = sample.size();
     let pixels = bytes.chunks_exact(size * channels).zip(row.chunks_exact_mut(out_channels));
@@ -67,6 +70,28 @@ pub fn read_row(bytes: &[u8], sample: Sample, channels: usize, row: &mut [f32], 
             };
             *value = sanitized(read_sample(&source[from * size..], sample), &mut replaced);
         }
+    }
+    replaced
+}
+
+/// Whether samples are values as they are, pixel by pixel.
+fn is_copy(sample: Sample, channels: usize, values: usize) -> bool {
+    sample == Sample::F32 && channels == values && channels != 2
+}
+
+/// [`read_row`] of samples that are values as they are.
+fn read_floats(bytes: &[u8], row: &mut [f32]) -> u64 {
+    let count = row.len().min(bytes.len() / 4);
+    let row = &mut row[..count];
+    // Branches would keep the compiler from taking several at a time: there are hardly ever any to be replaced.
+    let mut found = 0u32;
+    for (value, bytes) in row.iter_mut().zip(bytes.as_chunks::<4>().0) {
+        *value = f32::from_ne_bytes(*bytes);
+        found += u32::from(!value.is_finite());
+    }
+    let mut replaced = 0;
+    if found > 0 {
+        row.iter_mut().for_each(|value| *value = sanitized(*value, &mut replaced));
     }
     replaced
 }
@@ -96,6 +121,12 @@ pub fn read_vectors(
 /// Writes one row of pixels, the reverse of [`read_row`]: alpha is added as 1 or dropped, and a grey
 /// target takes the first channel.
 pub fn write_row(row: &[f32], in_channels: usize, bytes: &mut [u8], sample: Sample, channels: usize) {
+    if is_copy(sample, channels, in_channels) {
+        for (value, target) in row.iter().zip(bytes.as_chunks_mut::<4>().0) {
+            *target = value.to_ne_bytes();
+        }
+        return;
+    }
     let size = sample.size();
     let pixels = row.chunks_exact(in_channels).zip(bytes.chunks_exact_mut(size * channels));
     for (pixel, target) in pixels {
@@ -170,6 +201,18 @@ mod tests {
         let mut row = [9.0; 4];
         assert_eq!(read_row(&bytes, Sample::F32, 4, &mut row, 4), 3);
         assert_eq!(row, [0.0, LARGEST_HALF, -LARGEST_HALF, -3.0]);
+        let mut grey = [9.0; 5];
+        assert_eq!(read_row(&bytes, Sample::F32, 1, &mut grey, 1), 3);
+        assert_eq!(grey, [0.0, LARGEST_HALF, -LARGEST_HALF, -3.0, 9.0]);
+    }
+
+    #[test]
+    fn floats_are_copied() {
+        let row = [0.25, -7.0, 1e30, f32::MIN_POSITIVE, 0.5, 0.75, 1.0, 2.0];
+        let (mut bytes, mut back) = ([0; 32], [0.0; 8]);
+        write_row(&row, 4, &mut bytes, Sample::F32, 4);
+        assert_eq!(read_row(&bytes, Sample::F32, 4, &mut back, 4), 0);
+        assert_eq!(back, row);
     }
 
     #[test]
