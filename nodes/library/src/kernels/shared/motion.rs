@@ -255,8 +255,10 @@ fn are_neighbours<S: Simd>(simd: S, columns: i32x8<S>, rows: i32x8<S>) -> bool {
 /// Whether all columns and rows lie between bounds, both included.
 #[inline(always)]
 fn all_between<S: Simd>([x, y]: [i32x8<S>; 2], [left, top]: [i32; 2], [right, bottom]: [i32; 2]) -> bool {
+    // Small pictures have no such.
+    let there_are = left <= right && top <= bottom;
     let nearest = [x.max(left).min(right), y.max(top).min(bottom)];
-    ((nearest[0] - x) | (nearest[1] - y)).simd_eq(0).all_true()
+    there_are && ((nearest[0] - x) | (nearest[1] - y)).simd_eq(0).all_true()
 }
 
 /// One vector per channel from eight pixels, two to a vector.
@@ -389,6 +391,15 @@ mod tests {
             for lane in 0..8 {
                 let want = value(xs[lane], ys[lane]);
                 assert!((got[2][lane] - want).abs() < 1e-4, "{} {want}", got[2][lane]);
+            }
+            // Neighbours, which are read as rows, are what they are each by itself.
+            let near = f32x8::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]) + 4.75;
+            let row = sample_sharp_covered4(simd, &view, near, f32x8::splat(simd, 4.25));
+            let linear = sample_linear_near4(simd, &view, near, f32x8::splat(simd, 4.25));
+            for lane in 0..8 {
+                let [x, y] = [near[lane], 4.25].map(|v| f32x8::splat(simd, v));
+                assert_eq!(sample_sharp_covered4(simd, &view, x, y)[0][0], row[0][lane]);
+                assert_eq!(sample_linear4(simd, &view, x, y)[1][0], linear[1][lane]);
             }
             // At the border the last pixels go on.
             let corner = f32x8::splat(simd, -7.0);

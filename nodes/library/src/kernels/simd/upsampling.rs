@@ -38,21 +38,19 @@ impl Upsampling {
         }
         let fy = fraction(y);
         let [above, below] = &self.rows;
+        // Readers take whole vectors.
         self.values.clear();
-        for x in x0..x1 {
+        self.values.resize((x1 - x0) as usize * N + 8 * N, 0.0);
+        for (x, value) in (x0..x1).zip(self.values.chunks_exact_mut(N)) {
             let at = (corner(x) - first) as usize * N;
             let fx = fraction(x);
             let (upper, lower) = (&above[at..at + 2 * N], &below[at..at + 2 * N]);
-            let mut value = [0.0; N];
             for c in 0..N {
                 let top = upper[c] + (upper[N + c] - upper[c]) * fx;
                 let bottom = lower[c] + (lower[N + c] - lower[c]) * fx;
                 value[c] = top + (bottom - top) * fy;
             }
-            self.values.extend_from_slice(&value);
         }
-        // Readers take whole vectors.
-        self.values.resize((x1 - x0) as usize * N + 8 * N, 0.0);
         &self.values
     }
 }
