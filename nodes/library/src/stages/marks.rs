@@ -50,19 +50,25 @@ pub(crate) fn clouds(scope: &mut Scope<'_>, layers: [Layer; 2]) -> Option<ImageI
 /// Standard deviation of the heights of [`hatching`].
 pub(crate) const HATCHING_DEVIATION: f32 = 0.28;
 
-/// Heights of pencil strokes in two directions, 0..=1, as fine as those of the screen; none where they are to stay there.
-pub(crate) fn hatching(scope: &mut Scope<'_>, directions: [[f32; 2]; 2], seed: u32) -> Option<[ImageId; 2]> {
-    // Standard deviations across and along strokes, pixels of the full-size picture.
-    const ACROSS: f32 = 0.45;
+/// Heights of strokes in two directions, 0..=1, about `spacing` pixels of the full-size picture apart, which moving things
+/// do not make flicker as thinner ones would; none where they are to stay on the screen.
+pub(crate) fn hatching(
+    scope: &mut Scope<'_>,
+    directions: [[f32; 2]; 2],
+    spacing: f32,
+    seed: u32,
+) -> Option<[ImageId; 2]> {
+    // Standard deviation along strokes, pixels of the full-size picture, and that across, in spacings.
     const ALONG: f32 = 13.0;
+    const ACROSS: f32 = 0.16;
     if !belong_to_things(scope) {
         return None;
     }
-    let scale = scope.scale();
-    let soft = grains(scope, ACROSS * scale, seed);
-    let Marks { deviation, .. } = Marks::of_smoothed_noise(ACROSS * scale, scale, seed);
+    let (scale, across) = (scope.scale(), ACROSS * spacing);
+    let soft = grains(scope, across * scale, seed);
+    let Marks { deviation, .. } = Marks::of_smoothed_noise(across * scale, scale, seed);
     // A Gaussian along lines leaves this share of the deviation.
-    let left = (ACROSS / ALONG.hypot(ACROSS)).sqrt();
+    let left = (across / ALONG.hypot(across)).sqrt();
     let gain = HATCHING_DEVIATION / (deviation * left);
     let step = (1.5 * scale).max(1.0);
     Some(directions.map(|direction| {

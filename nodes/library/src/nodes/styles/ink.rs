@@ -199,7 +199,10 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         scale,
         origin: scope.origin(),
     };
-    let hatching = if own.rubbed < 1.0 { marks::hatching(scope, HATCHING, scope.renewed(301)) } else { None };
+    let hatching = match own.rubbed < 1.0 {
+        true => marks::hatching(scope, HATCHING, drawing.spacing, scope.renewed(301)),
+        false => None,
+    };
     let toned = lightness::pass_lab(scope.plan, smooth);
     let marks = tone_marks::pass(scope.plan, &Inputs { tones: toned, tensor, strokes, hatching }, &tones);
     let mut line = scope.color("line_color");
