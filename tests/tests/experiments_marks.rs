@@ -20,7 +20,7 @@ type Drawing = (&'static str, &'static str, &'static [(&'static str, &'static st
 /// Styles that draw marks; without paper, which stays on the screen.
 const STYLES: [Drawing; 3] = [
     ("oil_paint", "oil_paint", &[], 0.6, [1.0, 0.0]),
-    ("ink, woodcut", "ink", &[("style", "woodcut")], 0.45, [1.0, 0.0]),
+    ("ink, woodcut", "ink", &[("style", "woodcut")], 0.45, [0.6, 0.8]),
     ("ink, pencil", "ink", &[("style", "pencil"), ("grain", "0")], 0.45, [0.6, 0.8]),
 ];
 

@@ -61,10 +61,12 @@ pub(crate) fn hatching(
     // Standard deviation along strokes, pixels of the full-size picture, and that across, in spacings.
     const ALONG: f32 = 13.0;
     const ACROSS: f32 = 0.16;
+    // Wider ones do not follow what turns away.
+    const WIDEST: f32 = 1.2;
     if !belong_to_things(scope) {
         return None;
     }
-    let (scale, across) = (scope.scale(), ACROSS * spacing);
+    let (scale, across) = (scope.scale(), (ACROSS * spacing).min(WIDEST));
     let soft = grains(scope, across * scale, seed);
     let Marks { deviation, .. } = Marks::of_smoothed_noise(across * scale, scale, seed);
     // A Gaussian along lines leaves this share of the deviation.
