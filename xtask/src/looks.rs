@@ -16,11 +16,11 @@ pub struct Options {
     out: PathBuf,
 }
 
-/// Lines of the scene's picture. Lengths are its pixels: as small as thumbnails are, marks that keep to the
+/// Size of the scene's picture. Lengths are its pixels: as small as thumbnails are, marks that keep to the
 /// picture's height would not be seen.
-const SIZE: &str = "480x320";
+const SIZE: &str = "720x480";
 /// Width of a picture on the sheet.
-const THUMBNAIL: &str = "160";
+const THUMBNAIL: &str = "170";
 /// Most pictures in a row of the sheet.
 const COLUMNS: usize = 10;
 

@@ -43,7 +43,7 @@ pub struct ApplyArgs {
     /// one, or - for YUV4MPEG on standard output.
     #[arg(required_unless_present_any = ["preset", "layered"])]
     pub output: Option<PathBuf>,
-    /// A preset file with the style and its parameters.
+    /// A preset with the style and its parameters, or a look.
     #[arg(long, value_name = "FILE")]
     pub preset: Option<PathBuf>,
     /// A JSON file with a list of looks instead of a style, each made from the picture and laid over those before where its mask

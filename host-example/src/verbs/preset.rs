@@ -139,7 +139,7 @@ fn list(args: &ListArgs) -> Result<()> {
     let width = |text: fn(&Look) -> usize| looks.iter().map(text).max().unwrap_or(0) + 2;
     let ids = width(|look| look.style().len());
     let names = width(|look| look.preset.title.name.as_deref().unwrap_or_default().len());
-    let mut text = format!("{} looks\n", looks.len());
+    let mut text = format!("{} look{}\n", looks.len(), if looks.len() == 1 { "" } else { "s" });
     let mut style = "";
     for look in &looks {
         let preset = &look.preset;
