@@ -18,7 +18,7 @@ pub struct ViewArgs {
     scene: SceneArgs,
     #[command(flatten)]
     staging: StagingArgs,
-    /// A style for the keys 1, 2, ...: none, the id of a node, or a graph file or preset (.json). May be repeated
+    /// A style for the keys 1, 2, ...: none, the id of a node, a look, or a graph file or preset (.json). May be repeated
     /// [default: none and every node of the group styles].
     #[arg(long, value_name = "STYLE")]
     style: Vec<String>,
