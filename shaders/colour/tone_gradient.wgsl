@@ -1,9 +1,10 @@
-// Gradient of the L of a Lab image by the Sobel operator (2.23), no longer than `longest`, in the first two channels.
+// Gradient of the L of a Lab image by the Sobel operator (2.23) in the first two channels; what is longer than `longest`
+// is shortened to the inverse of its length.
 // Cost: nine loads.
 #import gpu/grid
 
 struct Params {
-    /// Longest gradient, units of L per pixel.
+    /// Longest gradient that counts in full, units of L per pixel.
     longest: f32,
 }
 
@@ -32,6 +33,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         + 0.125 * ((right_up - left_up) + (right_down - left_down));
     let y = 0.25 * (excess(p + vec2i(0, 1), v.x) - excess(p - vec2i(0, 1), v.x))
         + 0.125 * ((left_down - left_up) + (right_down - right_up));
-    let shorter = v.w * min(params.longest / max(sqrt(x * x + y * y), 1e-6), 1.0);
+    let share = min(params.longest / max(sqrt(x * x + y * y), 1e-6), 1.0);
+    let shorter = v.w * share * share;
     textureStore(target_image, vec2i(id.xy), vec4f(x * shorter, y * shorter, 0.0, 1.0));
 }

@@ -1,6 +1,7 @@
 //! Gradient of the L of a Lab image by the Sobel operator (2.23), in the first two of four channels, so that the kernels of
-//! fields can smooth it. Long ones are shortened: a mean of gradients then says how much of the neighbourhood changes, and
-//! a strong edge does not outweigh all that lies around it. Where a neighbour is transparent it stands for the centre.
+//! fields can smooth it. Long ones count the less the longer they are, since an edge is no change of tone: a mean of gradients
+//! then says how much the tones around change, and beside an edge flat ones stay flat. Where a neighbour is transparent it
+//! stands for the centre.
 //!
 //! Cost: 40 operations.
 
@@ -20,7 +21,7 @@ crate::kernel!(tone_gradient {
     },
 });
 
-/// The gradient, no longer than `longest`, units of L per pixel.
+/// The gradient, units of L per pixel; one that is n times as long as `longest` has an nth of that length.
 pub fn pass(plan: &mut PlanBuilder, lab: ImageId, longest: f32) -> ImageId {
     plan.pass(&KERNEL, &[lab], &Params { longest }, Class::Field, Support::Pixels(1))
 }
@@ -36,7 +37,8 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         let y = (around.excess(0, 1, 0) - around.excess(0, -1, 0)) * 0.25
             + ((left_down - left_up) + (right_down - right_up)) * 0.125;
         let length = (x * x + y * y).sqrt().max(1e-6);
-        let shorter = (one * params.longest / length).min(one) * around.centre(3);
+        let share = (one * params.longest / length).min(one);
+        let shorter = share * share * around.centre(3);
         [x * shorter, y * shorter, zero, one]
     }));
 }

@@ -66,7 +66,7 @@ fn steepness(scope: &Scope<'_>, phi_q: f32) -> Steepness {
     Steepness::Adaptive { delta, phi: [scope.float("lambda_phi"), scope.float("omega_phi")] }
 }
 
-/// Longest gradient that counts, L per pixel: edges must not bring steps into all that lies beside them.
+/// Longest gradient that counts in full, L per pixel: edges must not bring steps into all that lies beside them.
 const LONGEST: f32 = 1.0;
 
 /// Standard deviation of the surroundings whose gradient counts, pixels of the full-size picture.
