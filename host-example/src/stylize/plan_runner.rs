@@ -293,6 +293,11 @@ impl PlanRunner {
         Ok(())
     }
 
+    /// The kernels of its device.
+    pub(super) fn kernels(&self) -> &Kernels {
+        &self.kernels
+    }
+
     /// Objects made and uploads so far.
     pub fn counts(&self) -> Counts {
         self.counts

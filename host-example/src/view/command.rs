@@ -1,0 +1,85 @@
+//! The command line that gives the picture that is shown.
+
+use std::path::Path;
+
+use super::session::Session;
+use crate::render::background::Background;
+use crate::stylize::lengths::Lengths;
+
+/// The command line, quoted for a shell.
+pub fn line(session: &Session) -> String {
+    let mut words = vec!["isophote".to_owned()];
+    let look = session.look();
+    let input = session.file.as_deref().map_or_else(|| "SCENE.gltf".into(), quoted_path);
+    words.push("render".into());
+    words.push(input);
+    words.push("picture.png".into());
+    let area = session.easel.halves()[1];
+    words.push(format!("--size {}x{}", area.width.max(1.0) as u32, area.height.max(1.0) as u32));
+    words.extend(staging(session));
+    if !look.is_plain() {
+        words.push(format!("--style {}", quoted_path(&look.source)));
+        words
+            .extend(look.settings(&session.knobs).iter().map(|setting| format!("--set {}", quoted(setting))));
+        if look.preset.lengths == Some(Lengths::Pixels) {
+            words.push("--lengths pixels".into());
+        }
+    }
+    words.join(" ")
+}
+
+/// Camera and light, where they are not as they are without being asked for.
+fn staging(session: &Session) -> Vec<String> {
+    let Some(scenery) = &session.scenery else { return Vec::new() };
+    let mut words = Vec::new();
+    match scenery.camera() {
+        Some(node) => {
+            let name = scenery.cameras().into_iter().position(|(known, _)| known == node);
+            words.extend(name.filter(|index| *index > 0).map(|index| format!("--camera {index}")));
+        }
+        None => {
+            let [_, area] = session.easel.halves();
+            let [azimuth, elevation, distance] = scenery.framed(area.width / area.height);
+            words.push(format!("--azimuth {azimuth:.2} --elevation {elevation:.2} --distance {distance:.4}"));
+        }
+    }
+    if let Some(sun) = scenery.lighting.sun {
+        words.push(format!("--light {:.1},{:.1}", sun.azimuth.to_degrees(), sun.elevation.to_degrees()));
+    }
+    match &scenery.lighting.background {
+        Background::Transparent => words.push("--background transparent".into()),
+        Background::Color(color) => {
+            let [r, g, b] =
+                color.to_array().map(|v| (crate::apply::space::srgb_encode(v) * 255.0).round() as u8);
+            words.push(format!("--background '#{r:02x}{g:02x}{b:02x}'"));
+        }
+        Background::Sky | Background::Environment(_) => {}
+    }
+    words
+}
+
+fn quoted_path(path: &Path) -> String {
+    quoted(&path.to_string_lossy())
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:@%+".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', r"'\''"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_quoted_where_a_shell_needs_it() {
+        assert_eq!(quoted("line_color=#102030"), "'line_color=#102030'");
+        assert_eq!(quoted("a/b-c.json"), "a/b-c.json");
+        assert_eq!(quoted("it's"), r"'it'\''s'");
+        assert_eq!(quoted(""), "''");
+    }
+}

@@ -1,0 +1,251 @@
+//! What the window does beside drawing: opening files, asking for names, saving. Nothing of it holds the window up.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+use super::command;
+use super::demo;
+use super::idle::{self, Question};
+use super::look::Look;
+use super::scenery::{Scenery, Staging};
+use super::session::{Session, Wish};
+use super::worker::{Wake, Worker};
+use crate::error::{Error, Result};
+use crate::loader::Library;
+use crate::render::background::Background;
+use crate::scene::environment::Environment;
+use crate::scene::{Scene, camera, floor};
+
+/// What is to be opened.
+enum Job {
+    Demo,
+    File(PathBuf),
+    Look(Library, PathBuf),
+    Surroundings(PathBuf),
+}
+
+/// What was opened.
+enum Opened {
+    Scene(Box<Scene>, Option<PathBuf>),
+    Look(Look),
+    Surroundings(Background),
+}
+
+/// What a dialog is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Dialog {
+    File,
+    Look,
+    Save,
+    Surroundings,
+}
+
+/// The work beside the window.
+pub struct Desk {
+    opener: Worker<Job, Result<Opened>>,
+    critic: Worker<Question, idle::Answer>,
+    /// What the critic was asked last.
+    asked: Option<Look>,
+    chosen: Receiver<(Dialog, Option<PathBuf>)>,
+    choose: Sender<(Dialog, Option<PathBuf>)>,
+    /// Whether a dialog is open.
+    choosing: bool,
+    wake: Wake,
+    over: bool,
+}
+
+impl Desk {
+    /// Starts the threads.
+    ///
+    /// # Errors
+    /// As [`Worker::new`].
+    pub fn new(_: &Session, wake: &Wake) -> Result<Self> {
+        let (choose, chosen) = channel();
+        Ok(Self {
+            opener: Worker::new("open", Arc::clone(wake), open)?,
+            critic: Worker::new("controls", Arc::clone(wake), idle::answer)?,
+            asked: None,
+            chosen,
+            choose,
+            choosing: false,
+            wake: Arc::clone(wake),
+            over: false,
+        })
+    }
+
+    /// Whether the window is to be closed.
+    pub fn is_over(&self) -> bool {
+        self.over
+    }
+
+    /// What is being done.
+    pub fn busy(&self) -> Option<&'static str> {
+        self.opener.is_busy().then_some("Opening")
+    }
+
+    /// Takes over what was done since the last call.
+    pub fn collect(&mut self, session: &mut Session) {
+        while let Ok((dialog, path)) = self.chosen.try_recv() {
+            self.choosing = false;
+            let Some(path) = path else { continue };
+            match dialog {
+                Dialog::File => self.opener.ask(Job::File(path)),
+                Dialog::Look => {
+                    session.settings.look_folder = path.parent().map(Path::to_owned);
+                    self.opener.ask(Job::Look(session.library.clone(), path));
+                }
+                Dialog::Surroundings => self.opener.ask(Job::Surroundings(path)),
+                Dialog::Save => save(session, &path),
+            }
+        }
+        if let Some(opened) = self.opener.answer() {
+            match opened {
+                Ok(opened) => take(session, opened),
+                Err(error) => session.notes.complain(&error),
+            }
+        }
+        if let Some(answer) = self.critic.answer()
+            && answer.look == *session.look()
+        {
+            session.idle = answer.idle;
+        }
+        if self.asked.as_ref() != Some(session.look()) && session.has_picture() {
+            self.asked = Some(session.look().clone());
+            self.critic.ask(Question { library: session.library.clone(), look: session.look().clone() });
+        }
+    }
+
+    /// Does what the controls have asked for, and returns what is to be put on the clipboard.
+    pub fn grant(&mut self, session: &mut Session) -> Option<String> {
+        let mut copied = None;
+        for wish in std::mem::take(&mut session.wishes) {
+            match wish {
+                Wish::Open(path) if is_look(&path) => {
+                    self.opener.ask(Job::Look(session.library.clone(), path));
+                }
+                Wish::Open(path) => self.opener.ask(Job::File(path)),
+                Wish::OpenDemo => self.opener.ask(Job::Demo),
+                Wish::ChooseFile => self.choose(Dialog::File, session),
+                Wish::ChooseLook => self.choose(Dialog::Look, session),
+                Wish::ChooseSurroundings => self.choose(Dialog::Surroundings, session),
+                Wish::SaveLook(elsewhere) => {
+                    let own = session.look().source.clone();
+                    if elsewhere || !is_look(&own) {
+                        self.choose(Dialog::Save, session)
+                    } else {
+                        save(session, &own)
+                    }
+                }
+                Wish::CopyCommand => {
+                    copied = Some(command::line(session));
+                    session.notes.say("Copied the command line of this picture");
+                }
+                Wish::Quit => self.over = true,
+            }
+        }
+        copied
+    }
+
+    /// Asks for a file on a thread of its own: dialogs of the system may stay open for long.
+    fn choose(&mut self, dialog: Dialog, session: &mut Session) {
+        if self.choosing || session.look().is_plain() && dialog == Dialog::Save {
+            return;
+        }
+        let folder = match dialog {
+            Dialog::Look | Dialog::Save => session.settings.look_folder.clone(),
+            Dialog::File | Dialog::Surroundings => session.settings.folder.clone(),
+        };
+        let name = format!("{}.json", session.look().name.to_lowercase().replace(' ', "-"));
+        let (choose, wake) = (self.choose.clone(), Arc::clone(&self.wake));
+        let asked = std::thread::Builder::new().name("dialog".into()).spawn(move || {
+            let path = ask(dialog, folder, &name);
+            // The window may be closed by now.
+            let _ = choose.send((dialog, path));
+            wake();
+        });
+        match asked {
+            Ok(_) => self.choosing = true,
+            Err(e) => session.notes.complain(&Error::failure(
+                format!("no dialog can be opened: {e}"),
+                "drop the file on the window",
+            )),
+        }
+    }
+}
+
+/// Shows a dialog of the system and waits for its answer.
+fn ask(dialog: Dialog, folder: Option<PathBuf>, name: &str) -> Option<PathBuf> {
+    let mut shown = rfd::FileDialog::new();
+    if let Some(folder) = folder {
+        shown = shown.set_directory(folder);
+    }
+    match dialog {
+        Dialog::File => shown.set_title("Open").add_filter("Scenes", &["gltf", "glb", "obj"]).pick_file(),
+        Dialog::Look => shown.set_title("Open a look").add_filter("Looks", &["json"]).pick_file(),
+        Dialog::Save => {
+            let shown = shown.set_title("Save the look").set_file_name(name).add_filter("Looks", &["json"]);
+            let path = shown.save_file()?;
+            Some(if path.extension().is_some() { path } else { path.with_extension("json") })
+        }
+        Dialog::Surroundings => shown
+            .set_title("Surroundings")
+            .add_filter("Pictures of the surroundings", &["hdr", "exr"])
+            .pick_file(),
+    }
+}
+
+fn is_look(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+}
+
+fn open(job: Job) -> Result<Opened> {
+    Ok(match job {
+        Job::Demo => Opened::Scene(Box::new(demo::scene()?), None),
+        Job::File(path) => Opened::Scene(Box::new(Scene::load(&path, None)?), Some(path)),
+        Job::Look(library, path) => Opened::Look(Look::open(&library, &path)?),
+        Job::Surroundings(path) => {
+            Opened::Surroundings(Background::Environment(Arc::new(Environment::read(&path)?)))
+        }
+    })
+}
+
+fn take(session: &mut Session, opened: Opened) {
+    match opened {
+        Opened::Scene(scene, file) => {
+            let area = session.easel.area;
+            let name = file.as_ref().and_then(|file| file.file_name());
+            let name = name.map_or_else(|| "Demo".into(), |name| name.to_string_lossy().into_owned());
+            if let Some(warning) = scene.warnings.first() {
+                session.notes.say(format!("{name}: {warning}"));
+            }
+            if let Some(file) = &file {
+                session.settings.remember(file);
+            }
+            let staging = Staging {
+                camera: camera::file_camera(&scene),
+                ground: floor::lacks_floor(&scene),
+                ..Staging::default()
+            };
+            let aspect = area.width.max(1.0) / area.height.max(1.0);
+            session.show_scene(Scenery::new(*scene, staging, aspect), file, name);
+        }
+        Opened::Look(look) => session.take(look),
+        Opened::Surroundings(background) => {
+            session.relight("surroundings", |lighting| lighting.background = background);
+            session.let_go();
+        }
+    }
+}
+
+fn save(session: &mut Session, path: &Path) {
+    let mut look = session.look().clone();
+    match look.save(path) {
+        Ok(()) => {
+            session.settings.look_folder = path.parent().map(Path::to_owned);
+            session.notes.say(format!("Saved {}", path.display()));
+            session.saved(look);
+        }
+        Err(error) => session.notes.complain(&error),
+    }
+}

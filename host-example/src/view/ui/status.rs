@@ -1,0 +1,80 @@
+//! The bar at the bottom: time, what is under the pointer, magnification and brightness.
+
+use egui::{Button, DragValue, Label, RichText, Slider, Ui};
+
+use super::theme;
+use crate::view::session::Session;
+
+/// Shows the bar.
+pub fn show(ui: &mut Ui, session: &mut Session) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(22.0);
+        if session.has_picture() {
+            timeline(ui, session);
+            probe(ui, session);
+        } else {
+            ui.label(RichText::new(&session.record.adapter).small().color(theme::FAINT));
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if session.has_picture() {
+                magnification(ui, session);
+            }
+        });
+    });
+}
+
+fn timeline(ui: &mut Ui, session: &mut Session) {
+    let Some(scenery) = &mut session.scenery else { return };
+    let (time, length) = scenery.time();
+    if length <= 0.0 {
+        return;
+    }
+    let text = if scenery.playing { "⏸" } else { "▶" };
+    let hint = if scenery.playing { "Pause (Space)" } else { "Play (Space)" };
+    if ui.add(Button::new(text)).on_hover_text(hint).clicked() {
+        scenery.toggle_playing();
+    }
+    let mut now = time;
+    ui.spacing_mut().slider_width = 220.0;
+    let slider = ui.add(Slider::new(&mut now, 0.0..=length).show_value(false)).on_hover_text("Time");
+    slider.widget_info(|| egui::WidgetInfo::slider(true, f64::from(time), "Time"));
+    if slider.changed() {
+        scenery.seek(now);
+    }
+    ui.label(RichText::new(format!("{time:.2} of {length:.2} s")).monospace().color(theme::FAINT));
+    ui.add_space(10.0);
+}
+
+fn probe(ui: &mut Ui, session: &Session) {
+    let Some([before, after]) = session.probed else { return };
+    let text = |color: [f32; 4]| color[..3].iter().map(|v| format!("{v:.3}")).collect::<Vec<_>>().join(" ");
+    let line = format!("{}  →  {}", text(before), text(after));
+    ui.add(Label::new(RichText::new(line).monospace().color(theme::FAINT)))
+        .on_hover_text("Red, green and blue under the pointer, before and after");
+}
+
+fn magnification(ui: &mut Ui, session: &mut Session) {
+    let size = session.nominal_size();
+    let scale = session.easel.scale(size);
+    if ui
+        .add(Button::new("Fit").selected(session.easel.is_fitting()))
+        .on_hover_text("All of the picture (0)")
+        .clicked()
+    {
+        session.easel.fit();
+    }
+    let percent = format!("{:.0} %", scale * 100.0);
+    if ui.add(Button::new(percent)).on_hover_text("Pixels as large as the screen's (z)").clicked() {
+        session.easel.toggle_actual();
+    }
+    ui.add_space(8.0);
+    let stops = DragValue::new(&mut session.easel.exposure).range(-10.0..=10.0).speed(0.02).max_decimals(2);
+    let label = ui.label(RichText::new("Exposure").color(theme::FAINT));
+    let stops = ui.add(stops.suffix(" stops")).labelled_by(label.id);
+    if stops
+        .on_hover_text("Brightness of what is shown, not of what is saved; a double click sets it back")
+        .double_clicked()
+    {
+        session.easel.exposure = 0.0;
+    }
+}
