@@ -98,6 +98,11 @@ impl Stream {
         })
     }
 
+    /// Frames per second as a number.
+    pub fn frames_per_second(&self) -> f64 {
+        fraction(&self.rate)
+    }
+
     /// Of a YUV4MPEG stream, with its first line.
     ///
     /// # Errors

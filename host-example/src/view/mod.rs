@@ -1,6 +1,7 @@
 //! The viewer: a window that renders a scene and stylizes every frame. [`KEYS`] says what can be done in it.
 
 mod app;
+pub mod document;
 mod present;
 mod stage;
 pub mod viewer;
