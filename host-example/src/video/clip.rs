@@ -70,7 +70,7 @@ impl Clip {
         self.count
     }
 
-    /// Goes to a frame, so that [`Clip::next`] gives it or one a little before it.
+    /// Goes to a frame, so that [`Clip::take`] gives it or one a little before it.
     ///
     /// # Errors
     /// As [`Clip::open`].
@@ -95,7 +95,7 @@ impl Clip {
     ///
     /// # Errors
     /// [`Error::Input`] with what ffmpeg complains of.
-    pub fn next(&mut self) -> Result<Option<(i64, Pixels)>> {
+    pub fn take(&mut self) -> Result<Option<(i64, Pixels)>> {
         let Some(decoder) = &mut self.decoder else { return Ok(None) };
         if let Some(pixels) = decode::frame(&self.stream, &mut decoder.from) {
             let number = decoder.next;

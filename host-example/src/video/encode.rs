@@ -1,7 +1,7 @@
 //! Frames into a video, as raw pictures of 16 bits to a process of ffmpeg.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
 use super::container::{Y4M, container, is_pipe};
@@ -31,19 +31,19 @@ pub struct Encoding<'a> {
 
 /// An encoder at work.
 #[derive(Debug)]
-pub struct Encoder<'a> {
-    output: &'a Path,
+pub struct Encoder {
+    output: PathBuf,
     process: Process,
 }
 
-impl<'a> Encoder<'a> {
+impl Encoder {
     /// Starts to encode into the file `place`, or to standard output where the output is `-`.
     ///
     /// # Errors
     /// [`Error::Failure`](crate::error::Error::Failure) without ffmpeg.
-    pub fn start(encoding: &Encoding<'a>, place: &Path) -> Result<Self> {
+    pub fn start(encoding: &Encoding<'_>, place: &Path) -> Result<Self> {
         let process = at(encoding.start(place), encoding.output, FIX)?;
-        Ok(Self { output: encoding.output, process })
+        Ok(Self { output: encoding.output.to_owned(), process })
     }
 
     /// Hands over a frame of 16 bits, and says whether the encoder takes more; [`Encoder::end`] says why not.
@@ -58,7 +58,7 @@ impl<'a> Encoder<'a> {
     /// [`Error::Input`](crate::error::Error::Input) with what ffmpeg complains of.
     pub fn end(mut self) -> Result<()> {
         drop(self.process.child().stdin.take());
-        at(self.process.end(), self.output, FIX)
+        at(self.process.end(), &self.output, FIX)
     }
 }
 

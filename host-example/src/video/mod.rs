@@ -5,12 +5,12 @@ mod clip;
 mod container;
 mod decode;
 mod encode;
+mod film;
 mod process;
 mod run;
 mod stream;
 
 pub use self::clip::Clip;
 pub use self::container::is_video;
-pub use self::encode::{Encoder, Encoding};
+pub use self::film::{Film, shown};
 pub use self::run::{Job, run};
-pub use self::stream::Stream;

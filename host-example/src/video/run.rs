@@ -122,7 +122,7 @@ impl Job<'_> {
         };
         let mut decoded = decoded.into_iter().zip(1..).map(hold);
         let mut frames: VecDeque<Arc<Held<'_>>> = VecDeque::new();
-        let (mut encoder, mut count) = (None::<Encoder<'_>>, 0);
+        let (mut encoder, mut count) = (None::<Encoder>, 0);
         loop {
             if self.stop.is_requested() {
                 return Err(Error::failure(format!("stopped after {count} frames"), "start again"));

@@ -96,7 +96,7 @@ fn decode(
 ) -> Result<()> {
     let name = path.display().to_string();
     clip.go_to(first)?;
-    while let Some((at, pixels)) = clip.next()? {
+    while let Some((at, pixels)) = clip.take()? {
         if sink.wants(at) {
             let state = ImageState::DisplayReferred;
             let source = Read { pictures: vec![Picture::alone(pixels)], state, profile: None, exr: None };
