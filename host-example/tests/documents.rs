@@ -24,7 +24,7 @@ use isophote_host::view::document::frame::Frame;
 use isophote_host::view::document::kind::Kind;
 use isophote_host::view::document::{Document, Options};
 
-use support::{assets, folder, isophote, picture, succeeds};
+use support::{assets, folder, has_ffmpeg, isophote, picture, succeeds};
 
 /// This only ends a test that hangs.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -258,17 +258,6 @@ fn wait_until(is_so: impl Fn() -> bool) {
         assert!(started.elapsed() < PATIENCE, "it does not come to that");
         std::thread::sleep(Duration::from_millis(2));
     }
-}
-
-/// Whether ffmpeg is there; where it must be, its absence fails.
-fn has_ffmpeg() -> bool {
-    let is_there = |name: &str| Command::new(name).arg("-version").output().is_ok_and(|o| o.status.success());
-    if is_there("ffmpeg") && is_there("ffprobe") {
-        return true;
-    }
-    assert!(std::env::var("CI").is_err(), "ffmpeg is missing; install it");
-    eprintln!("\n*** SKIPPED: videos need ffmpeg ***\n");
-    false
 }
 
 fn ffmpeg(folder: &Path, args: &str) {

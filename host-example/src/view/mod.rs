@@ -2,6 +2,7 @@
 
 mod app;
 pub mod document;
+pub mod export;
 mod present;
 mod stage;
 pub mod viewer;
