@@ -6,18 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use support::{IN_PIXELS, fails, folder, isophote, listing, succeeds};
-
-/// Whether ffmpeg is there; where it must be, its absence fails.
-fn has_ffmpeg() -> bool {
-    let is_there = |name: &str| Command::new(name).arg("-version").output().is_ok_and(|o| o.status.success());
-    if is_there("ffmpeg") && is_there("ffprobe") {
-        return true;
-    }
-    assert!(std::env::var("CI").is_err(), "ffmpeg is missing; install it");
-    eprintln!("\n*** SKIPPED: videos need ffmpeg ***\n");
-    false
-}
+use support::{IN_PIXELS, fails, folder, has_ffmpeg, isophote, listing, succeeds};
 
 fn ffmpeg(folder: &Path, args: &str) {
     let mut command = Command::new("ffmpeg");
