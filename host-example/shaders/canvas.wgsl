@@ -54,8 +54,8 @@ fn light(kind: u32, texel: vec4f) -> vec4f {
     switch kind {
         case LINEAR: { return vec4f(texel.rgb * settings.numbers.y, texel.a); }
         case SRGB: {
-            let opaque = texel.rgb / max(texel.a, 1e-6);
-            return vec4f(decoded(opaque) * texel.a * settings.numbers.y, texel.a);
+            // Its colour is not multiplied by alpha.
+            return vec4f(decoded(texel.rgb) * texel.a * settings.numbers.y, texel.a);
         }
         case ACESCG: {
             let to_rec709 = mat3x3f(

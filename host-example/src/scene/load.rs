@@ -46,13 +46,15 @@ impl Scene {
         Ok(scene)
     }
 
-    /// A scene that no file holds: meshes that stand where they are, with what they are made of.
+    /// A scene that no file holds: meshes that stand where they are, with what they are made of. Views of the whole need not
+    /// frame those that are named as backdrops.
     ///
     /// # Errors
     /// [`Error::Input`] when there is nothing to draw.
     pub fn assembled(
         name: &str,
         meshes: Vec<Mesh>,
+        backdrops: &[&str],
         materials: Vec<Material>,
         textures: Vec<Texture>,
         images: Vec<Image>,
@@ -60,6 +62,7 @@ impl Scene {
         let node = |(index, mesh): (usize, &Mesh)| Node {
             name: mesh.name.clone(),
             mesh: Some(index),
+            backdrop: backdrops.contains(&mesh.name.as_str()),
             ..Node::default()
         };
         let nodes = meshes.iter().enumerate().map(node).collect();

@@ -253,6 +253,23 @@ impl Stylizer {
         Ok(())
     }
 
+    /// As [`Stylizer::encode`], so many passes from one on; says whether the last was among them.
+    ///
+    /// # Errors
+    /// As [`Stylizer::encode`].
+    pub fn encode_some(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        from: usize,
+        count: usize,
+    ) -> Result<bool> {
+        let is_whole = self.runner.encode_some(encoder, from, count)?;
+        if is_whole {
+            self.known = (self.planned + 1).min(self.past.frames);
+        }
+        Ok(is_whole)
+    }
+
     /// The passes with their textures.
     pub fn plan(&self) -> &Plan {
         &self.plan

@@ -1,6 +1,6 @@
 //! `isophote view`: the artist's window.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -10,7 +10,10 @@ use crate::error::Result;
 use crate::loader::Library;
 use crate::stylize::style::{Setting, Style};
 use crate::view;
+use crate::view::document::kind::Kind;
+use crate::view::document::{self, Document};
 use crate::view::look::{Look, PLAIN};
+use crate::view::reel::Reel;
 use crate::view::scenery::{Lighting, Scenery, Staging};
 use crate::view::session::Session;
 use crate::view::settings::Settings;
@@ -19,8 +22,9 @@ use crate::view::settings::Settings;
 #[derive(Args, Debug)]
 #[command(after_help = view::keys())]
 pub struct ViewArgs {
-    /// The scene: .gltf, .glb or .obj. Without one the window asks what to open.
-    scene: Option<PathBuf>,
+    /// A scene (.gltf, .glb or .obj), a picture (PNG, JPEG, TIFF, WebP, HDR or EXR), a sequence (shot.####.exr) or a video.
+    /// Without one the window asks what to open.
+    file: Option<PathBuf>,
     #[command(flatten)]
     reading: ReadingArgs,
     #[command(flatten)]
@@ -60,25 +64,35 @@ pub fn run(args: &ViewArgs) -> Result<()> {
     session.prepare(&args.set, args.lengths.lengths);
     session.record.limit = args.frames;
     session.resume(last.as_deref());
-    if let Some(path) = &args.scene {
-        let scene = args.reading.load(path)?;
-        let staging = Staging {
-            framing: args.staging.framing(),
-            camera: args.staging.camera(&scene)?,
-            lighting: Lighting {
-                sun: args.staging.light(),
-                background: args.staging.background()?,
-                ..Lighting::default()
-            },
-            ground: args.staging.ground(&scene),
-        };
-        let (width, height) = args.size.or(session.settings.window).unwrap_or((16, 10));
-        let scenery = Scenery::new(scene, staging, width as f32 / height as f32);
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        session.settings.remember(path);
-        session.show_scene(scenery, Some(path.clone()), name);
+    if let Some(path) = &args.file {
+        open(&mut session, path, args)?;
     }
     view::show(session, args.size, args.report)
+}
+
+/// Opens what was named, before there is a window.
+fn open(session: &mut Session, path: &Path, args: &ViewArgs) -> Result<()> {
+    let document = Document::open(path, &document::Options::default())?;
+    if document.kind() != Kind::Scene {
+        session.show_reel(Reel::new(document)?);
+        return Ok(());
+    }
+    let scene = args.reading.load(path)?;
+    let staging = Staging {
+        framing: args.staging.framing(),
+        camera: args.staging.camera(&scene)?,
+        lighting: Lighting {
+            sun: args.staging.light(),
+            background: args.staging.background()?,
+            ..Lighting::default()
+        },
+        ground: args.staging.ground(&scene),
+    };
+    let (width, height) = args.size.or(session.settings.window).unwrap_or((16, 10));
+    let scenery = Scenery::new(scene, staging, width as f32 / height as f32);
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    session.show_scene(scenery, Some(path.to_owned()), name);
+    Ok(())
 }
 
 /// The looks of the keys, checked to be usable.

@@ -13,6 +13,7 @@ use winit::window::{Window, WindowId};
 
 use super::desk::Desk;
 use super::pace::Pace;
+use super::reel::Reel;
 use super::session::{Session, Wish};
 use super::stage::{Drawn, Stage};
 use super::ui;
@@ -176,13 +177,19 @@ impl App {
         if let Some(scenery) = &mut session.scenery {
             scenery.advance();
         }
+        if let Some(Err(error)) = session.reel.as_mut().map(Reel::advance) {
+            session.notes.complain(&error);
+        }
         let scale = self.pace.scale(session);
         let problems = stage.follow(session, scale)?;
         problems.iter().for_each(|problem| session.notes.complain(problem));
         session.busy = stage.is_busy().then_some("Preparing the look").or(self.desk.busy());
         let started = Instant::now();
-        let always = session.record.limit.is_some() || session.is_playing();
+        let always =
+            session.record.limit.is_some() || session.scenery.as_ref().is_some_and(|scenery| scenery.playing);
         let drawn = stage.draw(window, session, always)?;
+        let is_probed = session.probed != stage.probed;
+        session.probed = stage.probed;
         let again = self.pace.next(drawn, started.elapsed());
         let delay = delay.filter(|delay| *delay < Duration::from_secs(3600));
         let delay = delay.into_iter().chain(again).min();
@@ -194,9 +201,14 @@ impl App {
                 let size = window.inner_size();
                 session.record.count(&look, (size.width, size.height), started.elapsed());
             }
+            Drawn::Begun => self.due = Some(Instant::now()),
             Drawn::Controls => {}
         }
-        if !problems.is_empty() {
+        if session.reel.as_ref().is_some_and(Reel::is_waiting) {
+            let soon = Instant::now() + Duration::from_millis(20);
+            self.due = Some(self.due.map_or(soon, |due| due.min(soon)));
+        }
+        if !problems.is_empty() || is_probed {
             self.due = Some(Instant::now());
         }
         if drawn != Drawn::Skipped {

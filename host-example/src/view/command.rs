@@ -1,31 +1,52 @@
 //! The command line that gives the picture that is shown.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use super::reel::Reel;
 use super::session::Session;
 use crate::render::background::Background;
 use crate::stylize::lengths::Lengths;
 
 /// The command line, quoted for a shell.
 pub fn line(session: &Session) -> String {
-    let mut words = vec!["isophote".to_owned()];
     let look = session.look();
+    let mut words = vec!["isophote".to_owned()];
     let input = session.file.as_deref().map_or_else(|| "SCENE.gltf".into(), quoted_path);
-    words.push("render".into());
-    words.push(input);
-    words.push("picture.png".into());
-    let area = session.easel.halves()[1];
-    words.push(format!("--size {}x{}", area.width.max(1.0) as u32, area.height.max(1.0) as u32));
-    words.extend(staging(session));
-    if !look.is_plain() {
-        words.push(format!("--style {}", quoted_path(&look.source)));
-        words
-            .extend(look.settings(&session.knobs).iter().map(|setting| format!("--set {}", quoted(setting))));
-        if look.preset.lengths == Some(Lengths::Pixels) {
-            words.push("--lengths pixels".into());
+    match &session.reel {
+        Some(reel) => {
+            words.extend(["apply".to_owned(), quoted_path(&look.source), input]);
+            words.push(quoted_path(&output(reel)));
+        }
+        None => {
+            words.extend(["render".to_owned(), input, "picture.png".to_owned()]);
+            let [_, area] = session.easel.halves();
+            words.push(format!("--size {}x{}", area.width as u32, area.height as u32));
+            words.extend(staging(session));
+            if !look.is_plain() {
+                words.push(format!("--style {}", quoted_path(&look.source)));
+            }
         }
     }
+    words.extend(look.settings(&session.knobs).iter().map(|setting| format!("--set {}", quoted(setting))));
+    if look.preset.lengths == Some(Lengths::Pixels) {
+        words.push("--lengths pixels".into());
+    }
     words.join(" ")
+}
+
+/// A name for the result beside the input.
+fn output(reel: &Reel) -> PathBuf {
+    let path = reel.path();
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    // The place of a sequence's numbers stays at the end.
+    let name = match stem.split_once('.') {
+        Some((name, number)) => format!("{name}-look.{number}"),
+        None => format!("{stem}-look"),
+    };
+    let known = ["png", "jpg", "jpeg", "tif", "tiff", "exr"];
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let is_kept = known.contains(&extension.as_str()) || reel.frames().is_some();
+    path.with_file_name(format!("{name}.{}", if is_kept { &extension } else { "png" }))
 }
 
 /// Camera and light, where they are not as they are without being asked for.

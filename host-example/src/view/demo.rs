@@ -3,7 +3,7 @@
 
 use std::f32::consts::TAU;
 
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Quat, Vec2, Vec3, Vec4};
 
 use crate::error::Result;
 use crate::scene::geometry::smooth_normals;
@@ -15,6 +15,9 @@ const AROUND: u32 = 72;
 const CREASE: f32 = 0.7;
 /// Side of the pattern of the cloth in texels.
 const CLOTH: u32 = 512;
+
+/// By how much the scene is turned to be seen nearly from the front, in radians.
+const TOWARDS: f32 = 0.42;
 
 /// What things are made of.
 #[derive(Clone, Copy)]
@@ -31,6 +34,7 @@ enum Stuff {
     Teal,
     Brass,
     Wall,
+    Table,
 }
 
 /// Makes the scene.
@@ -40,7 +44,8 @@ enum Stuff {
 pub fn scene() -> Result<Scene> {
     let mut meshes = vec![
         slab("cloth", Stuff::Cloth, Vec3::new(0.0, -0.03, 0.1), Vec3::new(3.1, 0.06, 2.1), 0.0),
-        slab("wall", Stuff::Wall, Vec3::new(0.0, 1.35, -1.5), Vec3::new(6.4, 3.0, 0.1), 0.0),
+        slab("wall", Stuff::Wall, Vec3::new(0.0, 1.9, -2.1), Vec3::new(30.0, 12.0, 0.1), 0.0),
+        slab("table", Stuff::Table, Vec3::new(0.0, -0.12, 2.9), Vec3::new(30.0, 0.12, 9.9), 0.0),
         slab("board", Stuff::Wood, Vec3::new(0.62, 0.03, 0.42), Vec3::new(1.1, 0.05, 0.62), 0.22),
     ];
     meshes.extend(pottery());
@@ -48,7 +53,9 @@ pub fn scene() -> Result<Scene> {
     meshes.extend(fruit());
     let materials = materials();
     let textures = vec![Texture { image: Some(0), sampler: Sampler::default() }];
-    Scene::assembled("Demo", meshes, materials, textures, vec![cloth()])
+    // They fill the picture and need not be seen whole.
+    let behind = ["wall", "table"];
+    Scene::assembled("Demo", meshes, &behind, materials, textures, vec![cloth()])
 }
 
 /// Jug, bowl, bottle and candlestick.
@@ -199,7 +206,8 @@ fn materials() -> Vec<Material> {
         plain("red", [0.40, 0.06, 0.05], 0.6, 0.0),
         plain("teal", [0.02, 0.16, 0.13], 0.12, 0.0),
         plain("brass", [0.72, 0.49, 0.19], 0.3, 1.0),
-        plain("wall", [0.56, 0.52, 0.45], 0.95, 0.0),
+        plain("wall", [0.46, 0.47, 0.44], 0.95, 0.0),
+        plain("table", [0.24, 0.13, 0.075], 0.55, 0.0),
     ]
 }
 
@@ -231,7 +239,9 @@ fn mesh(name: &str, stuff: Stuff, vertices: Vec<Vertex>, indices: Vec<u32>) -> M
     Mesh { name: name.to_owned(), primitives: vec![primitive], weights: Vec::new() }
 }
 
+/// A vertex, turned towards the default camera with everything else.
 fn vertex(position: Vec3, uv: Vec2) -> Vertex {
+    let position = Quat::from_rotation_y(TOWARDS) * position;
     Vertex {
         position: position.to_array(),
         uv0: uv.to_array(),

@@ -6,8 +6,11 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::command;
 use super::demo;
+use super::document::kind::Kind;
+use super::document::{Document, Options};
 use super::idle::{self, Question};
 use super::look::Look;
+use super::reel::Reel;
 use super::scenery::{Scenery, Staging};
 use super::session::{Session, Wish};
 use super::worker::{Wake, Worker};
@@ -28,6 +31,7 @@ enum Job {
 /// What was opened.
 enum Opened {
     Scene(Box<Scene>, Option<PathBuf>),
+    Pictures(Box<Reel>),
     Look(Look),
     Surroundings(Background),
 }
@@ -181,7 +185,7 @@ fn ask(dialog: Dialog, folder: Option<PathBuf>, name: &str) -> Option<PathBuf> {
         shown = shown.set_directory(folder);
     }
     match dialog {
-        Dialog::File => shown.set_title("Open").add_filter("Scenes", &["gltf", "glb", "obj"]).pick_file(),
+        Dialog::File => shown.set_title("Open").pick_file(),
         Dialog::Look => shown.set_title("Open a look").add_filter("Looks", &["json"]).pick_file(),
         Dialog::Save => {
             let shown = shown.set_title("Save the look").set_file_name(name).add_filter("Looks", &["json"]);
@@ -202,7 +206,13 @@ fn is_look(path: &Path) -> bool {
 fn open(job: Job) -> Result<Opened> {
     Ok(match job {
         Job::Demo => Opened::Scene(Box::new(demo::scene()?), None),
-        Job::File(path) => Opened::Scene(Box::new(Scene::load(&path, None)?), Some(path)),
+        Job::File(path) => {
+            let document = Document::open(&path, &Options::default())?;
+            match document.kind() {
+                Kind::Scene => Opened::Scene(Box::new(Scene::load(&path, None)?), Some(path)),
+                _ => Opened::Pictures(Box::new(Reel::new(document)?)),
+            }
+        }
         Job::Look(library, path) => Opened::Look(Look::open(&library, &path)?),
         Job::Surroundings(path) => {
             Opened::Surroundings(Background::Environment(Arc::new(Environment::read(&path)?)))
@@ -219,9 +229,6 @@ fn take(session: &mut Session, opened: Opened) {
             if let Some(warning) = scene.warnings.first() {
                 session.notes.say(format!("{name}: {warning}"));
             }
-            if let Some(file) = &file {
-                session.settings.remember(file);
-            }
             let staging = Staging {
                 camera: camera::file_camera(&scene),
                 ground: floor::lacks_floor(&scene),
@@ -230,6 +237,7 @@ fn take(session: &mut Session, opened: Opened) {
             let aspect = area.width.max(1.0) / area.height.max(1.0);
             session.show_scene(Scenery::new(*scene, staging, aspect), file, name);
         }
+        Opened::Pictures(reel) => session.show_reel(*reel),
         Opened::Look(look) => session.take(look),
         Opened::Surroundings(background) => {
             session.relight("surroundings", |lighting| lighting.background = background);

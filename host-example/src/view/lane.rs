@@ -8,23 +8,10 @@ use crate::error::{Error, Result};
 use crate::loader::Library;
 use crate::loader::catalogue::Kind;
 use crate::loader::contract::{IsophoteRequest, IsophoteSpace};
+use crate::stylize::Stylizer;
 use crate::stylize::kernels::Kernels;
 use crate::stylize::preset::Track;
 use crate::stylize::style::Setting;
-use crate::stylize::{Stylizer, frame_request};
-
-/// What pictures a look is for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Asked {
-    /// Pixels across and down.
-    pub size: (u32, u32),
-    /// Size over that of the full picture.
-    pub scale: f32,
-    /// What the colours are.
-    pub space: IsophoteSpace,
-    /// Which guides there are.
-    pub guides: u32,
-}
 
 /// What is to be built.
 struct Job {
@@ -36,7 +23,8 @@ struct Job {
 #[derive(Clone, Debug, PartialEq)]
 struct Recipe {
     look: Look,
-    asked: Asked,
+    /// What pictures the look is for; the reference of lengths is the look's own affair, and frames come later.
+    asked: IsophoteRequest,
 }
 
 /// A look that can be recorded.
@@ -46,8 +34,21 @@ struct Ready {
     knobs: Vec<Knob>,
     /// Whether it reads what there is to read.
     bound: bool,
-    /// Whether a picture has been recorded.
-    drawn: bool,
+    /// Number of the last frame that was recorded.
+    number: Option<i64>,
+    /// Passes of a picture that were recorded, while it is not whole.
+    done: usize,
+}
+
+/// The part of a picture that is recorded at once.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// Whether it is the first.
+    pub begins: bool,
+    /// Most passes.
+    pub passes: usize,
+    /// Number of the frame, where frames follow one another.
+    pub number: Option<i64>,
 }
 
 /// A look on its way to the canvas.
@@ -58,6 +59,8 @@ pub struct Lane {
     /// What was last asked of the worker, or refused.
     asked: Option<Recipe>,
     revision: u64,
+    /// The last picture that was whole, its kind, and what its colours are.
+    shown: Option<(wgpu::TextureView, Kind, IsophoteSpace)>,
 }
 
 impl Lane {
@@ -70,19 +73,19 @@ impl Lane {
             let built = build(&job);
             (job.recipe, built)
         })?;
-        Ok(Self { worker, kernels: Arc::clone(kernels), ready: None, asked: None, revision: 0 })
+        Ok(Self { worker, kernels: Arc::clone(kernels), ready: None, asked: None, revision: 0, shown: None })
     }
 
     /// Follows `look` for pictures as `asked`: at once where only values change, and behind the picture otherwise.
     ///
     /// # Errors
     /// What the library or the device has against the look; the look before stays.
-    pub fn follow(&mut self, library: &Library, look: &Look, asked: Asked) -> Result<()> {
+    pub fn follow(&mut self, library: &Library, look: &Look, asked: IsophoteRequest) -> Result<()> {
         let answer = self.worker.answer();
         let wanted = Recipe { look: look.clone(), asked };
         if look.is_plain() {
             self.revision += u64::from(self.ready.is_some());
-            (self.ready, self.asked) = (None, None);
+            (self.ready, self.asked, self.shown) = (None, None, None);
             return Ok(());
         }
         if let Some((recipe, built)) = answer.filter(|_| self.asked.is_some()) {
@@ -125,10 +128,9 @@ impl Lane {
         self.revision
     }
 
-    /// What the lane gave last, its kind, and what its colours are; none before the first picture.
+    /// The last picture that was whole, its kind, and what its colours are.
     pub fn output(&self) -> Option<(&wgpu::TextureView, Kind, IsophoteSpace)> {
-        let Ready { stylizer, recipe, .. } = self.ready.as_ref().filter(|ready| ready.drawn)?;
-        Some((stylizer.output(), stylizer.kind(), recipe.asked.space))
+        self.shown.as_ref().map(|(view, kind, space)| (view, *kind, *space))
     }
 
     /// Whether the look must see rest positions of pictures as `asked`.
@@ -139,28 +141,42 @@ impl Lane {
         self.ready.as_ref().map_or(Ok(false), |ready| ready.stylizer.wants_rest_positions())
     }
 
-    /// Records the look on a picture as `asked`, if it is for such; `bind` says what it reads.
+    /// Records a part of the look on a picture as `asked`, if it is for such; `bind` says what it reads. Says whether the
+    /// picture is whole.
     ///
     /// # Errors
     /// [`Error::Failure`] when the device refuses.
     pub fn encode(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        asked: Asked,
-        frame: i64,
+        asked: IsophoteRequest,
+        part: Part,
         bind: impl FnOnce(&mut Stylizer) -> Result<()>,
-    ) -> Result<()> {
+    ) -> Result<bool> {
         let Some(ready) = self.ready.as_mut().filter(|ready| ready.recipe.asked == asked) else {
-            return Ok(());
+            return Ok(true);
         };
-        ready.stylizer.at_frame(frame)?;
-        if ready.stylizer.update()? || !ready.bound {
-            bind(&mut ready.stylizer)?;
-            ready.bound = true;
+        let Ready { stylizer, bound, number, done, .. } = ready;
+        if part.begins {
+            *done = 0;
+            if part.number.is_some() && part.number != number.map(|number| number + 1) {
+                stylizer.forget();
+            }
+            *number = part.number;
+            stylizer.at_frame(part.number.unwrap_or_default())?;
+            if stylizer.update()? || !*bound {
+                bind(stylizer)?;
+                *bound = true;
+            }
+        } else if *done == usize::MAX {
+            return Ok(true);
         }
-        ready.stylizer.encode(encoder)?;
-        ready.drawn = true;
-        Ok(())
+        let is_whole = stylizer.encode_some(encoder, *done, part.passes)?;
+        *done = if is_whole { usize::MAX } else { *done + part.passes };
+        if is_whole {
+            self.shown = Some((stylizer.output().clone(), stylizer.kind(), asked.space));
+        }
+        Ok(is_whole)
     }
 
     /// The inputs are others now.
@@ -178,7 +194,8 @@ impl Ready {
         let is_same = old.preset.style == new.preset.style
             && old.preset.lengths == new.preset.lengths
             && old.style_name() == new.style_name();
-        let asked = Asked { size: wanted.asked.size, scale: wanted.asked.scale, ..self.recipe.asked };
+        let IsophoteRequest { width, height, scale, .. } = wanted.asked;
+        let asked = IsophoteRequest { width, height, scale, ..self.recipe.asked };
         if !is_same || asked != wanted.asked {
             return Ok(false);
         }
@@ -211,8 +228,8 @@ impl Ready {
             self.stylizer.set(setting)?;
         }
         if asked != self.recipe.asked {
-            self.stylizer.resize_at_scale(asked.size, asked.scale)?;
-            self.bound = false;
+            self.stylizer.resize_at_scale((width, height), scale)?;
+            (self.bound, self.done) = (false, 0);
         }
         self.recipe = wanted.clone();
         Ok(true)
@@ -224,9 +241,15 @@ fn build(job: &Job) -> Result<Ready> {
     let Recipe { look, asked } = recipe;
     let missing = || Error::failure("the plain look has no style", "choose a style");
     let style = look.style(library)?.ok_or_else(missing)?;
-    let request = frame_request(library, &style, asked.size)?;
-    let request = IsophoteRequest { scale: asked.scale, space: asked.space, guides: asked.guides, ..request };
+    let request = IsophoteRequest { reference_height: style.lengths.reference_height(), ..*asked };
     let stylizer = Stylizer::with_request(kernels, library, style, request)?;
     stylizer.compile_all()?;
-    Ok(Ready { stylizer, recipe: recipe.clone(), knobs: look.knobs(library)?, bound: false, drawn: false })
+    Ok(Ready {
+        stylizer,
+        recipe: recipe.clone(),
+        knobs: look.knobs(library)?,
+        bound: false,
+        number: None,
+        done: 0,
+    })
 }

@@ -3,9 +3,9 @@
 //! | what | where |
 //! |---|---|
 //! | the window's events, and when a frame is drawn | `app`, `pace` |
-//! | all that is known of what is shown, and steps back | `session`, `history`, `look`, `value`, `scenery`, `easel` |
-//! | work beside the window | `worker`, `desk`, `idle` |
-//! | what lives on the device | `stage`, `source`, `lane`, `canvas`, `panel` |
+//! | all that is known of what is shown, and steps back | `session`, `history`, `look`, `value`, `scenery`, `reel`, `easel` |
+//! | work beside the window | `worker`, `desk`, `idle`, `document`, `export` |
+//! | what lives on the device | `stage`, `source`, `pictures`, `lane`, `canvas`, `probe`, `panel` |
 //! | the controls | `ui` |
 
 mod app;
@@ -23,7 +23,10 @@ pub mod look;
 mod notes;
 mod pace;
 mod panel;
+mod pictures;
+mod probe;
 pub mod record;
+pub mod reel;
 pub mod scenery;
 pub mod session;
 pub mod settings;

@@ -8,9 +8,11 @@ use super::history::History;
 use super::look::{Knob, Look};
 use super::notes::Notes;
 use super::record::Record;
+use super::reel::Reel;
 use super::scenery::{Lighting, Scenery};
 use super::settings::Settings;
 use super::value::Value;
+use crate::apply::exr::Guide;
 use crate::error::Result;
 use crate::loader::Library;
 use crate::stylize::lengths::Lengths;
@@ -72,6 +74,8 @@ pub struct Session {
     pub compared: Option<Look>,
     /// The scene that is open.
     pub scenery: Option<Scenery>,
+    /// The picture, sequence or video that is open, where no scene is.
+    pub reel: Option<Reel>,
     /// The file that is open.
     pub file: Option<PathBuf>,
     /// What is open, for the title.
@@ -112,6 +116,7 @@ impl Session {
             idle: HashSet::new(),
             compared: None,
             scenery: None,
+            reel: None,
             file: None,
             name: String::new(),
             easel: Easel::default(),
@@ -140,18 +145,34 @@ impl Session {
 
     /// Whether there is anything to look at.
     pub fn has_picture(&self) -> bool {
-        self.scenery.is_some()
+        self.scenery.is_some() || self.reel.is_some()
+    }
+
+    /// Whether there is such a thing to show of the picture.
+    pub fn has_overlay(&self, overlay: Overlay) -> bool {
+        let guide = match overlay {
+            Overlay::None | Overlay::Orientation | Overlay::Lines => return true,
+            Overlay::Normal => Guide::Normal,
+            Overlay::Depth => Guide::Depth,
+            Overlay::ObjectId => Guide::ObjectId,
+            Overlay::Motion => Guide::Motion,
+        };
+        let frame = self.reel.as_ref().and_then(|reel| reel.frame(false));
+        self.scenery.is_some() || frame.is_some_and(|(frame, _)| frame.guide(guide).is_some())
     }
 
     /// Whether time passes.
     pub fn is_playing(&self) -> bool {
         self.scenery.as_ref().is_some_and(|scenery| scenery.playing)
+            || self.reel.as_ref().is_some_and(|reel| reel.playing)
     }
 
     /// Starts or stops time.
     pub fn toggle_playing(&mut self) {
         if let Some(scenery) = &mut self.scenery {
             scenery.toggle_playing();
+        } else if let Some(reel) = &mut self.reel {
+            reel.toggle_playing();
         }
     }
 
@@ -167,7 +188,7 @@ impl Session {
     /// Size of the picture as it is placed: what is rendered smaller for the moment is shown as large.
     pub fn nominal_size(&self) -> (u32, u32) {
         let [_, half] = self.easel.halves();
-        (half.width as u32, half.height as u32)
+        self.reel.as_ref().map_or((half.width as u32, half.height as u32), Reel::size)
     }
 
     /// The look was saved.
@@ -352,9 +373,25 @@ impl Session {
 
     /// A scene is open from now on.
     pub fn show_scene(&mut self, scenery: Scenery, file: Option<PathBuf>, name: String) {
+        (self.scenery, self.reel) = (Some(scenery), None);
+        self.begin(file, name);
+    }
+
+    /// A picture, sequence or video is open from now on.
+    pub fn show_reel(&mut self, reel: Reel) {
+        let file = reel.path();
+        let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        (self.scenery, self.reel) = (None, Some(reel));
+        self.begin(Some(file), name);
+    }
+
+    fn begin(&mut self, file: Option<PathBuf>, name: String) {
+        if let Some(file) = &file {
+            self.settings.remember(file);
+        }
+        (self.file, self.name) = (file, name);
         self.easel.fit();
         self.easel.overlay = Overlay::None;
-        (self.scenery, self.file, self.name) = (Some(scenery), file, name);
         self.record.begin();
         self.edits = History::default();
     }

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use super::canvas::Numbers;
-use super::lane::Asked;
+use super::pictures::PictureSource;
 use super::scenery::{Scenery, is_same};
 use crate::error::Result;
 use crate::loader::contract::{
     ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
-    ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_LINEAR,
+    ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_LINEAR, IsophoteRequest,
 };
 use crate::render::Renderer;
 use crate::render::background::Background;
@@ -21,22 +21,23 @@ pub struct SceneSource {
     scene: Arc<Scene>,
     renderer: Renderer,
     background: Background,
-    scale: f32,
+    /// What looks on its pictures are asked for, but for the size.
+    usual: IsophoteRequest,
 }
 
 impl SceneSource {
-    /// Uploads a scene for pictures of a size.
+    /// Uploads a scene for pictures of a size; `usual` is a request of any size at their scale.
     ///
     /// # Errors
     /// [`crate::error::Error::Input`] when the scene is beyond the limits of the device.
-    pub fn new(gpu: &Gpu, scenery: &Scenery, size: (u32, u32), scale: f32) -> Result<Self> {
+    pub fn new(gpu: &Gpu, scenery: &Scenery, size: (u32, u32), usual: IsophoteRequest) -> Result<Self> {
         let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &scenery.scene, size)?;
         let background = scenery.lighting.background.clone();
         renderer.set_background(&background, false)?;
         if scenery.ground {
             renderer.add_ground();
         }
-        Ok(Self { scene: Arc::clone(&scenery.scene), renderer, background, scale })
+        Ok(Self { scene: Arc::clone(&scenery.scene), renderer, background, usual })
     }
 
     /// Whether it is of this scene.
@@ -53,7 +54,7 @@ impl SceneSource {
             self.background = scenery.lighting.background.clone();
             self.renderer.set_background(&self.background, false)?;
         }
-        self.scale = scale;
+        self.usual.scale = scale;
         let targets = self.renderer.targets();
         if (targets.width, targets.height) == size {
             return Ok(false);
@@ -62,18 +63,19 @@ impl SceneSource {
         Ok(true)
     }
 
-    /// What pictures of it are.
-    pub fn asked(&self) -> Asked {
+    /// What looks on pictures of it are asked for.
+    pub fn asked(&self) -> IsophoteRequest {
         let targets = self.renderer.targets();
-        Asked {
-            size: (targets.width, targets.height),
-            scale: self.scale,
+        IsophoteRequest {
+            width: targets.width,
+            height: targets.height,
             space: ISOPHOTE_SPACE_LINEAR,
             guides: ISOPHOTE_GUIDE_NORMAL
                 | ISOPHOTE_GUIDE_DEPTH
                 | ISOPHOTE_GUIDE_OBJECT_ID
                 | ISOPHOTE_GUIDE_MOTION
                 | ISOPHOTE_GUIDE_REST_POSITION,
+            ..self.usual
         }
     }
 
@@ -114,5 +116,58 @@ impl SceneSource {
             _ => return None,
         };
         Some(&target.view)
+    }
+}
+
+/// What looks are put on.
+pub enum Source {
+    /// A scene.
+    Scene(SceneSource),
+    /// A picture.
+    Picture(PictureSource),
+}
+
+impl Source {
+    /// What looks on it are asked for.
+    pub fn asked(&self) -> IsophoteRequest {
+        match self {
+            Self::Scene(source) => source.asked(),
+            Self::Picture(source) => source.asked(),
+        }
+    }
+
+    /// Lets a style read it.
+    ///
+    /// # Errors
+    /// As [`Stylizer::bind`].
+    pub fn bind(&self, stylizer: &mut Stylizer) -> Result<()> {
+        match self {
+            Self::Scene(source) => source.bind(stylizer),
+            Self::Picture(source) => source.bind(stylizer),
+        }
+    }
+
+    /// The picture without any look.
+    pub fn original(&self) -> (&wgpu::TextureView, Numbers) {
+        match self {
+            Self::Scene(source) => source.original(),
+            Self::Picture(source) => source.original(),
+        }
+    }
+
+    /// One of its guides.
+    pub fn guide(&self, numbers: Numbers) -> Option<&wgpu::TextureView> {
+        match self {
+            Self::Scene(source) => source.picture(numbers),
+            Self::Picture(source) => source.picture(numbers),
+        }
+    }
+
+    /// Number of the frame, where frames follow one another.
+    pub fn number(&self) -> Option<i64> {
+        match self {
+            Self::Scene(_) => None,
+            Self::Picture(source) => Some(source.number()),
+        }
     }
 }

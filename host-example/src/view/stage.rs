@@ -3,6 +3,7 @@
 //! When the device is lost, the stage is thrown away and made anew; what is shown and how is kept outside.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use winit::dpi::PhysicalSize;
 use winit::event_loop::OwnedDisplayHandle;
@@ -10,15 +11,17 @@ use winit::window::Window;
 
 use super::canvas::{Arrangement, Canvas, Numbers, SURROUND, Shown};
 use super::easel::Overlay;
-use super::lane::{Asked, Lane};
+use super::lane::{Lane, Part};
 use super::look::Look;
 use super::panel::Panel;
+use super::pictures::{PictureSource, numbers};
+use super::probe::Probe;
 use super::session::{Session, Which};
-use super::source::SceneSource;
+use super::source::{SceneSource, Source};
 use super::worker::Wake;
 use crate::error::{Error, Result};
 use crate::loader::catalogue::Kind;
-use crate::loader::contract::{ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR};
+use crate::loader::contract::IsophoteRequest;
 use crate::render::gpu::Gpu;
 use crate::render::look::Look as Light;
 use crate::scene::camera::View;
@@ -28,8 +31,11 @@ use crate::stylize::kernels::Kernels;
 pub struct Stage {
     /// The look, what it is compared with, and what is shown instead.
     lanes: [Lane; 3],
-    source: Option<SceneSource>,
+    source: Option<Source>,
     canvas: Canvas,
+    probe: Probe,
+    /// Colours under the pointer, before and after, as of the last frame.
+    pub probed: Option<[[f32; 4]; 2]>,
     /// Draws the controls.
     pub panel: Panel,
     surface: wgpu::Surface<'static>,
@@ -38,6 +44,10 @@ pub struct Stage {
     made: Option<Made>,
     /// Grows when the source is another one.
     sources: u64,
+    /// Whether the picture is only begun.
+    is_begun: bool,
+    /// Passes of a picture that are recorded at once, where the processor draws.
+    passes: usize,
 }
 
 /// What became of a frame.
@@ -45,6 +55,8 @@ pub struct Stage {
 pub enum Drawn {
     /// It is on its way to the screen; the picture in it is a new one.
     Picture,
+    /// So it is; the picture in it is the one of before, and another one is begun.
+    Begun,
     /// So it is, with the picture of before.
     Controls,
     /// There was no surface to draw on; try again later.
@@ -56,13 +68,14 @@ pub enum Drawn {
 struct Made {
     shown: [Which; 2],
     overlay: Overlay,
-    asked: Asked,
+    asked: IsophoteRequest,
     revisions: [u64; 3],
     source: u64,
-    view: View,
-    light: Light,
-    time: f32,
+    scene: Option<(View, Light, f32)>,
 }
+
+/// What recording a part of a picture may take.
+const GOAL: [f32; 2] = [0.02, 0.05];
 
 impl Stage {
     /// Opens a device for `window`.
@@ -88,12 +101,27 @@ impl Stage {
         config.present_mode = wgpu::PresentMode::AutoVsync;
         surface.configure(&gpu.device, &config);
         let canvas = Canvas::new(&gpu.device, config.format);
+        let probe = Probe::new(&gpu.device);
         let panel = Panel::new(&gpu.device, config.format);
         let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
         let lane = || Lane::new(&kernels, Arc::clone(wake));
         let lanes = [lane()?, lane()?, lane()?];
         gpu.check()?;
-        Ok(Self { lanes, source: None, canvas, panel, surface, config, gpu, made: None, sources: 0 })
+        Ok(Self {
+            lanes,
+            source: None,
+            canvas,
+            probe,
+            probed: None,
+            panel,
+            surface,
+            config,
+            gpu,
+            made: None,
+            sources: 0,
+            is_begun: false,
+            passes: 4,
+        })
     }
 
     /// Whether pictures are computed by the processor, which takes its time.
@@ -121,25 +149,7 @@ impl Stage {
     /// # Errors
     /// [`Error::Failure`] when the device fails, [`Error::Input`] for a scene beyond its limits.
     pub fn follow(&mut self, session: &Session, scale: f32) -> Result<Vec<Error>> {
-        let Some(scenery) = &session.scenery else {
-            self.source = None;
-            return Ok(Vec::new());
-        };
-        let [_, half] = session.easel.halves();
-        let pixels = |length: f32| ((length * scale).round() as u32).max(1);
-        let size = (pixels(half.width), pixels(half.height));
-        match self.source.as_mut().filter(|source| source.is_of(scenery)) {
-            Some(source) => {
-                if source.follow(scenery, size, scale)? {
-                    self.lanes.iter_mut().for_each(Lane::unbind);
-                }
-            }
-            None => {
-                self.source = Some(SceneSource::new(&self.gpu, scenery, size, scale)?);
-                self.lanes.iter_mut().for_each(Lane::unbind);
-                self.sources += 1;
-            }
-        }
+        self.follow_source(session, scale)?;
         let Some(source) = &mut self.source else { return Ok(Vec::new()) };
         let overlay = session.easel.overlay.node().map(|node| Look::open(&session.library, node.as_ref()));
         let overlay = overlay.transpose()?.unwrap_or_else(Look::plain);
@@ -148,12 +158,61 @@ impl Stage {
         let mut problems = Vec::new();
         for (lane, look) in self.lanes.iter_mut().zip([session.look(), &compared, &overlay]) {
             problems.extend(lane.follow(&session.library, look, asked).err());
-            if lane.wants_rest_positions()? && source.add_rest_positions() {
+            if let Source::Scene(source) = source
+                && lane.wants_rest_positions()?
+                && source.add_rest_positions()
+            {
                 lane.unbind();
             }
         }
         self.gpu.check()?;
         Ok(problems)
+    }
+
+    /// Takes over the scene or picture that is open, its frame and its size.
+    fn follow_source(&mut self, session: &Session, scale: f32) -> Result<()> {
+        let usual = session.library.request((1, 1)).map_err(|e| e.at("the library", "install it again"))?;
+        let gpu = &self.gpu;
+        let (is_new, source) = match (&session.scenery, &session.reel, self.source.take()) {
+            (Some(scenery), _, old) => {
+                let [_, half] = session.easel.halves();
+                let pixels = |length: f32| ((length * scale).round() as u32).max(1);
+                let size = (pixels(half.width), pixels(half.height));
+                match old {
+                    Some(Source::Scene(mut source)) if source.is_of(scenery) => {
+                        (source.follow(scenery, size, scale)?, Source::Scene(source))
+                    }
+                    _ => {
+                        let usual = IsophoteRequest { scale, ..usual };
+                        (true, Source::Scene(SceneSource::new(gpu, scenery, size, usual)?))
+                    }
+                }
+            }
+            (None, Some(reel), old) => {
+                let Some((frame, scale)) = reel.frame(scale < 1.0) else { return Ok(()) };
+                match old {
+                    Some(Source::Picture(source)) if source.shows(frame) => {
+                        self.source = Some(Source::Picture(source));
+                        return Ok(());
+                    }
+                    Some(Source::Picture(mut source)) => {
+                        self.sources += 1;
+                        match source.follow(gpu, frame, scale) {
+                            true => (false, Source::Picture(source)),
+                            false => (true, Source::Picture(PictureSource::new(gpu, frame, scale, usual)?)),
+                        }
+                    }
+                    _ => (true, Source::Picture(PictureSource::new(gpu, frame, scale, usual)?)),
+                }
+            }
+            (None, None, _) => return Ok(()),
+        };
+        self.source = Some(source);
+        if is_new {
+            self.lanes.iter_mut().for_each(Lane::unbind);
+            self.sources += 1;
+        }
+        Ok(())
     }
 
     /// Whether a look is being built.
@@ -173,11 +232,15 @@ impl Stage {
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let made = self.to_make(session);
         let is_new = made.is_some() && (always || made != self.made);
-        if is_new {
-            self.encode_picture(&mut encoder, session)?;
+        let was_begun = self.is_begun;
+        if is_new || self.is_begun {
+            let passes = if always || !self.is_software() { usize::MAX } else { self.passes };
+            self.is_begun = !self.encode_picture(&mut encoder, session, is_new, passes)?;
             self.made = made;
         }
+        let started = Instant::now();
         self.arrange(session);
+        self.encode_probe(&mut encoder, session);
         let size = (self.config.width, self.config.height);
         self.panel.prepare(&self.gpu.device, &self.gpu.queue, &mut encoder, size);
         let grey = wgpu::Color { r: SURROUND.into(), g: SURROUND.into(), b: SURROUND.into(), a: 1.0 };
@@ -193,16 +256,30 @@ impl Stage {
         self.panel.draw(&mut pass, size);
         drop(pass);
         self.gpu.queue.submit([encoder.finish()]);
+        self.probe.ask();
         window.pre_present_notify();
         self.gpu.queue.present(frame);
         self.panel.free();
         // The time of a frame is only known once it is done; a viewer that runs ahead of its device
         // would also answer the mouse late.
         self.gpu.wait()?;
+        self.probed = self.probe.read();
         if renew {
             self.surface.configure(&self.gpu.device, &self.config);
         }
-        Ok(if is_new { Drawn::Picture } else { Drawn::Controls })
+        let took = started.elapsed().as_secs_f32();
+        Ok(match (self.is_begun, is_new || was_begun) {
+            (true, _) => {
+                self.passes = match took {
+                    took if took < GOAL[0] => self.passes.saturating_mul(2),
+                    took if took > GOAL[1] => (self.passes / 2).max(1),
+                    _ => self.passes,
+                };
+                Drawn::Begun
+            }
+            (false, true) => Drawn::Picture,
+            (false, false) => Drawn::Controls,
+        })
     }
 
     /// The texture to draw on, and whether the surface must be configured anew afterwards.
@@ -221,31 +298,40 @@ impl Stage {
 
     /// What the picture would be made of now.
     fn to_make(&self, session: &Session) -> Option<Made> {
-        let (source, scenery) = (self.source.as_ref()?, session.scenery.as_ref()?);
+        let source = self.source.as_ref()?;
+        let scene = session.scenery.as_ref();
         Some(Made {
             shown: session.shown(),
             overlay: session.easel.overlay,
             asked: source.asked(),
             revisions: self.lanes.each_ref().map(Lane::revision),
             source: self.sources,
-            view: scenery.view(),
-            light: *scenery.light(),
-            time: scenery.time().0,
+            scene: scene.map(|scenery| (scenery.view(), *scenery.light(), scenery.time().0)),
         })
     }
 
-    /// Records the picture and the looks that are shown.
-    fn encode_picture(&mut self, encoder: &mut wgpu::CommandEncoder, session: &Session) -> Result<()> {
-        let (Some(source), Some(scenery)) = (&mut self.source, &session.scenery) else { return Ok(()) };
-        source.encode(encoder, scenery);
+    /// Records the picture and the looks that are shown, or a part of it, and says whether all is recorded.
+    fn encode_picture(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        session: &Session,
+        begins: bool,
+        passes: usize,
+    ) -> Result<bool> {
+        let Some(source) = &mut self.source else { return Ok(true) };
+        if let (Source::Scene(source), Some(scenery), true) = (&mut *source, &session.scenery, begins) {
+            source.encode(encoder, scenery);
+        }
         let asked = source.asked();
         let shown = session.shown();
+        let part = Part { begins, passes, number: source.number() };
+        let mut is_whole = true;
         for (lane, which) in self.lanes.iter_mut().zip([Which::Look, Which::Compared, Which::Overlay]) {
             if shown.contains(&which) {
-                lane.encode(encoder, asked, 0, |stylizer| source.bind(stylizer))?;
+                is_whole &= lane.encode(encoder, asked, part, |stylizer| source.bind(stylizer))?;
             }
         }
-        Ok(())
+        Ok(is_whole)
     }
 
     /// Says what lies where on the canvas.
@@ -269,6 +355,17 @@ impl Stage {
         self.canvas.set(&self.gpu.device, &self.gpu.queue, &arrangement);
     }
 
+    /// Lets the pixels under the pointer be read.
+    fn encode_probe(&mut self, encoder: &mut wgpu::CommandEncoder, session: &Session) {
+        let (Some(source), Some(pointer)) = (&self.source, session.pointer) else { return };
+        let size = session.nominal_size();
+        let Some((x, y)) = session.easel.pixel(size, pointer) else { return };
+        let place = [(x as f32 + 0.5) / size.0 as f32, (y as f32 + 0.5) / size.1 as f32];
+        let (before, _) = source.original();
+        let after = self.lanes[0].output().map_or(before, |(view, ..)| view);
+        self.probe.encode(encoder, [before, after], place);
+    }
+
     /// Whether the device is gone, and with it the stage.
     pub fn is_lost(&self) -> bool {
         self.gpu.is_lost()
@@ -287,7 +384,7 @@ impl Stage {
 
 /// One of the pictures that can be shown; the original where there is nothing else yet.
 fn picture<'s>(
-    source: &'s SceneSource,
+    source: &'s Source,
     lanes: &'s [Lane; 3],
     overlay: Overlay,
     which: Which,
@@ -300,7 +397,7 @@ fn picture<'s>(
         _ => None,
     };
     let guide = guide.filter(|_| which == Which::Overlay);
-    if let Some((numbers, view)) = guide.and_then(|numbers| Some((numbers, source.picture(numbers)?))) {
+    if let Some((numbers, view)) = guide.and_then(|numbers| Some((numbers, source.guide(numbers)?))) {
         return (view, numbers);
     }
     let lane = match which {
@@ -311,9 +408,7 @@ fn picture<'s>(
     };
     match lane {
         Some((view, Kind::Scalar, _)) => (view, Numbers::Grey),
-        Some((view, _, ISOPHOTE_SPACE_LINEAR)) => (view, Numbers::Linear),
-        Some((view, _, ISOPHOTE_SPACE_ACESCG)) => (view, Numbers::AcesCg),
-        Some((view, ..)) => (view, Numbers::Srgb),
+        Some((view, _, space)) => (view, numbers(space)),
         None => source.original(),
     }
 }

@@ -6,7 +6,7 @@ use crate::view::easel::Compare;
 use crate::view::session::{Session, Wish};
 
 /// Keys and what they do, for the help of the program and of the window.
-pub const KEYS: [(&str, &str); 22] = [
+pub const KEYS: [(&str, &str); 23] = [
     ("drag", "turns the scene; moves a picture"),
     ("Shift+drag", "pans, as other buttons do"),
     ("wheel", "zooms"),
@@ -20,6 +20,7 @@ pub const KEYS: [(&str, &str); 22] = [
     ("z", "shows pixels as large as the screen's, or all of the picture"),
     ("0", "shows all of the picture"),
     ("Space", "plays and pauses"),
+    ("Left, Right", "show the frame before and the next"),
     ("f", "frames the scene"),
     ("c", "looks through the file's camera"),
     ("p", "hides and shows the panel"),
@@ -39,6 +40,11 @@ pub fn press(session: &mut Session, key: &Key) {
         Key::Named(NamedKey::Escape) | Key::Character("q") => session.wishes.push(Wish::Quit),
         Key::Named(NamedKey::Space) => session.toggle_playing(),
         Key::Named(NamedKey::Tab) => session.choose_next(),
+        Key::Named(key @ (NamedKey::ArrowLeft | NamedKey::ArrowRight)) => {
+            if let Some(reel) = &mut session.reel {
+                reel.step(if key == NamedKey::ArrowLeft { -1 } else { 1 });
+            }
+        }
         Key::Named(NamedKey::F1) | Key::Character("?") => session.shows_help = !session.shows_help,
         Key::Character("f") => session.frame_all(),
         Key::Character("c") => {

@@ -3,7 +3,7 @@
 use egui::{Button, DragValue, Label, RichText, Slider, Ui};
 
 use super::theme;
-use crate::view::session::Session;
+use crate::view::session::{Session, Wish};
 
 /// Shows the bar.
 pub fn show(ui: &mut Ui, session: &mut Session) {
@@ -11,6 +11,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         ui.set_min_height(22.0);
         if session.has_picture() {
             timeline(ui, session);
+            frames(ui, session);
             probe(ui, session);
         } else {
             ui.label(RichText::new(&session.record.adapter).small().color(theme::FAINT));
@@ -42,6 +43,43 @@ fn timeline(ui: &mut Ui, session: &mut Session) {
         scenery.seek(now);
     }
     ui.label(RichText::new(format!("{time:.2} of {length:.2} s")).monospace().color(theme::FAINT));
+    ui.add_space(10.0);
+}
+
+/// Time of sequences and videos, by their frames.
+fn frames(ui: &mut Ui, session: &mut Session) {
+    let Some(reel) = &mut session.reel else { return };
+    let Some(frames) = reel.frames() else {
+        if let Some(pattern) = reel.document.sequence() {
+            let name = pattern.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            if ui.button(format!("Open all of {name}")).clicked() {
+                session.wishes.push(Wish::Open(pattern));
+            }
+        }
+        return;
+    };
+    let text = if reel.playing { "⏸" } else { "▶" };
+    if ui.add(Button::new(text)).on_hover_text("Play and pause (Space)").clicked() {
+        reel.toggle_playing();
+    }
+    for (text, hint, by) in [("⏴", "The frame before (←)", -1), ("⏵", "The next frame (→)", 1)] {
+        if ui.add(Button::new(text)).on_hover_text(hint).clicked() {
+            reel.step(by);
+        }
+    }
+    let mut number = reel.number();
+    ui.spacing_mut().slider_width = 220.0;
+    let rail = Slider::new(&mut number, frames.first()..=frames.last()).show_value(false);
+    let rail = ui.add(rail).on_hover_text("Frame");
+    rail.widget_info(|| egui::WidgetInfo::slider(true, number as f64, "Frame"));
+    if rail.changed() {
+        reel.seek(number);
+    }
+    let last = frames.last();
+    ui.label(RichText::new(format!("{number} of {last}")).monospace().color(theme::FAINT));
+    let label = ui.label(RichText::new("at").color(theme::FAINT));
+    let rate = DragValue::new(&mut reel.rate).range(1.0..=240.0).speed(0.2).max_decimals(2).suffix(" fps");
+    ui.add(rate).labelled_by(label.id).on_hover_text("Frames per second");
     ui.add_space(10.0);
 }
 

@@ -35,25 +35,13 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
 fn file_menu(ui: &mut Ui, session: &mut Session) {
     ui.menu_button("File", |ui| {
         ui.set_min_width(240.0);
-        let mut item = |ui: &mut Ui, text: &str, keys: &str, wish: Wish, enabled: bool| {
-            if ui.add_enabled(enabled, Button::new(text).shortcut_text(keys)).clicked() {
-                session.wishes.push(wish);
-                ui.close();
-            }
-        };
-        item(ui, "Open…", "Ctrl+O", Wish::ChooseFile, true);
-        item(ui, "Open the demo scene", "", Wish::OpenDemo, true);
+        item(ui, session, "Open…", "Ctrl+O", Wish::ChooseFile, true);
+        item(ui, session, "Open the demo scene", "", Wish::OpenDemo, true);
         ui.separator();
-        item(ui, "Open a look…", "", Wish::ChooseLook, true);
+        item(ui, session, "Open a look…", "", Wish::ChooseLook, true);
         let has_look = !session.look().is_plain();
-        let mut item = |ui: &mut Ui, text: &str, keys: &str, wish: Wish, enabled: bool| {
-            if ui.add_enabled(enabled, Button::new(text).shortcut_text(keys)).clicked() {
-                session.wishes.push(wish);
-                ui.close();
-            }
-        };
-        item(ui, "Save the look", "Ctrl+S", Wish::SaveLook(false), has_look);
-        item(ui, "Save the look as…", "Ctrl+Shift+S", Wish::SaveLook(true), has_look);
+        item(ui, session, "Save the look", "Ctrl+S", Wish::SaveLook(false), has_look);
+        item(ui, session, "Save the look as…", "Ctrl+Shift+S", Wish::SaveLook(true), has_look);
         ui.separator();
         let recent = session.settings.recent.clone();
         if !recent.is_empty() {
@@ -73,6 +61,13 @@ fn file_menu(ui: &mut Ui, session: &mut Session) {
             session.wishes.push(Wish::Quit);
         }
     });
+}
+
+fn item(ui: &mut Ui, session: &mut Session, text: &str, keys: &str, wish: Wish, enabled: bool) {
+    if ui.add_enabled(enabled, Button::new(text).shortcut_text(keys)).clicked() {
+        session.wishes.push(wish);
+        ui.close();
+    }
 }
 
 /// How pictures are compared, and with what.
@@ -125,6 +120,9 @@ fn overlays(ui: &mut Ui, session: &mut Session) {
         .width(70.0)
         .show_ui(ui, |ui| {
             for (overlay, name) in Overlay::ALL {
+                if !session.has_overlay(overlay) {
+                    continue;
+                }
                 ui.selectable_value(&mut session.easel.overlay, overlay, name);
             }
         })
