@@ -273,39 +273,59 @@ fn any_frame_of_a_video_is_the_same_as_in_order() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
     let source = "-f lavfi -i testsrc2=s=64x48:r=30000/1001:d=4";
+    let h264 = "-c:v libx264 -g 30 -bf 3 -pix_fmt yuv420p";
     for (name, codec) in [
-        ("a.mp4", "-c:v libx264 -g 30 -bf 3 -pix_fmt yuv420p"),
+        ("a.mp4", h264),
         ("a.mkv", "-c:v libx264 -g 50 -bf 3 -pix_fmt yuv420p"),
         ("a.webm", "-c:v libvpx-vp9 -g 40 -pix_fmt yuv420p"),
         ("a.mov", "-c:v prores_ks"),
         ("a.avi", "-c:v mpeg4 -bf 2"),
-        ("a.ts", "-c:v libx264 -g 30 -bf 3 -pix_fmt yuv420p"),
+        ("a.ts", h264),
         ("a.y4m", "-pix_fmt yuv420p"),
-        ("late.mkv", "-c:v libx264 -g 30 -bf 3 -pix_fmt yuv420p -output_ts_offset 3.3"),
-        ("cut.mp4", "-ss 0.71 -c:v libx264 -g 30 -bf 3 -pix_fmt yuv420p"),
+        ("late.mkv", &format!("{h264} -output_ts_offset 3.3")),
+        // Frames of unequal length.
+        ("uneven.mp4", &format!("-vf select=gt(mod(n\\,4)\\,0) -fps_mode vfr {h264}")),
+        ("few.mp4", &format!("-vf select=not(eq(n\\,50)) -fps_mode vfr {h264}")),
     ] {
         ffmpeg(folder.path(), &format!("{source} {codec} {name}"));
-        let open = || Document::open(&at(name), &Options::default()).unwrap_or_else(|e| panic!("{e}"));
-        let ordered = open();
-        ordered.play(1);
-        let frames = ordered.frames().expect("frames");
-        let last = frames.last();
-        assert!(
-            frames.first() == 1 && last >= 97 && (frames.rate - 29.97).abs() < 0.01,
-            "{name}: {frames:?}"
-        );
-        let all: Vec<Arc<Frame>> = (1..=last).map_while(|n| ordered.wait(n).ok()).collect();
-        assert_eq!(ordered.frames().expect("frames").last(), all.len() as i64, "{name}");
-        let document = open();
-        for number in [last, 1, 61, 60, 59, 30, 31, 32, 90, 2, 89].map(|n| n.min(all.len() as i64)) {
-            let frame = document.wait(number).unwrap_or_else(|e| panic!("{name}: {e}"));
-            assert!(frame == all[number as usize - 1], "{name}: frame {number} is another");
-        }
-        document.play(-1);
-        for number in (20..60).rev() {
-            let frame = document.wait(number).expect("a frame");
-            assert!(frame == all[number as usize - 1], "{name}: frame {number} is another backward");
-        }
+        any_frame_is_the_same(&at(name));
+    }
+    // Of a copy, frames before the cut are decoded and not shown.
+    ffmpeg(folder.path(), "-ss 1.21 -i a.mp4 -c copy cut.mp4");
+    any_frame_is_the_same(&at("cut.mp4"));
+}
+
+/// Frames of a video in any order are those in order, which are those that `apply` reads.
+fn any_frame_is_the_same(path: &Path) {
+    let name = path.display();
+    let open = || Document::open(path, &Options::default()).unwrap_or_else(|e| panic!("{e}"));
+    let ordered = open();
+    ordered.play(1);
+    let mut all: Vec<Arc<Frame>> = Vec::new();
+    while let Ok(frame) = ordered.wait(all.len() as i64 + 1) {
+        all.push(frame);
+    }
+    let frames = ordered.frames().expect("frames");
+    assert_eq!((frames.first(), frames.last()), (1, all.len() as i64), "{name}");
+    assert!(all.len() > 70, "{name} has {} frames", all.len());
+    let document = open();
+    for number in [999, 1, 61, 60, 59, 30, 31, 32, 70, 2, 69].map(|n| n.min(all.len() as i64)) {
+        let frame = document.wait(number).unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert!(frame == all[number as usize - 1], "{name}: frame {number} is another");
+    }
+    document.play(-1);
+    for number in (20..60).rev() {
+        let frame = document.wait(number).expect("a frame");
+        assert!(frame == all[number as usize - 1], "{name}: frame {number} is another backward");
+    }
+    let raw = Command::new("ffmpeg")
+        .args(["-v", "error", "-i"])
+        .arg(path)
+        .args(["-fps_mode", "passthrough", "-f", "rawvideo", "-pix_fmt", "gray", "-"])
+        .output()
+        .expect("ffmpeg runs");
+    if !name.to_string().contains("uneven") {
+        assert_eq!(raw.stdout.len() / (64 * 48), all.len(), "{name} has as many frames");
     }
 }
 
@@ -341,6 +361,28 @@ fn what_cannot_be_opened_says_why() {
     assert!(scene.wait(1).unwrap_err().to_string().contains("is a scene"));
     let mut loading = Document::begin(at("whole.png"), Options::default());
     wait_until_some(|| loading.poll()).expect("a picture");
+}
+
+#[test]
+fn large_pictures_are_loaded_beside_the_window() {
+    let folder = folder();
+    let path = folder.path().join("8k.jpg");
+    let tile = picture(256, 256);
+    let large = image::RgbImage::from_fn(7680, 4320, |x, y| *tile.get_pixel(x % 256, y % 256));
+    large.save(&path).expect("the folder is writable");
+    let started = Instant::now();
+    let mut loading = Document::begin(path, Options::default());
+    assert!(loading.poll().is_none() && started.elapsed() < Duration::from_millis(50), "nobody waits for it");
+    let document = wait_until_some(|| loading.poll()).expect("a picture");
+    eprintln!("8K in {:.2} s", started.elapsed().as_secs_f64());
+    let frame = document.wait(1).expect("a picture");
+    assert_eq!((frame.width, frame.height, frame.bytes()), (7680, 4320, 7680 * 4320 * 16));
+    // A header that asks for all memory.
+    let huge = folder.path().join("huge.hdr");
+    fs::write(&huge, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 90000 +X 90000\n")
+        .expect("the folder is writable");
+    let text = Document::open(&huge, &Options::default()).unwrap_err().to_string();
+    assert!(text.contains("huge.hdr"), "{text}");
 }
 
 fn wait_until_some<T>(mut poll: impl FnMut() -> Option<T>) -> T {

@@ -166,21 +166,53 @@ fn what_is_cancelled_leaves_nothing() {
         job.preset = Some(look.into());
         Export::start(job).unwrap_or_else(|e| panic!("{e}"))
     };
+    let is_left = |names: &[&str]| {
+        let started = Instant::now();
+        while listing(folder.path()) != names {
+            assert!(started.elapsed() < PATIENCE, "{:?} is left", listing(folder.path()));
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    };
     let mut export = start("out.png");
     let progress = wait_until(&export, |progress| progress.done > 0.0);
     assert!(progress.done < 1.0 && progress.total == 1.0, "a picture tells its share: {progress:?}");
+    let asked = Instant::now();
     export.cancel();
-    assert_eq!(export.poll().state, State::Cancelled);
+    assert!(asked.elapsed() < Duration::from_millis(50), "nobody waits for it");
+    assert_eq!(wait_until(&export, |progress| progress.state != State::Running).state, State::Cancelled);
     assert_eq!(listing(folder.path()), ["in.png"]);
-    drop(start("dropped.png"));
-    assert_eq!(listing(folder.path()), ["in.png"]);
+    let export = start("dropped.png");
+    wait_until(&export, |progress| progress.done > 0.0);
+    drop(export);
+    drop(start("at-once.png"));
+    is_left(&["in.png"]);
     // What was there before stays.
     fs::write(at("out.png"), "before").expect("the folder is writable");
-    let export = start("out.png");
+    let mut export = start("out.png");
     wait_until(&export, |progress| progress.total > 0.0);
-    drop(export);
+    export.cancel();
+    wait_until(&export, |progress| progress.state == State::Cancelled);
     assert_eq!(fs::read(at("out.png")).expect("a file"), b"before");
-    assert_eq!(listing(folder.path()), ["in.png", "out.png"]);
+    is_left(&["in.png", "out.png"]);
+}
+
+#[test]
+fn videos_that_are_cancelled_leave_no_process_and_no_file() {
+    if !support::has_ffmpeg() {
+        return;
+    }
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let mut turn = job(Kind::Scene, &cube(folder.path()), &at("turn.mp4"));
+    (turn.turntable, turn.frames) = (true, Some("500".into()));
+    turn.arguments = ["--size", "320x240"].map(Into::into).into();
+    let before = listing(folder.path());
+    let mut export = Export::start(turn).unwrap_or_else(|e| panic!("{e}"));
+    let progress = wait_until(&export, |progress| progress.done >= 2.0);
+    assert_eq!(progress.total, 500.0);
+    export.cancel();
+    wait_until(&export, |progress| progress.state == State::Cancelled);
+    assert_eq!(listing(folder.path()), before);
 }
 
 #[test]

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::thread::{self, Builder, JoinHandle};
+use std::thread::{self, Builder};
 use std::time::Duration;
 
 use serde_json::Value;
@@ -25,6 +25,8 @@ use crate::video::{self, Film};
 
 /// Time between two looks at whether a process has ended that says no more.
 const TICK: Duration = Duration::from_millis(5);
+/// Time that a process has to end and to remove what it has begun.
+const GRACE: Duration = Duration::from_secs(2);
 /// Frames of a sequence on their way into a video.
 const FRAMES: &str = "frame.######.png";
 
@@ -139,7 +141,6 @@ pub enum State {
 #[derive(Debug)]
 pub struct Export {
     shared: Arc<Shared>,
-    thread: Option<JoinHandle<()>>,
 }
 
 #[derive(Debug, Default)]
@@ -175,11 +176,11 @@ impl Export {
                 Err(problem) => State::Failed(problem),
             };
         };
-        let thread = Builder::new()
+        Builder::new()
             .name("export".into())
             .spawn(work)
             .map_err(|e| Error::failure(format!("a thread cannot be started: {e}"), "try again"))?;
-        Ok(Self { shared, thread: Some(thread) })
+        Ok(Self { shared })
     }
 
     /// How far it is.
@@ -187,18 +188,41 @@ impl Export {
         self.shared.progress().clone()
     }
 
-    /// Ends it at once, and removes what is not whole.
+    /// Ends it, and removes what is not whole; [`Export::poll`] tells when that is done.
     pub fn cancel(&mut self) {
-        self.shared.is_cancelled.store(true, Ordering::SeqCst);
-        if let Some(child) = self.shared.child().as_mut() {
-            // One that has ended needs no end.
-            let _ = child.kill();
+        if self.shared.is_cancelled.swap(true, Ordering::SeqCst) {
+            return;
         }
-        if let Some(thread) = self.thread.take() {
-            // It tells by the state what became of it.
-            let _ = thread.join();
+        if !self.shared.child().as_mut().is_some_and(ask_to_end) {
+            return;
         }
+        let shared = Arc::clone(&self.shared);
+        let end = move || {
+            thread::sleep(GRACE);
+            if let Some(child) = shared.child().as_mut() {
+                // One that has ended needs no end.
+                let _ = child.kill();
+            }
+        };
+        // Without a thread it has all the time that it needs.
+        let _ = Builder::new().name("end of export".into()).spawn(end);
     }
+}
+
+/// Asks a process to end, and says whether it has not ended yet.
+#[cfg(unix)]
+fn ask_to_end(child: &mut Child) -> bool {
+    use rustix::process::{Pid, Signal, kill_process};
+    let is_running = matches!(child.try_wait(), Ok(None));
+    let id = i32::try_from(child.id()).ok().and_then(Pid::from_raw);
+    // As long as nobody has waited for it, no other process has its number.
+    is_running && id.is_some_and(|id| kill_process(id, Signal::TERM).is_ok())
+}
+
+/// Ends a process: there is no way to ask.
+#[cfg(not(unix))]
+fn ask_to_end(child: &mut Child) -> bool {
+    child.kill().is_ok()
 }
 
 impl Drop for Export {
@@ -252,11 +276,12 @@ impl Shared {
             }
         }
         let status = loop {
-            if let Some(child) = self.child().as_mut()
-                && let Some(status) = child.try_wait().map_err(failed)?
-            {
+            let mut child = self.child();
+            if let Some(status) = child.as_mut().map_or(Ok(None), Child::try_wait).map_err(failed)? {
+                *child = None;
                 break status;
             }
+            drop(child);
             thread::sleep(TICK);
         };
         if status.success() {

@@ -21,8 +21,8 @@ use self::player::Player;
 use self::source::{Reading, Source};
 use self::store::Store;
 use crate::apply::exr::{Guide, Offers, Selection};
-use crate::apply::read;
 use crate::apply::space::Space;
+use crate::apply::{memory, read};
 use crate::error::{Error, Result};
 use crate::frames::{self, Pattern};
 use crate::video::Clip;
@@ -48,7 +48,9 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { selection: Selection::default(), space: None, as_sequence: false, cache: 2 << 30 }
+        // The window's own pictures and the device need memory as well.
+        let cache = memory::usual().0 / 2;
+        Self { selection: Selection::default(), space: None, as_sequence: false, cache }
     }
 }
 
