@@ -10,6 +10,7 @@ pub mod frames;
 pub mod input;
 pub mod limits;
 pub mod loader;
+pub mod looks;
 pub mod output;
 pub mod pixels;
 pub mod render;

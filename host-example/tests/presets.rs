@@ -170,3 +170,22 @@ fn keyframes_beyond_the_frames_are_warned_of() {
         }
     }
 }
+
+#[test]
+fn a_title_is_written_kept_and_shown() {
+    let folder = folder();
+    let title = ["--name", "Dusk", "--about", "Soft violet lines.", "--tag", "soft", "--tag", "evening"];
+    preset(folder.path(), &[&["save", "cartoon", "a.json", "--set", "posterize=3"], &title[..]].concat());
+    let shown = preset(folder.path(), &["show", "a.json"]);
+    assert_eq!(shown, "Dusk\nSoft violet lines.\ntags: soft, evening\ncartoon\n  posterize = 3\n");
+    // What is not said anew is kept.
+    preset(folder.path(), &["save", "a.json", "b.json", "--name", "Dawn", "--set", "posterize=5"]);
+    let shown = preset(folder.path(), &["show", "b.json"]);
+    assert_eq!(shown, "Dawn\nSoft violet lines.\ntags: soft, evening\ncartoon\n  posterize = 5\n");
+    for wrong in [["--name", ""], ["--about", "two\nlines"], ["--tag", " "]] {
+        let mut command = isophote();
+        command.current_dir(folder.path()).args(["preset", "save", "ink", "c.json"]).args(wrong);
+        fails(&mut command, 2, &[wrong[0], "on one line"]);
+    }
+    assert_eq!(listing(folder.path()), ["a.json", "b.json"]);
+}

@@ -143,7 +143,19 @@ fn a_window_shows_every_style_resizes_and_closes() {
 fn the_help_names_the_keys() {
     let output = Command::new(env!("CARGO_BIN_EXE_isophote")).args(["view", "--help"]).output().unwrap();
     let help = String::from_utf8(output.stdout).unwrap();
-    for key in ["drag", "Shift", "wheel", "1, 2, ...", "Tab", "Space", "  f  ", "  c  ", "  w  ", "hold", "q, Escape"] {
+    for key in [
+        "drag",
+        "Shift",
+        "wheel",
+        "1, 2, ...",
+        "Tab",
+        "Space",
+        "  f  ",
+        "  c  ",
+        "  w  ",
+        "hold",
+        "q, Escape",
+    ] {
         assert!(help.contains(key), "'{key}' is not in the help:\n{help}");
     }
 }

@@ -105,9 +105,9 @@ fn controls_can_be_used_by_programs_that_read_windows_aloud() {
     harness.state_mut().choose(index);
     harness.run_ok();
     let knob = harness.state().knobs.iter().find(|knob| knob.param.label == "Posterize").unwrap().clone();
-    let slider = harness.query_all_by_label("Posterize").find(|node| {
-        node.accesskit_node().role() == egui::accesskit::Role::Slider
-    });
+    let slider = harness
+        .query_all_by_label("Posterize")
+        .find(|node| node.accesskit_node().role() == egui::accesskit::Role::Slider);
     slider.unwrap().click();
     harness.run_ok();
     assert!(harness.state().look().differs(&knob), "a click in the middle of a slider sets it");

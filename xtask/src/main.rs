@@ -7,6 +7,7 @@ mod error;
 mod experiments;
 mod gallery;
 mod header;
+mod looks;
 mod readme;
 mod scene;
 mod setup;
@@ -36,6 +37,8 @@ enum Chore {
     Experiments(experiments::Options),
     /// Every node on pictures, as a page to look at
     Gallery(gallery::Options),
+    /// Every look that ships with the host, as one sheet
+    Looks(looks::Options),
     /// Runs the host's benchmark, built for speed
     Bench(bench::Options),
     /// Makes the OpenFX bundle, and installs it
@@ -56,6 +59,7 @@ fn main() -> ExitCode {
         Chore::Bless => test::bless(),
         Chore::Experiments(options) => experiments::run(&options),
         Chore::Gallery(options) => gallery::run(&options),
+        Chore::Looks(options) => looks::run(&options),
         Chore::Bundle(options) => bundle::run(&options),
         Chore::Bench(options) => bench::run(&options),
         Chore::Readme(options) => readme::run(&options),

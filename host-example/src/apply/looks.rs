@@ -9,7 +9,7 @@
 //! ```
 //!
 //! Each look is made from the picture itself, and laid over the results of those before it where its mask is; one without a
-//! mask covers everything. `style` and `preset` are the id of a node, a graph file or a preset; `params` are those of a preset,
+//! mask covers everything. `style` and `preset` are the id of a node, a graph file, a preset or a look; `params` are those of a preset,
 //! keyframes included, and come before what a preset says. `mask` is what `--mask` takes. Files are found from the folder of
 //! the looks.
 
@@ -21,8 +21,10 @@ use super::exr::MaskSource;
 use super::masks::MaskChoice;
 use crate::error::{Error, Result};
 use crate::loader::Library;
+use crate::looks;
 use crate::stylize::preset::{self, Preset};
-use crate::stylize::style::{self, Style};
+use crate::stylize::source;
+use crate::stylize::style::Style;
 
 /// Keys of a look.
 const KEYS: [&str; 5] = ["style", "preset", "params", "mask", "invert"];
@@ -52,7 +54,7 @@ pub fn read(path: &Path) -> Result<Vec<Entry>> {
         )
     };
     let json: Value =
-        serde_json::from_str(&style::read(path)?).map_err(|e| wrong(format!("is no JSON: {e}")))?;
+        serde_json::from_str(&source::read(path)?).map_err(|e| wrong(format!("is no JSON: {e}")))?;
     let Value::Array(list) = json else { return Err(wrong("is no list of looks".into())) };
     if !(1..=MOST).contains(&list.len()) {
         return Err(wrong(format!("has {} looks, and there may be 1 to {MOST}", list.len())));
@@ -114,12 +116,13 @@ impl Entry {
 fn preset_of(place: &Path, name: &str, params: Option<Value>) -> Result<Preset> {
     let own = json!({ "style": name, "parameters": params.unwrap_or(Value::Object(Map::new())) });
     let own = Preset::parse(place, &own.to_string())?;
-    let file = place.with_file_name(name);
+    let is_look = looks::id(Path::new(name)).is_some();
+    let file = if is_look { PathBuf::from(name) } else { place.with_file_name(name) };
     let is_file = Path::new(name).extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
-    if !is_file {
+    if !(is_look || is_file) {
         return Ok(own);
     }
-    let text = style::read(&file)?;
+    let text = source::read(&file)?;
     if preset::is_graph(&text) {
         return Ok(own);
     }

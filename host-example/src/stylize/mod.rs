@@ -9,7 +9,9 @@ pub mod kernels;
 pub mod lengths;
 pub mod plan_runner;
 pub mod preset;
+pub mod source;
 pub mod style;
+pub mod title;
 
 use std::sync::Arc;
 

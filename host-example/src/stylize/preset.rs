@@ -2,6 +2,9 @@
 //!
 //! ```json
 //! {
+//!   "name": "Dusk",
+//!   "about": "Indigo lines that grow softer",
+//!   "tags": ["comic", "soft"],
 //!   "style": "cartoon",
 //!   "parameters": {
 //!     "posterize": 6,
@@ -12,6 +15,7 @@
 //! }
 //! ```
 //!
+//! Name, description and tags are for people and may be left out, like all but the style.
 //! `style` is the id of a node, or the path of a graph file relative to the preset; `node.id` then names the
 //! parameter of one node. `"lengths": "pixels"` makes lengths pixels of the picture instead of those of one 1080
 //! lines high. Keyframes are values by frame: before the first and after the last their values
@@ -24,17 +28,20 @@ use std::path::Path;
 use serde_json::{Map, Value};
 
 use super::lengths::Lengths;
+use super::title::{self, Title};
 use crate::error::{Error, Result};
 use crate::loader::catalogue::{Param, ParamKind};
 
 /// Keys of the file.
-const KEYS: [&str; 3] = ["style", "parameters", "lengths"];
+const KEYS: [&str; 3] = ["style", "lengths", "parameters"];
 /// The key beside the frames of an animated parameter.
 const BETWEEN: &str = "between";
 
 /// A file, read and not yet compared with what the library knows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preset {
+    /// What it says about itself.
+    pub title: Title,
     /// The id of a node or the path of a graph file.
     pub style: String,
     /// What lengths mean, where the file says so.
@@ -92,13 +99,15 @@ impl Preset {
             return Err(Error::file(path, "is no preset: an object is wanted", fix));
         };
         let mut faults = Vec::new();
-        for key in file.keys().filter(|key| !KEYS.contains(&key.as_str())) {
-            let known = nearest(key, KEYS.into_iter()).map_or_else(
-                || format!("the keys are {}", KEYS.join(" and ")),
+        let keys = [title::KEYS, KEYS].concat();
+        for key in file.keys().filter(|key| !keys.contains(&key.as_str())) {
+            let known = nearest(key, keys.iter().copied()).map_or_else(
+                || format!("the keys are {}", keys.join(", ")),
                 |near| format!("did you mean '{near}'?"),
             );
             faults.push(Error::file(path, format!("has an unknown key '{}'", key.escape_default()), known));
         }
+        let title = Title::take(path, &mut file, &mut faults);
         let style = match file.remove("style") {
             Some(Value::String(style)) => style,
             other => {
@@ -135,7 +144,7 @@ impl Preset {
             Some(_) => faults.push(Error::file(path, "its parameters are no object", fix)),
             None => {}
         }
-        Ok((Self { style, lengths, params }, faults))
+        Ok((Self { title, style, lengths, params }, faults))
     }
 
     /// The style as it is to be opened by a program whose folder is another than that of the preset at `path`:
@@ -150,6 +159,11 @@ impl Preset {
 
     /// The preset as the text of a file.
     pub fn to_json(&self) -> String {
+        format!("{:#}\n", Value::Object(self.object()))
+    }
+
+    /// The preset as what is in a file.
+    pub fn object(&self) -> Map<String, Value> {
         let mut params = Map::new();
         for (name, track) in &self.params {
             let value = match track {
@@ -165,11 +179,15 @@ impl Preset {
             };
             params.insert(name.clone(), value);
         }
-        let mut file = serde_json::json!({ "style": self.style, "parameters": params });
-        if let Some(lengths) = self.lengths {
-            file["lengths"] = lengths.id().into();
+        let mut file = Map::new();
+        self.title.put(&mut file);
+        let [style, lengths, parameters] = KEYS;
+        file.insert(style.into(), self.style.as_str().into());
+        if let Some(kind) = self.lengths {
+            file.insert(lengths.into(), kind.id().into());
         }
-        format!("{file:#}\n")
+        file.insert(parameters.into(), params.into());
+        file
     }
 }
 

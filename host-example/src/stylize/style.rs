@@ -8,14 +8,12 @@ use serde_json::{Map, Value};
 
 use super::lengths::Lengths;
 use super::preset::{self, Animated, Preset, Track};
+use super::source;
 use crate::error::{Error, Result};
 use crate::loader::catalogue::{Kind, Node, Param, Port};
 use crate::loader::contract::IsophoteRequest;
 use crate::loader::{Answer, Graph, Library, Refusal};
-use crate::{frames, input, output};
-
-/// Most bytes of a graph file; real ones have some thousands.
-const MOST_BYTES: u64 = 16 << 20;
+use crate::{frames, looks, output};
 
 /// One `--set`: `id=value`, or `node.id=value` for one node of a graph.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -57,7 +55,7 @@ impl std::fmt::Display for Setting {
 /// A graph and what it yields.
 #[derive(Debug)]
 pub struct Style {
-    /// The id of a node or the path of a graph file.
+    /// The id of a node, the path of a file, or a look.
     pub name: String,
     /// The graph.
     pub graph: Graph,
@@ -72,7 +70,7 @@ pub struct Style {
 }
 
 impl Style {
-    /// Makes the graph of `name`, which is the id of a node or the path of a graph file or preset, and sets
+    /// Makes the graph of `name`, which is the id of a node, the path of a graph file or preset, or a look, and sets
     /// its parameters; animated ones have the value of their first keyframe.
     ///
     /// # Errors
@@ -401,13 +399,17 @@ fn open(library: &Library, style: &OsStr) -> Result<Opened> {
     let looks_like_file = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"))
         || path.components().count() > 1
         || path.exists();
-    if !looks_like_file {
-        return Err(refused.at(
-            path.display(),
-            "name a node that `isophote nodes` lists, or a graph file or preset (.json)",
-        ));
+    if !(looks_like_file || looks::id(path).is_some()) {
+        let fix = path.to_str().and_then(looks::meant).map_or_else(
+            || {
+                "name a node that `isophote nodes` lists, a look, or a graph file or preset (.json)"
+                    .to_owned()
+            },
+            |look| format!("did you mean '{look}'?"),
+        );
+        return Err(refused.at(path.display(), fix));
     }
-    let json = read(path)?;
+    let json = source::read(path)?;
     if preset::is_graph(&json) {
         let graph =
             library.graph_from_json(&json).map_err(|e| e.at(path.display(), "correct the graph file"))?;
@@ -421,23 +423,15 @@ fn open(library: &Library, style: &OsStr) -> Result<Opened> {
 /// The graph that the preset of the file `path` sets the parameters of.
 fn inside(library: &Library, path: &Path, preset: &Preset) -> Result<Opened> {
     let inner = preset.style_beside(path);
-    if Path::new(&inner).is_file() && !preset::is_graph(&read(Path::new(&inner))?) {
+    let named = Path::new(&inner);
+    if looks::id(named).is_some() || named.is_file() && !preset::is_graph(&source::read(named)?) {
         return Err(Error::file(
             path,
-            format!("its style '{}' is no graph", Path::new(&inner).display()),
+            format!("its style '{}' is no graph", named.display()),
             "name a node or a graph file",
         ));
     }
     open(library, &inner).map_err(|e| e.within(path))
-}
-
-/// The text of a graph file or a preset.
-///
-/// # Errors
-/// [`Error::Input`] when it cannot be read or is too large for either.
-pub fn read(path: &Path) -> Result<String> {
-    let fix = "name a graph file or a preset (.json), or a node";
-    input::text(path, MOST_BYTES).map_err(|e| Error::file(path, format!("cannot be read: {e}"), fix))
 }
 
 /// Feeds what a single node needs and no picture gives, such as a tensor, from the first node of the catalogue

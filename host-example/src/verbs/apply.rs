@@ -34,7 +34,7 @@ const ESTIMATE: &str = "estimate";
 /// Options of `apply`.
 #[derive(Args, Debug)]
 pub struct ApplyArgs {
-    /// The id of a node, or a graph file or preset (.json). Left out where --preset or --layered is given.
+    /// The id of a node, a look, or a graph file or preset (.json). Left out where --preset or --layered is given.
     pub style: PathBuf,
     /// The picture: PNG, JPEG, TIFF, WebP, HDR or EXR. A sequence: shot.####.exr, shot.@@@@.exr or shot.%04d.exr. A video
     /// that ffmpeg reads, such as .mp4, .mov, .mkv or .webm; or - for YUV4MPEG on standard input.

@@ -14,7 +14,7 @@ use super::apply::ApplyArgs;
 use crate::apply::exr::MaskSource;
 use crate::error::{Error, Result};
 use crate::frames::range_expression;
-use crate::{files, output};
+use crate::{files, looks, output};
 
 /// Longest name of a job.
 const LONGEST_NAME: usize = 128;
@@ -129,6 +129,10 @@ fn template(args: &OpenJdArgs) -> Result<Value> {
 /// The command without its frames, and with files by their full paths: workers start elsewhere.
 fn words(command: &[String], parsed: &ApplyArgs) -> Result<Vec<String>> {
     let full = |path: &Path| {
+        // A look is no file either.
+        if looks::id(path).is_some() {
+            return Ok(path.to_string_lossy().into_owned());
+        }
         std::path::absolute(path)
             .map(|p| p.to_string_lossy().into_owned())
             .map_err(|e| Error::file(path, format!("has no full path: {e}"), "write it in full"))

@@ -4,17 +4,21 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use serde_json::Value;
 
 use crate::error::{Error, Result};
 use crate::loader::Library;
 use crate::loader::catalogue::ParamKind;
+use crate::looks::{self, Look};
 use crate::stylize::preset::{self, Preset, Track};
-use crate::stylize::style::{self, Setting, Style};
+use crate::stylize::source;
+use crate::stylize::style::{Setting, Style};
+use crate::stylize::title::{self, Title};
 use crate::{files, output};
 
 const AFTER_HELP: &str = "A parameter in the file may have keyframes instead of a value, such as \
     \"sigma_d\": {\"1001\": 2, \"1050\": 6}; with \"between\": \"step\" among them each value holds until the \
-    next key.";
+    next key. \"name\", \"about\" and \"tags\" beside the style say what the preset is, to people.";
 
 /// Options of `preset`.
 #[derive(Args, Debug)]
@@ -28,25 +32,13 @@ pub struct PresetArgs {
 /// What can be done with presets.
 #[derive(Debug, Subcommand)]
 enum PresetCommand {
+    /// Lists the looks that ship with the program.
+    List(ListArgs),
     /// Writes a style with its parameters to a file.
-    Save {
-        /// The id of a node, a graph file or another preset.
-        style: PathBuf,
-        /// The file: .json.
-        file: PathBuf,
-        /// Sets a parameter; node.id=value for one node of a graph. May be repeated.
-        #[arg(long, value_name = "ID=VALUE")]
-        set: Vec<Setting>,
-        /// Also writes the parameters that are not set, so that later changes of defaults do not matter.
-        #[arg(long)]
-        all: bool,
-        /// Overwrites the file if it exists.
-        #[arg(long)]
-        force: bool,
-    },
+    Save(SaveArgs),
     /// Prints the parameters of a preset.
     Show {
-        /// The preset.
+        /// The preset or look.
         file: PathBuf,
         /// Prints the values at this frame instead of the keyframes.
         #[arg(long, value_name = "N", allow_negative_numbers = true)]
@@ -60,41 +52,132 @@ enum PresetCommand {
     },
 }
 
+/// Options of `preset list`.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "A look takes the place of a style or a preset anywhere: `isophote apply look:copperplate in.png out.png`."
+)]
+struct ListArgs {
+    /// Lists those with this tag. May be repeated: all of them are wanted.
+    #[arg(long, value_name = "TAG")]
+    tag: Vec<String>,
+    /// Prints JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Options of `preset save`.
+#[derive(Args, Debug)]
+struct SaveArgs {
+    /// The id of a node, a graph file, a look or another preset, whose name, description and tags are kept.
+    style: PathBuf,
+    /// The file: .json.
+    file: PathBuf,
+    /// Sets a parameter; node.id=value for one node of a graph. May be repeated.
+    #[arg(long, value_name = "ID=VALUE")]
+    set: Vec<Setting>,
+    /// Also writes the parameters that are not set, so that later changes of defaults do not matter.
+    #[arg(long)]
+    all: bool,
+    /// The name of the preset, for people.
+    #[arg(long, value_name = "TEXT", value_parser = line)]
+    name: Option<String>,
+    /// What it looks like, one line.
+    #[arg(long, value_name = "TEXT", value_parser = line)]
+    about: Option<String>,
+    /// A word by which it is found. May be repeated; takes the place of all tags of another preset.
+    #[arg(long, value_name = "TAG", value_parser = line)]
+    tag: Vec<String>,
+    /// Overwrites the file if it exists.
+    #[arg(long)]
+    force: bool,
+}
+
+/// A text for the title of a preset.
+fn line(text: &str) -> std::result::Result<String, String> {
+    title::is_line(text).then(|| text.to_owned()).ok_or_else(|| "write something on one line".to_owned())
+}
+
 /// Runs the verb.
 ///
 /// # Errors
 /// [`Error::Input`] for styles, parameters, values and files that are not as they should be,
 /// [`Error::Failure`] without a library.
 pub fn run(args: &PresetArgs) -> Result<()> {
-    let library = Library::open()?;
     match &args.command {
-        PresetCommand::Save { style, file, set, all, force } => {
-            if file.exists() && !force {
-                return Err(Error::file(file, "is there already", "name another file, or add --force"));
+        PresetCommand::List(args) => list(args),
+        PresetCommand::Save(args) => {
+            if args.file.exists() && !args.force {
+                return Err(Error::file(&args.file, "is there already", "name another file, or add --force"));
             }
-            save(&library, style, file, set, *all)
+            save(&Library::open()?, args)
         }
-        PresetCommand::Show { file, frame } => show(&library, file, *frame),
-        PresetCommand::Check { files } => check(&library, files),
+        PresetCommand::Show { file, frame } => show(&Library::open()?, file, *frame),
+        PresetCommand::Check { files } => check(&Library::open()?, files),
     }
 }
 
-fn save(library: &Library, base: &Path, file: &Path, settings: &[Setting], all: bool) -> Result<()> {
-    let style = Style::any(library, base, settings)?;
-    let mut preset = if library.find_node(&style.name).is_ok() {
-        Preset { style: style.name.clone(), lengths: None, params: Vec::new() }
-    } else {
-        let text = style::read(base)?;
-        if preset::is_graph(&text) {
-            Preset { style: from(file, base)?, lengths: None, params: Vec::new() }
-        } else {
-            let preset = Preset::parse(base, &text)?;
-            let inner = preset.style_beside(base);
-            let is_same = inner == *preset.style;
-            let style = if is_same { preset.style } else { from(file, Path::new(&inner))? };
-            Preset { style, ..preset }
+fn list(args: &ListArgs) -> Result<()> {
+    let mut looks = looks::all()?;
+    looks.retain(|look| args.tag.iter().all(|tag| look.preset.title.tags.contains(tag)));
+    if looks.is_empty() {
+        let mut tags: Vec<String> =
+            looks::all()?.into_iter().flat_map(|look| look.preset.title.tags).collect();
+        tags.sort();
+        tags.dedup();
+        let place = format!("--tag {}", args.tag.join(" --tag "));
+        return Err(Error::input(place, "no look has that", format!("choose from {}", tags.join(", "))));
+    }
+    if args.json {
+        let objects = looks.iter().map(|look| {
+            let mut object = look.preset.object();
+            object.insert("look".into(), look.style().into());
+            Value::Object(object)
+        });
+        return output::print(&format!("{:#}\n", objects.collect::<Value>()));
+    }
+    let width = |text: fn(&Look) -> usize| looks.iter().map(text).max().unwrap_or(0) + 2;
+    let ids = width(|look| look.style().len());
+    let names = width(|look| look.preset.title.name.as_deref().unwrap_or_default().len());
+    let mut text = format!("{} looks\n", looks.len());
+    let mut style = "";
+    for look in &looks {
+        let preset = &look.preset;
+        if style != preset.style {
+            style = &preset.style;
+            text += &format!("\n{style}\n");
         }
-    };
+        let [name, about] =
+            [&preset.title.name, &preset.title.about].map(|t| t.as_deref().unwrap_or_default());
+        text += &format!("  {:ids$}{name:names$}{about}\n", look.style());
+    }
+    output::print(&text)
+}
+
+/// What a file starts from.
+fn base(library: &Library, style: &Style, args: &SaveArgs) -> Result<Preset> {
+    let SaveArgs { style: base, file, .. } = args;
+    let plain = |style| Preset { title: Title::default(), style, lengths: None, params: Vec::new() };
+    if library.find_node(&style.name).is_ok() {
+        return Ok(plain(style.name.clone()));
+    }
+    let text = source::read(base)?;
+    if preset::is_graph(&text) {
+        return Ok(plain(from(file, base)?));
+    }
+    let preset = Preset::parse(base, &text)?;
+    let inner = preset.style_beside(base);
+    let is_same = inner == *preset.style;
+    let style = if is_same { preset.style } else { from(file, Path::new(&inner))? };
+    Ok(Preset { style, ..preset })
+}
+
+fn save(library: &Library, args: &SaveArgs) -> Result<()> {
+    let SaveArgs { file, set: settings, all, name, about, tag, .. } = args;
+    let style = Style::any(library, &args.style, settings)?;
+    let mut preset = base(library, &style, args)?;
+    let title = Title { name: name.clone(), about: about.clone(), tags: tag.clone() };
+    preset.title = title.or(preset.title);
     for setting in settings {
         let param = match &setting.node {
             Some(node) => format!("{node}.{}", setting.param),
@@ -103,7 +186,7 @@ fn save(library: &Library, base: &Path, file: &Path, settings: &[Setting], all: 
         preset.params.retain(|(name, _)| *name != param);
         preset.params.push((param, Track::Still(setting.value.clone())));
     }
-    if all {
+    if *all {
         if library.find_node(&preset.style).is_err() {
             let problem = "is for nodes; a graph file holds the values of its own parameters";
             return Err(Error::input("--all", problem, "leave --all out"));
@@ -141,7 +224,12 @@ fn from(preset: &Path, graph: &Path) -> Result<String> {
 
 fn show(library: &Library, file: &Path, frame: Option<i64>) -> Result<()> {
     let (style, preset) = open(library, file)?;
-    let mut text = format!("{}\n", preset.style);
+    let Title { name, about, tags } = &preset.title;
+    let mut text: String = name.iter().chain(about).map(|line| format!("{line}\n")).collect();
+    if !tags.is_empty() {
+        text += &format!("tags: {}\n", tags.join(", "));
+    }
+    text += &format!("{}\n", preset.style);
     for (name, track) in &preset.params {
         let value = match track {
             Track::Still(value) => value.clone(),
@@ -225,7 +313,7 @@ fn open(library: &Library, file: &Path) -> Result<(Style, Preset)> {
 
 /// The text of a preset.
 fn text(file: &Path) -> Result<String> {
-    let text = style::read(file)?;
+    let text = source::read(file)?;
     if preset::is_graph(&text) {
         return Err(Error::file(file, "is a graph and no preset", "name a preset"));
     }

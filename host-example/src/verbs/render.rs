@@ -67,7 +67,7 @@ pub struct RenderArgs {
     /// Exposes and tone-maps the colour of EXR files too, as PNG files and the window have it.
     #[arg(long)]
     tone_mapped: bool,
-    /// How frames are stylized: none, the id of a node, or a graph file or preset (.json).
+    /// How frames are stylized: none, the id of a node, a look, or a graph file or preset (.json).
     #[arg(long, default_value = "none")]
     style: PathBuf,
     /// Sets a parameter of the style; node.id=value for one node of a graph. May be repeated.

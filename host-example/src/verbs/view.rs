@@ -18,6 +18,9 @@ use crate::view::scenery::{Lighting, Scenery, Staging};
 use crate::view::session::Session;
 use crate::view::settings::Settings;
 
+/// The look of a window that was never open.
+const FIRST: &str = "cartoon";
+
 /// Options of `view`.
 #[derive(Args, Debug)]
 #[command(after_help = view::keys())]
@@ -29,7 +32,7 @@ pub struct ViewArgs {
     reading: ReadingArgs,
     #[command(flatten)]
     staging: StagingArgs,
-    /// A style for the keys 1, 2, ...: none, the id of a node, or a graph file or preset (.json). May be repeated
+    /// A style for the keys 1, 2, ...: none, the id of a node, a look, or a graph file or preset (.json). May be repeated
     /// [default: none and every node of the group styles].
     #[arg(long, value_name = "STYLE")]
     style: Vec<PathBuf>,
@@ -58,7 +61,8 @@ pub fn run(args: &ViewArgs) -> Result<()> {
     let library = Library::open()?;
     let looks = looks(&library, args)?;
     let (settings, problem) = Settings::read();
-    let last = settings.look.clone().filter(|_| args.style.is_empty());
+    let last = settings.look.clone().unwrap_or_else(|| FIRST.into());
+    let last = Some(last).filter(|_| args.style.is_empty());
     let mut session = Session::new(library, looks, settings)?;
     problem.iter().for_each(|problem| session.notes.complain(problem));
     session.prepare(&args.set, args.lengths.lengths);
@@ -84,6 +88,7 @@ fn open(session: &mut Session, path: &Path, args: &ViewArgs) -> Result<()> {
         lighting: Lighting {
             sun: args.staging.light(),
             background: args.staging.background()?,
+            surroundings: args.staging.surroundings(),
             ..Lighting::default()
         },
         ground: args.staging.ground(&scene),

@@ -73,7 +73,7 @@ impl App {
             let _ = waker.send_event(Event::Done);
         });
         Ok(Self {
-            desk: Desk::new(&session, &wake)?,
+            desk: Desk::new(&wake)?,
             pace: Pace::default(),
             session,
             size,
@@ -169,7 +169,7 @@ impl App {
             output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay);
         let shapes = context.tessellate(output.shapes, output.pixels_per_point);
         stage.panel.set(shapes, output.textures_delta, output.pixels_per_point);
-        if !context.egui_is_using_pointer() && !context.egui_wants_keyboard_input() {
+        if !context.egui_is_using_pointer() && !context.text_edit_focused() {
             session.let_go();
         }
         let copied = self.desk.grant(session);
@@ -183,6 +183,7 @@ impl App {
         let scale = self.pace.scale(session);
         let problems = stage.follow(session, scale)?;
         problems.iter().for_each(|problem| session.notes.complain(problem));
+        let was_busy = session.busy;
         session.busy = stage.is_busy().then_some("Preparing the look").or(self.desk.busy());
         let started = Instant::now();
         let always =
@@ -208,7 +209,7 @@ impl App {
             let soon = Instant::now() + Duration::from_millis(20);
             self.due = Some(self.due.map_or(soon, |due| due.min(soon)));
         }
-        if !problems.is_empty() || is_probed {
+        if !problems.is_empty() || is_probed || session.busy != was_busy {
             self.due = Some(Instant::now());
         }
         if drawn != Drawn::Skipped {
@@ -249,7 +250,7 @@ impl App {
 
     /// Whether something is being typed, which keys belong to then.
     fn is_typing(&self) -> bool {
-        self.input.as_ref().is_some_and(|input| input.egui_ctx().egui_wants_keyboard_input())
+        self.input.as_ref().is_some_and(|input| input.egui_ctx().text_edit_focused())
     }
 
     /// Lets the controls see an event first.
@@ -258,7 +259,7 @@ impl App {
         let tab = matches!(event, WindowEvent::KeyboardInput { event, .. }
             if event.logical_key == Key::Named(NamedKey::Tab));
         // Tab goes from style to style, unless something is being typed.
-        if tab && !input.egui_ctx().egui_wants_keyboard_input() {
+        if tab && !input.egui_ctx().text_edit_focused() {
             return;
         }
         if input.on_window_event(window, event).repaint && !matches!(event, WindowEvent::RedrawRequested) {
@@ -361,6 +362,7 @@ impl ApplicationHandler<Event> for App {
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
+        self.session.settings.look = Some(self.session.look().source.clone());
         if let Err(error) = self.session.settings.write() {
             self.session.notes.complain(&error);
         }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::reel::Reel;
 use super::session::Session;
+use crate::apply::space::srgb_encode;
 use crate::render::background::Background;
 use crate::stylize::lengths::Lengths;
 
@@ -19,9 +20,7 @@ pub fn line(session: &Session) -> String {
         }
         None => {
             words.extend(["render".to_owned(), input, "picture.png".to_owned()]);
-            let [_, area] = session.easel.halves();
-            words.push(format!("--size {}x{}", area.width as u32, area.height as u32));
-            words.extend(staging(session));
+            words.extend(staging(session).iter().map(|word| quoted(word)));
             if !look.is_plain() {
                 words.push(format!("--style {}", quoted_path(&look.source)));
             }
@@ -35,7 +34,7 @@ pub fn line(session: &Session) -> String {
 }
 
 /// A name for the result beside the input.
-fn output(reel: &Reel) -> PathBuf {
+pub fn output(reel: &Reel) -> PathBuf {
     let path = reel.path();
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     // The place of a sequence's numbers stays at the end.
@@ -49,32 +48,41 @@ fn output(reel: &Reel) -> PathBuf {
     path.with_file_name(format!("{name}.{}", if is_kept { &extension } else { "png" }))
 }
 
-/// Camera and light, where they are not as they are without being asked for.
-fn staging(session: &Session) -> Vec<String> {
-    let Some(scenery) = &session.scenery else { return Vec::new() };
-    let mut words = Vec::new();
+/// Options of `render` for size, camera and light, where they are not as they are without being asked for.
+pub fn staging(session: &Session) -> Vec<String> {
+    let [_, area] = session.easel.halves();
+    let mut words = vec!["--size".to_owned(), format!("{}x{}", area.width as u32, area.height as u32)];
+    let Some(scenery) = &session.scenery else { return words };
+    let mut add = |option: &str, value: String| words.extend([option.to_owned(), value]);
     match scenery.camera() {
         Some(node) => {
-            let name = scenery.cameras().into_iter().position(|(known, _)| known == node);
-            words.extend(name.filter(|index| *index > 0).map(|index| format!("--camera {index}")));
+            let index = scenery.cameras().into_iter().position(|(known, _)| known == node);
+            if let Some(index) = index.filter(|index| *index > 0) {
+                add("--camera", index.to_string());
+            }
         }
         None => {
-            let [_, area] = session.easel.halves();
             let [azimuth, elevation, distance] = scenery.framed(area.width / area.height);
-            words.push(format!("--azimuth {azimuth:.2} --elevation {elevation:.2} --distance {distance:.4}"));
+            add("--azimuth", format!("{azimuth:.2}"));
+            add("--elevation", format!("{elevation:.2}"));
+            add("--distance", format!("{distance:.4}"));
         }
     }
     if let Some(sun) = scenery.lighting.sun {
-        words.push(format!("--light {:.1},{:.1}", sun.azimuth.to_degrees(), sun.elevation.to_degrees()));
+        add("--light", format!("{:.1},{:.1}", sun.azimuth.to_degrees(), sun.elevation.to_degrees()));
     }
     match &scenery.lighting.background {
-        Background::Transparent => words.push("--background transparent".into()),
+        Background::Transparent => add("--background", "transparent".into()),
         Background::Color(color) => {
-            let [r, g, b] =
-                color.to_array().map(|v| (crate::apply::space::srgb_encode(v) * 255.0).round() as u8);
-            words.push(format!("--background '#{r:02x}{g:02x}{b:02x}'"));
+            let [r, g, b] = color.to_array().map(|v| (srgb_encode(v) * 255.0).round() as u8);
+            add("--background", format!("#{r:02x}{g:02x}{b:02x}"));
         }
-        Background::Sky | Background::Environment(_) => {}
+        Background::Environment(_) => {
+            if let Some(file) = &scenery.lighting.surroundings {
+                add("--background", file.to_string_lossy().into_owned());
+            }
+        }
+        Background::Sky => {}
     }
     words
 }

@@ -8,6 +8,7 @@ use super::command;
 use super::demo;
 use super::document::kind::Kind;
 use super::document::{Document, Options};
+use super::export::{self, Export, Progress, State};
 use super::idle::{self, Question};
 use super::look::Look;
 use super::reel::Reel;
@@ -33,7 +34,7 @@ enum Opened {
     Scene(Box<Scene>, Option<PathBuf>),
     Pictures(Box<Reel>),
     Look(Look),
-    Surroundings(Background),
+    Surroundings(Background, PathBuf),
 }
 
 /// What a dialog is for.
@@ -43,6 +44,7 @@ enum Dialog {
     Look,
     Save,
     Surroundings,
+    Export,
 }
 
 /// The work beside the window.
@@ -53,6 +55,7 @@ pub struct Desk {
     asked: Option<Look>,
     chosen: Receiver<(Dialog, Option<PathBuf>)>,
     choose: Sender<(Dialog, Option<PathBuf>)>,
+    export: Option<Export>,
     /// Whether a dialog is open.
     choosing: bool,
     wake: Wake,
@@ -64,7 +67,7 @@ impl Desk {
     ///
     /// # Errors
     /// As [`Worker::new`].
-    pub fn new(_: &Session, wake: &Wake) -> Result<Self> {
+    pub fn new(wake: &Wake) -> Result<Self> {
         let (choose, chosen) = channel();
         Ok(Self {
             opener: Worker::new("open", Arc::clone(wake), open)?,
@@ -72,6 +75,7 @@ impl Desk {
             asked: None,
             chosen,
             choose,
+            export: None,
             choosing: false,
             wake: Arc::clone(wake),
             over: false,
@@ -85,7 +89,7 @@ impl Desk {
 
     /// What is being done.
     pub fn busy(&self) -> Option<&'static str> {
-        self.opener.is_busy().then_some("Opening")
+        self.opener.is_busy().then_some("Opening").or(self.export.as_ref().map(|_| "Exporting"))
     }
 
     /// Takes over what was done since the last call.
@@ -101,8 +105,10 @@ impl Desk {
                 }
                 Dialog::Surroundings => self.opener.ask(Job::Surroundings(path)),
                 Dialog::Save => save(session, &path),
+                Dialog::Export => self.export(session, &path),
             }
         }
+        self.follow_export(session);
         if let Some(opened) = self.opener.answer() {
             match opened {
                 Ok(opened) => take(session, opened),
@@ -141,6 +147,13 @@ impl Desk {
                         save(session, &own)
                     }
                 }
+                Wish::TakeLook(path) => self.opener.ask(Job::Look(session.library.clone(), path)),
+                Wish::Export => self.choose(Dialog::Export, session),
+                Wish::CancelExport => {
+                    if let Some(export) = &mut self.export {
+                        export.cancel();
+                    }
+                }
                 Wish::CopyCommand => {
                     copied = Some(command::line(session));
                     session.notes.say("Copied the command line of this picture");
@@ -151,6 +164,44 @@ impl Desk {
         copied
     }
 
+    /// Writes what is shown, by another process.
+    fn export(&mut self, session: &mut Session, path: &Path) {
+        let Some(file) = &session.file else { return };
+        let look = session.look();
+        let preset =
+            if look.is_plain() { Ok(None) } else { look.whole().map(|preset| Some(preset.to_json())) };
+        let kind = session.reel.as_ref().map_or(Kind::Scene, |reel| reel.document.kind());
+        let started = preset.and_then(|preset| {
+            let mut job = export::Job::new(kind, file, path, preset);
+            if let Some(reel) = &session.reel {
+                job.rate = reel.rate;
+            } else {
+                job.arguments = command::staging(session).into_iter().map(Into::into).collect();
+            }
+            Export::start(job)
+        });
+        match started {
+            Ok(export) => self.export = Some(export),
+            Err(error) => session.notes.complain(&error),
+        }
+    }
+
+    /// Says how far the export is, and what became of it.
+    fn follow_export(&mut self, session: &mut Session) {
+        let Some(export) = &self.export else { return };
+        let Progress { done, total, state } = export.poll();
+        session.exported = Some((done / total.max(1.0)) as f32);
+        match state {
+            State::Running => return,
+            State::Done => session.notes.say("Exported"),
+            State::Cancelled => session.notes.say("The export was cancelled"),
+            State::Failed(problem) => {
+                session.notes.complain(&Error::failure(problem, "export again"));
+            }
+        }
+        (self.export, session.exported) = (None, None);
+    }
+
     /// Asks for a file on a thread of its own: dialogs of the system may stay open for long.
     fn choose(&mut self, dialog: Dialog, session: &mut Session) {
         if self.choosing || session.look().is_plain() && dialog == Dialog::Save {
@@ -158,9 +209,15 @@ impl Desk {
         }
         let folder = match dialog {
             Dialog::Look | Dialog::Save => session.settings.look_folder.clone(),
-            Dialog::File | Dialog::Surroundings => session.settings.folder.clone(),
+            Dialog::File | Dialog::Surroundings | Dialog::Export => session.settings.folder.clone(),
         };
-        let name = format!("{}.json", session.look().name.to_lowercase().replace(' ', "-"));
+        let name = match (dialog, &session.reel) {
+            (Dialog::Export, Some(reel)) => {
+                command::output(reel).file_name().unwrap_or_default().to_string_lossy().into_owned()
+            }
+            (Dialog::Export, None) => "picture.png".to_owned(),
+            _ => format!("{}.json", session.look().name.to_lowercase().replace(' ', "-")),
+        };
         let (choose, wake) = (self.choose.clone(), Arc::clone(&self.wake));
         let asked = std::thread::Builder::new().name("dialog".into()).spawn(move || {
             let path = ask(dialog, folder, &name);
@@ -192,6 +249,7 @@ fn ask(dialog: Dialog, folder: Option<PathBuf>, name: &str) -> Option<PathBuf> {
             let path = shown.save_file()?;
             Some(if path.extension().is_some() { path } else { path.with_extension("json") })
         }
+        Dialog::Export => shown.set_title("Export").set_file_name(name).save_file(),
         Dialog::Surroundings => shown
             .set_title("Surroundings")
             .add_filter("Pictures of the surroundings", &["hdr", "exr"])
@@ -215,7 +273,8 @@ fn open(job: Job) -> Result<Opened> {
         }
         Job::Look(library, path) => Opened::Look(Look::open(&library, &path)?),
         Job::Surroundings(path) => {
-            Opened::Surroundings(Background::Environment(Arc::new(Environment::read(&path)?)))
+            let environment = Arc::new(Environment::read(&path)?);
+            Opened::Surroundings(Background::Environment(environment), path)
         }
     })
 }
@@ -239,8 +298,10 @@ fn take(session: &mut Session, opened: Opened) {
         }
         Opened::Pictures(reel) => session.show_reel(*reel),
         Opened::Look(look) => session.take(look),
-        Opened::Surroundings(background) => {
-            session.relight("surroundings", |lighting| lighting.background = background);
+        Opened::Surroundings(background, path) => {
+            session.relight("surroundings", |lighting| {
+                (lighting.background, lighting.surroundings) = (background, Some(path));
+            });
             session.let_go();
         }
     }

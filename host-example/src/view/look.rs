@@ -10,7 +10,9 @@ use crate::files;
 use crate::loader::catalogue::Param;
 use crate::loader::{Library, Refusal};
 use crate::stylize::preset::{self, Preset, Track};
-use crate::stylize::style::{self, Setting, Style};
+use crate::stylize::source;
+use crate::stylize::style::{Setting, Style};
+use crate::stylize::title::Title;
 
 /// The style that leaves pictures as they are.
 pub const PLAIN: &str = "none";
@@ -46,7 +48,7 @@ pub struct Knob {
 impl Look {
     /// The look that leaves pictures as they are.
     pub fn plain() -> Self {
-        let preset = Preset { style: String::new(), lengths: None, params: Vec::new() };
+        let preset = bare(String::new());
         Self { name: "Original".into(), source: PLAIN.into(), opened: preset.clone(), preset }
     }
 
@@ -54,25 +56,24 @@ impl Look {
     ///
     /// # Errors
     /// As [`Style::load`].
-    pub fn open(library: &Library, source: &Path) -> Result<Self> {
-        if source == Path::new(PLAIN) {
+    pub fn open(library: &Library, path: &Path) -> Result<Self> {
+        if path == Path::new(PLAIN) {
             return Ok(Self::plain());
         }
-        let bare = |style: String| Preset { style, lengths: None, params: Vec::new() };
-        let id = source.to_str().unwrap_or_default();
+        let id = path.to_str().unwrap_or_default();
         let (name, preset) = match library.find_node(id) {
             Ok(node) => (node.label.to_owned(), bare(node.id.to_owned())),
             // Whatever is no node may be a file; if it is not, this says so in the best words.
             Err(_) => {
-                Style::load(library, source, &[])?;
-                let text = style::read(source)?;
-                let file = source.file_name().unwrap_or_default().to_string_lossy().into_owned();
-                let preset = if preset::is_graph(&text) { bare(file) } else { Preset::parse(source, &text)? };
-                let stem = source.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-                (stem, preset)
+                Style::load(library, path, &[])?;
+                let text = source::read(path)?;
+                let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                let preset = if preset::is_graph(&text) { bare(file) } else { Preset::parse(path, &text)? };
+                let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+                (preset.title.name.clone().unwrap_or(stem), preset)
             }
         };
-        let mut look = Self { name, source: source.to_owned(), opened: preset.clone(), preset };
+        let mut look = Self { name, source: path.to_owned(), opened: preset.clone(), preset };
         look.style(library)?;
         let knobs = look.knobs(library)?;
         look.use_names_of(&knobs);
@@ -217,6 +218,23 @@ impl Look {
         self.preset.style_beside(&self.source).into()
     }
 
+    /// The preset as it can be read from anywhere: the path of its graph file is absolute.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for paths that no preset can hold.
+    pub fn whole(&self) -> Result<Preset> {
+        let graph = self.style_name();
+        if graph.extension().is_none() {
+            return Ok(self.preset.clone());
+        }
+        let whole =
+            std::path::absolute(&graph).unwrap_or_else(|_| graph.clone()).into_os_string().into_string();
+        let style = whole.map_err(|_| {
+            Error::file(&graph, "has a path that is no UTF-8, which no preset can hold", "rename it")
+        })?;
+        Ok(Preset { style, ..self.preset.clone() })
+    }
+
     /// Writes the look as a preset, and is what is in that file from then on.
     ///
     /// # Errors
@@ -227,13 +245,10 @@ impl Look {
             return Err(Error::file(file, "is no name of a look", "end it in .json"));
         }
         let mut preset = self.preset.clone();
-        let graph = self.style_name();
-        let is_graph = graph.extension().is_some();
-        if is_graph && self.source.parent() != file.parent() {
-            let whole = std::path::absolute(&graph).unwrap_or(graph).into_os_string().into_string();
-            preset.style = whole.map_err(|_| {
-                Error::file(file, "would name a graph file whose path is no UTF-8", "rename the graph file")
-            })?;
+        // The name is that of the file from now on.
+        preset.title.name = None;
+        if self.source.parent() != file.parent() {
+            preset.style = self.whole()?.style;
         }
         let text = preset.to_json();
         files::write(file, |out| std::io::Write::write_all(out, text.as_bytes()).map_err(|e| e.to_string()))?;
@@ -243,6 +258,11 @@ impl Look {
         self.name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         Ok(())
     }
+}
+
+/// A style without any settings.
+fn bare(style: String) -> Preset {
+    Preset { title: Title::default(), style, lengths: None, params: Vec::new() }
 }
 
 /// A value of a graph file as people write it.

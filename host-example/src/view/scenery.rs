@@ -1,5 +1,6 @@
 //! A scene as it is looked at: its camera, its light, its time. Nothing here lives on the graphics device.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -34,6 +35,8 @@ pub struct Lighting {
     pub exposure: f32,
     /// What is behind the scene, and lights it where it is a picture of the surroundings.
     pub background: Background,
+    /// The file of that picture.
+    pub surroundings: Option<PathBuf>,
 }
 
 impl PartialEq for Lighting {
@@ -110,7 +113,7 @@ impl Scenery {
 
     /// Takes over what has been changed of the light.
     pub fn relight(&mut self) {
-        let Lighting { sun, exposure, background } = &self.lighting;
+        let Lighting { sun, exposure, background, .. } = &self.lighting;
         let rest = Pose::at_rest(&self.scene);
         let environment = background.environment();
         self.light = Light::for_scene(&self.scene, &rest, &self.first_view, *sun, environment);

@@ -29,10 +29,16 @@ pub enum Wish {
     OpenDemo,
     /// Show a dialog and take the look that is chosen.
     ChooseLook,
+    /// Take the look that is named so.
+    TakeLook(PathBuf),
     /// Save the look, after a dialog if it has no file of its own yet or `true`.
     SaveLook(bool),
     /// Show a dialog and take the picture that is chosen as what is around the scene.
     ChooseSurroundings,
+    /// Show a dialog and write the picture, or all frames, there.
+    Export,
+    /// End the export.
+    CancelExport,
     /// Put the command line of the present picture on the clipboard.
     CopyCommand,
     /// Close the window.
@@ -94,6 +100,8 @@ pub struct Session {
     pub shows_help: bool,
     /// What is being done beside the window.
     pub busy: Option<&'static str>,
+    /// The share of an export that is done.
+    pub exported: Option<f32>,
     /// Where the pointer is on the picture, in pixels of the window.
     pub pointer: Option<[f32; 2]>,
     /// Colours under the pointer, before and after.
@@ -126,6 +134,7 @@ impl Session {
             wishes: Vec::new(),
             shows_help: false,
             busy: None,
+            exported: None,
             pointer: None,
             probed: None,
             current: 0,

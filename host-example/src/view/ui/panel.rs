@@ -3,8 +3,9 @@
 use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
 use super::{control, lighting, theme};
+use crate::looks;
 use crate::view::look::Knob;
-use crate::view::session::Session;
+use crate::view::session::{Session, Wish};
 
 /// Headings that are open at first.
 const OPEN: [&str; 2] = ["look", ""];
@@ -39,7 +40,7 @@ fn chooser(ui: &mut Ui, session: &mut Session) {
         let look = session.look();
         let mark = if look.is_changed() { " •" } else { "" };
         let name = RichText::new(format!("{}{mark}", look.name)).size(16.0);
-        let width = ui.available_width() - 86.0;
+        let width = ui.available_width() - 156.0;
         let mut chosen = None;
         let response =
             egui::ComboBox::from_id_salt("look").selected_text(name).width(width).show_ui(ui, |ui| {
@@ -55,12 +56,36 @@ fn chooser(ui: &mut Ui, session: &mut Session) {
         if let Some(index) = chosen {
             session.choose(index);
         }
+        shipped(ui, session);
         let changed = session.knobs.iter().any(|knob| session.look().differs(knob));
         let reset = ui.add_enabled(changed, egui::Button::new("Reset all"));
         if reset.on_hover_text("Set everything back to the style's defaults (r)").clicked() {
             session.reset_all();
         }
     });
+}
+
+/// Looks that ship with the program, by their styles.
+fn shipped(ui: &mut Ui, session: &mut Session) {
+    let menu = ui.menu_button("Looks", |ui| {
+        let looks = looks::all().unwrap_or_default();
+        let mut styles: Vec<&str> = looks.iter().map(|look| look.preset.style.as_str()).collect();
+        styles.dedup();
+        for style in styles {
+            ui.menu_button(capital(&style.replace('_', " ")), |ui| {
+                for look in looks.iter().filter(|look| look.preset.style == style) {
+                    let title = &look.preset.title;
+                    let name = title.name.as_deref().unwrap_or(look.id);
+                    let about = title.about.as_deref().unwrap_or_default();
+                    if ui.button(name).on_hover_text(about).clicked() {
+                        session.wishes.push(Wish::TakeLook(look.style().into()));
+                        ui.close();
+                    }
+                }
+            });
+        }
+    });
+    menu.response.on_hover_text("Looks that ship with the program");
 }
 
 /// Parameters by their headings, in the order of the declarations; nodes of a graph one after the other.

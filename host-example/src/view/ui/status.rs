@@ -9,6 +9,12 @@ use crate::view::session::{Session, Wish};
 pub fn show(ui: &mut Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         ui.set_min_height(22.0);
+        if let Some(share) = session.exported {
+            ui.add(egui::ProgressBar::new(share).desired_width(160.0).text("Exporting"));
+            if ui.button("Cancel").clicked() {
+                session.wishes.push(Wish::CancelExport);
+            }
+        }
         if session.has_picture() {
             timeline(ui, session);
             frames(ui, session);

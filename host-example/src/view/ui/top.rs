@@ -18,10 +18,10 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         }
         ui.add_space(10.0);
         let [undo, redo] = session.can();
-        if ui.add_enabled(undo, Button::new("⟲ Undo")).on_hover_text("Ctrl+Z").clicked() {
+        if ui.add_enabled(undo, Button::new("Undo")).on_hover_text("Ctrl+Z").clicked() {
             session.undo();
         }
-        if ui.add_enabled(redo, Button::new("⟳ Redo")).on_hover_text("Ctrl+Y").clicked() {
+        if ui.add_enabled(redo, Button::new("Redo")).on_hover_text("Ctrl+Y").clicked() {
             session.redo();
         }
         ui.add_space(10.0);
@@ -42,6 +42,9 @@ fn file_menu(ui: &mut Ui, session: &mut Session) {
         let has_look = !session.look().is_plain();
         item(ui, session, "Save the look", "Ctrl+S", Wish::SaveLook(false), has_look);
         item(ui, session, "Save the look as…", "Ctrl+Shift+S", Wish::SaveLook(true), has_look);
+        ui.separator();
+        let can_export = session.file.is_some() && (has_look || session.scenery.is_some());
+        item(ui, session, "Export…", "", Wish::Export, can_export);
         ui.separator();
         let recent = session.settings.recent.clone();
         if !recent.is_empty() {
