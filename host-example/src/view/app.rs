@@ -62,6 +62,8 @@ pub struct App {
     /// When the next frame is wanted, if nothing happens before.
     due: Option<Instant>,
     titled: Option<Instant>,
+    /// Events for the next frame.
+    late: Vec<egui::Event>,
 }
 
 impl App {
@@ -88,6 +90,7 @@ impl App {
             hidden: false,
             due: Some(Instant::now()),
             titled: None,
+            late: Vec::new(),
         })
     }
 
@@ -163,7 +166,9 @@ impl App {
         let session = &mut self.session;
         self.desk.collect(session);
         let context = input.egui_ctx().clone();
-        let output = context.run_ui(input.take_egui_input(window), |ui| ui::show(ui, session));
+        let mut raw = input.take_egui_input(window);
+        self.late = one_click(&mut raw.events, std::mem::take(&mut self.late));
+        let output = context.run_ui(raw, |ui| ui::show(ui, session));
         input.handle_platform_output(window, output.platform_output);
         let delay =
             output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay);
@@ -209,7 +214,7 @@ impl App {
             let soon = Instant::now() + Duration::from_millis(20);
             self.due = Some(self.due.map_or(soon, |due| due.min(soon)));
         }
-        if !problems.is_empty() || is_probed || session.busy != was_busy {
+        if !problems.is_empty() || is_probed || !self.late.is_empty() || session.busy != was_busy {
             self.due = Some(Instant::now());
         }
         if drawn != Drawn::Skipped {
@@ -370,5 +375,36 @@ impl ApplicationHandler<Event> for App {
         self.stage = None;
         self.input = None;
         self.window = None;
+    }
+}
+
+/// Leaves at most one press or release of a button among the events, those of before first, and returns the rest: controls
+/// do not see a click that begins and ends within one frame, as clicks do where frames are slow.
+fn one_click(events: &mut Vec<egui::Event>, before: Vec<egui::Event>) -> Vec<egui::Event> {
+    events.splice(..0, before);
+    let is_button = |event: &egui::Event| matches!(event, egui::Event::PointerButton { .. });
+    let second = events.iter().enumerate().filter(|(_, event)| is_button(event)).nth(1);
+    second.map(|(at, _)| at).map_or_else(Vec::new, |at| events.split_off(at))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fast_click_lasts_two_frames() {
+        let button = |pressed| egui::Event::PointerButton {
+            pos: egui::pos2(1.0, 2.0),
+            button: egui::PointerButton::Primary,
+            pressed,
+            modifiers: egui::Modifiers::NONE,
+        };
+        let moved = egui::Event::PointerMoved(egui::pos2(1.0, 2.0));
+        let mut events = vec![moved.clone(), button(true), button(false), moved.clone()];
+        let late = one_click(&mut events, Vec::new());
+        assert_eq!(events, [moved.clone(), button(true)]);
+        let mut next = vec![moved.clone()];
+        assert!(one_click(&mut next, late).is_empty());
+        assert_eq!(next, [button(false), moved.clone(), moved]);
     }
 }

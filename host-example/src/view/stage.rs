@@ -3,7 +3,7 @@
 //! When the device is lost, the stage is thrown away and made anew; what is shown and how is kept outside.
 
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use winit::dpi::PhysicalSize;
 use winit::event_loop::OwnedDisplayHandle;
@@ -23,6 +23,7 @@ use crate::error::{Error, Result};
 use crate::loader::catalogue::Kind;
 use crate::loader::contract::IsophoteRequest;
 use crate::render::gpu::Gpu;
+use crate::render::layouts;
 use crate::render::look::Look as Light;
 use crate::scene::camera::View;
 use crate::stylize::kernels::Kernels;
@@ -48,6 +49,8 @@ pub struct Stage {
     is_begun: bool,
     /// Passes of a picture that are recorded at once, where the processor draws.
     passes: usize,
+    /// What drawing the window took last, without the picture.
+    cost: Duration,
 }
 
 /// What became of a frame.
@@ -75,7 +78,7 @@ struct Made {
 }
 
 /// What recording a part of a picture may take.
-const GOAL: [f32; 2] = [0.02, 0.05];
+const GOAL: [Duration; 2] = [Duration::from_millis(15), Duration::from_millis(40)];
 
 impl Stage {
     /// Opens a device for `window`.
@@ -121,6 +124,7 @@ impl Stage {
             sources: 0,
             is_begun: false,
             passes: 4,
+            cost: Duration::ZERO,
         })
     }
 
@@ -230,31 +234,11 @@ impl Stage {
         let Some((frame, renew)) = self.next_frame(window)? else { return Ok(Drawn::Skipped) };
         let target = frame.texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let made = self.to_make(session);
-        let is_new = made.is_some() && (always || made != self.made);
-        let was_begun = self.is_begun;
-        if is_new || self.is_begun {
-            let passes = if always || !self.is_software() { usize::MAX } else { self.passes };
-            self.is_begun = !self.encode_picture(&mut encoder, session, is_new, passes)?;
-            self.made = made;
-        }
+        let drawn = self.make(&mut encoder, session, always)?;
         let started = Instant::now();
         self.arrange(session);
         self.encode_probe(&mut encoder, session);
-        let size = (self.config.width, self.config.height);
-        self.panel.prepare(&self.gpu.device, &self.gpu.queue, &mut encoder, size);
-        let grey = wgpu::Color { r: SURROUND.into(), g: SURROUND.into(), b: SURROUND.into(), a: 1.0 };
-        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("window"),
-            color_attachments: &[Some(crate::render::layouts::cleared(&target, grey))],
-            ..Default::default()
-        });
-        let mut pass = pass.forget_lifetime();
-        if self.source.is_some() {
-            self.canvas.draw(&mut pass, session.easel.area, size);
-        }
-        self.panel.draw(&mut pass, size);
-        drop(pass);
+        self.paint(&mut encoder, &target, session);
         self.gpu.queue.submit([encoder.finish()]);
         self.probe.ask();
         window.pre_present_notify();
@@ -264,22 +248,65 @@ impl Stage {
         // would also answer the mouse late.
         self.gpu.wait()?;
         self.probed = self.probe.read();
+        self.cost = started.elapsed();
         if renew {
             self.surface.configure(&self.gpu.device, &self.config);
         }
-        let took = started.elapsed().as_secs_f32();
-        Ok(match (self.is_begun, is_new || was_begun) {
-            (true, _) => {
-                self.passes = match took {
-                    took if took < GOAL[0] => self.passes.saturating_mul(2),
-                    took if took > GOAL[1] => (self.passes / 2).max(1),
-                    _ => self.passes,
-                };
-                Drawn::Begun
+        Ok(drawn)
+    }
+
+    /// Records the picture, if it is to be another one. Where the processor draws, a part of it is done at once instead, and
+    /// what is left with the next frames, so that the window answers meanwhile.
+    fn make(&mut self, encoder: &mut wgpu::CommandEncoder, session: &Session, always: bool) -> Result<Drawn> {
+        let made = self.to_make(session);
+        let mut begins = made.is_some() && (always || made != self.made);
+        if !begins && !self.is_begun {
+            return Ok(Drawn::Controls);
+        }
+        self.made = made;
+        if always || !self.is_software() {
+            self.encode_picture(encoder, session, begins, usize::MAX)?;
+            self.is_begun = false;
+            return Ok(Drawn::Picture);
+        }
+        let started = Instant::now();
+        loop {
+            let part = Instant::now();
+            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+            self.is_begun = !self.encode_picture(&mut encoder, session, begins, self.passes)?;
+            self.gpu.queue.submit([encoder.finish()]);
+            self.gpu.wait()?;
+            begins = false;
+            self.passes = match part.elapsed() {
+                took if took < GOAL[0] => self.passes.saturating_mul(2).min(64),
+                took if took > GOAL[1] => (self.passes / 2).max(1),
+                _ => self.passes,
+            };
+            if !self.is_begun {
+                return Ok(Drawn::Picture);
             }
-            (false, true) => Drawn::Picture,
-            (false, false) => Drawn::Controls,
-        })
+            // What is spent on the window is spent on the picture, too.
+            if started.elapsed() > self.cost.max(GOAL[1]) {
+                return Ok(Drawn::Begun);
+            }
+        }
+    }
+
+    /// Draws canvas and controls.
+    fn paint(&mut self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView, session: &Session) {
+        let size = (self.config.width, self.config.height);
+        self.panel.prepare(&self.gpu.device, &self.gpu.queue, encoder, size);
+        let grey = wgpu::Color { r: SURROUND.into(), g: SURROUND.into(), b: SURROUND.into(), a: 1.0 };
+        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("window"),
+            color_attachments: &[Some(layouts::cleared(target, grey))],
+            ..Default::default()
+        });
+        let mut pass = pass.forget_lifetime();
+        if self.source.is_some() {
+            self.canvas.draw(&mut pass, session.easel.area, size);
+        }
+        self.panel.draw(&mut pass, size);
     }
 
     /// The texture to draw on, and whether the surface must be configured anew afterwards.

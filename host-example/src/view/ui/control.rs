@@ -128,9 +128,13 @@ fn control(ui: &mut Ui, knob: &Knob, value: &Value, label: &Response) -> Option<
         (Value::Bool(now), _) => {
             let mut on = *now;
             let response = ui.checkbox(&mut on, "").labelled_by(label.id);
+            let name = knob.param.label;
+            response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, *now, name));
             response.changed().then_some(Value::Bool(on))
         }
-        (Value::Choice(now), ParamKind::Choice { options, .. }) => choice(ui, options, now, label),
+        (Value::Choice(now), ParamKind::Choice { options, .. }) => {
+            choice(ui, options, now, label, knob.param.label)
+        }
         (Value::Color(now), _) => color(ui, *now, label),
         _ => None,
     }
@@ -155,7 +159,7 @@ fn chosen<N>(slid: bool, value: N, written: bool, typed: N) -> Option<N> {
     }
 }
 
-fn choice(ui: &mut Ui, options: &[Choice], now: &str, label: &Response) -> Option<Value> {
+fn choice(ui: &mut Ui, options: &[Choice], now: &str, label: &Response, name: &str) -> Option<Value> {
     let mut chosen = None;
     let combo = egui::ComboBox::from_id_salt("choice").width(ui.available_width() - 4.0);
     let shown = combo.selected_text(option_label(options, now)).show_ui(ui, |ui| {
@@ -165,7 +169,12 @@ fn choice(ui: &mut Ui, options: &[Choice], now: &str, label: &Response) -> Optio
             }
         }
     });
-    shown.response.labelled_by(label.id);
+    let now = option_label(options, now).to_owned();
+    shown.response.labelled_by(label.id).widget_info(|| {
+        let mut info = egui::WidgetInfo::labeled(egui::Role::ComboBox, true, name);
+        info.current_text_value = Some(now.clone());
+        info
+    });
     chosen
 }
 
