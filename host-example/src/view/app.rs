@@ -320,7 +320,8 @@ impl ApplicationHandler<Event> for App {
                 Ok(())
             }
             WindowEvent::KeyboardInput { event, is_synthetic, .. } => {
-                if !typing && !(is_synthetic && event.state == ElementState::Pressed) {
+                let is_real = !is_synthetic || event.state == ElementState::Released;
+                if is_real && !typing {
                     self.key(&event);
                     self.due = Some(Instant::now());
                 }

@@ -216,7 +216,7 @@ fn cloth() -> Image {
     let mut rgba = Vec::with_capacity((CLOTH * CLOTH * 4) as usize);
     for y in 0..CLOTH {
         for x in 0..CLOTH {
-            let stripe = |at: u32| u32::from(at / 32 % 2 == 0) + u32::from(at / 8 % 8 == 6);
+            let stripe = |at: u32| u32::from((at / 32).is_multiple_of(2)) + u32::from(at / 8 % 8 == 6);
             let dark = stripe(x) + stripe(y);
             let color: [u8; 3] = match dark {
                 0 => [236, 228, 210],

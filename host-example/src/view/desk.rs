@@ -33,7 +33,7 @@ enum Job {
 enum Opened {
     Scene(Box<Scene>, Option<PathBuf>),
     Pictures(Box<Reel>),
-    Look(Look),
+    Look(Box<Look>),
     Surroundings(Background, PathBuf),
 }
 
@@ -271,7 +271,7 @@ fn open(job: Job) -> Result<Opened> {
                 _ => Opened::Pictures(Box::new(Reel::new(document)?)),
             }
         }
-        Job::Look(library, path) => Opened::Look(Look::open(&library, &path)?),
+        Job::Look(library, path) => Opened::Look(Box::new(Look::open(&library, &path)?)),
         Job::Surroundings(path) => {
             let environment = Arc::new(Environment::read(&path)?);
             Opened::Surroundings(Background::Environment(environment), path)
@@ -297,7 +297,7 @@ fn take(session: &mut Session, opened: Opened) {
             session.show_scene(Scenery::new(*scene, staging, aspect), file, name);
         }
         Opened::Pictures(reel) => session.show_reel(*reel),
-        Opened::Look(look) => session.take(look),
+        Opened::Look(look) => session.take(*look),
         Opened::Surroundings(background, path) => {
             session.relight("surroundings", |lighting| {
                 (lighting.background, lighting.surroundings) = (background, Some(path));

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use super::look::Look;
+use super::value::Value;
 use crate::error::Result;
 use crate::loader::Library;
 use crate::loader::Plan;
@@ -42,7 +43,7 @@ fn find(Question { library, look }: &Question) -> Result<HashSet<String>> {
     let now = Work::of(&style.plan(library, &request, known)?);
     for knob in look.knobs(library)? {
         let present = look.value(&knob);
-        let set = |value: &super::value::Value| style.graph.set(knob.node, knob.param.id, &value.text());
+        let set = |value: &Value| style.graph.set(knob.node, knob.param.id, &value.text());
         let has_effect = present.others(&knob.param.kind).iter().any(|other| {
             set(other).is_ok() && {
                 let known = style.past(library, &request).map_or(0, |past| past.frames.min(1));
@@ -60,7 +61,10 @@ fn find(Question { library, look }: &Question) -> Result<HashSet<String>> {
 
 /// All that a plan computes.
 #[derive(PartialEq)]
-struct Work(Vec<(String, Vec<u8>, Vec<u32>, Vec<u32>)>);
+struct Work(Vec<Step>);
+
+/// A pass: its kernel, its uniform bytes, what it reads and what it writes.
+type Step = (String, Vec<u8>, Vec<u32>, Vec<u32>);
 
 impl Work {
     fn of(plan: &Plan) -> Self {

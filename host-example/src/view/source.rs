@@ -122,7 +122,7 @@ impl SceneSource {
 /// What looks are put on.
 pub enum Source {
     /// A scene.
-    Scene(SceneSource),
+    Scene(Box<SceneSource>),
     /// A picture.
     Picture(PictureSource),
 }

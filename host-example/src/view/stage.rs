@@ -188,7 +188,7 @@ impl Stage {
                     }
                     _ => {
                         let usual = IsophoteRequest { scale, ..usual };
-                        (true, Source::Scene(SceneSource::new(gpu, scenery, size, usual)?))
+                        (true, Source::Scene(Box::new(SceneSource::new(gpu, scenery, size, usual)?)))
                     }
                 }
             }

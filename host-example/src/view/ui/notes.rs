@@ -12,7 +12,7 @@ pub fn show(context: &egui::Context, rect: Rect, session: &mut Session) {
     if notes.is_empty() {
         return;
     }
-    let width = (rect.width() - 24.0).min(760.0);
+    let width = (rect.width() - 64.0).clamp(80.0, 760.0);
     egui::Area::new(Id::unique("notes"))
         .pivot(Align2::CENTER_BOTTOM)
         .fixed_pos(rect.center_bottom() + vec2(0.0, -12.0))

@@ -43,7 +43,9 @@ fn file_menu(ui: &mut Ui, session: &mut Session) {
         item(ui, session, "Save the look", "Ctrl+S", Wish::SaveLook(false), has_look);
         item(ui, session, "Save the look as…", "Ctrl+Shift+S", Wish::SaveLook(true), has_look);
         ui.separator();
+        let has_picture = session.has_picture();
         let can_export = session.file.is_some() && (has_look || session.scenery.is_some());
+        item(ui, session, "Copy the command line", "", Wish::CopyCommand, has_picture);
         item(ui, session, "Export…", "", Wish::Export, can_export);
         ui.separator();
         let recent = session.settings.recent.clone();
@@ -134,11 +136,13 @@ fn overlays(ui: &mut Ui, session: &mut Session) {
 }
 
 fn right(ui: &mut Ui, session: &mut Session) {
+    // The menu has it all.
+    let is_narrow = ui.available_width() < 260.0;
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         if ui.button("?").on_hover_text("Keys and mouse").clicked() {
             session.shows_help = !session.shows_help;
         }
-        if !session.has_picture() {
+        if !session.has_picture() || is_narrow {
             return;
         }
         if ui.button("Copy command").on_hover_text("The command line that gives this picture").clicked() {
