@@ -192,7 +192,7 @@ fn a_slider_is_moved_and_taken_back_and_a_wipe_shows_the_original() {
     let title = || xdotool(&display, &["getwindowname", &id]).unwrap_or_default();
     wait_for("the pointer", &mut || point(ASIDE, &[]));
     wait_for("the original", &mut || shown(&title()).is_some_and(|(style, _)| style == "none"));
-    let original = screen(folder.path(), LEFT);
+    let original = settled(&|| screen(folder.path(), LEFT), Duration::from_secs(3));
     let before = see();
     wait_for("a key", &mut || press("2"));
     wait_for("blueprint", &mut || see() != before && is_blue(&see()));

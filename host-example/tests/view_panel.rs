@@ -64,8 +64,11 @@ fn every_parameter_of_every_style_is_found_by_its_label() {
         assert!(labels.len() > 10);
         let name = session.look().name.clone();
         for (label, count) in labels {
-            let found = harness.query_all_by_label(label).count();
-            assert!(found > count, "{name}: '{label}' labels {found} things");
+            let is_control = |role| role != egui::accesskit::Role::Label;
+            let found =
+                harness.query_all_by_label(label).filter(|node| is_control(node.accesskit_node().role()));
+            let found = found.count();
+            assert!(found >= count, "{name}: '{label}' is the name of {found} controls");
         }
     }
 }

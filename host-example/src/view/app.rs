@@ -179,6 +179,7 @@ impl App {
         }
         let copied = self.desk.grant(session);
         copied.into_iter().for_each(|text| input.set_clipboard_text(text));
+        session.frame_first();
         if let Some(scenery) = &mut session.scenery {
             scenery.advance();
         }

@@ -106,6 +106,8 @@ pub struct Session {
     pub pointer: Option<[f32; 2]>,
     /// Colours under the pointer, before and after.
     pub probed: Option<[[f32; 4]; 2]>,
+    /// Whether the scene was opened before its place in the window was known.
+    is_unframed: bool,
     current: usize,
     edits: History<State>,
 }
@@ -137,6 +139,7 @@ impl Session {
             exported: None,
             pointer: None,
             probed: None,
+            is_unframed: false,
             current: 0,
             edits: History::default(),
         })
@@ -191,6 +194,13 @@ impl Session {
         let [_, half] = self.easel.halves();
         if let Some(scenery) = &mut self.scenery {
             scenery.frame_all(half.width / half.height);
+        }
+    }
+
+    /// Frames a scene that was just opened, by the place that it has in the window.
+    pub fn frame_first(&mut self) {
+        if std::mem::take(&mut self.is_unframed) {
+            self.frame_all();
         }
     }
 
@@ -382,6 +392,7 @@ impl Session {
 
     /// A scene is open from now on.
     pub fn show_scene(&mut self, scenery: Scenery, file: Option<PathBuf>, name: String) {
+        self.is_unframed = scenery.camera().is_none();
         (self.scenery, self.reel) = (Some(scenery), None);
         self.begin(file, name);
     }
