@@ -173,6 +173,13 @@ pub fn is_picture(path: &Path) -> bool {
     KINDS.iter().any(|kind| extension.eq_ignore_ascii_case(kind))
 }
 
+/// The pattern of the sequence of which a file is one frame among others on disk.
+pub fn sequence_of(path: &Path) -> Option<PathBuf> {
+    let pattern = path.with_file_name(numbered(path.file_name()?)?);
+    let frames = Pattern::new(&pattern).ok()??.on_disk().ok()?;
+    (frames.len() > 1).then_some(pattern)
+}
+
 /// The name of a picture with a place instead of the last number before its extension.
 fn numbered(name: &OsStr) -> Option<String> {
     let (stem, extension) = name.to_str()?.rsplit_once('.')?;

@@ -6,18 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use support::{IN_PIXELS, fails, folder, isophote, listing, succeeds};
-
-/// Whether ffmpeg is there; where it must be, its absence fails.
-fn has_ffmpeg() -> bool {
-    let is_there = |name: &str| Command::new(name).arg("-version").output().is_ok_and(|o| o.status.success());
-    if is_there("ffmpeg") && is_there("ffprobe") {
-        return true;
-    }
-    assert!(std::env::var("CI").is_err(), "ffmpeg is missing; install it");
-    eprintln!("\n*** SKIPPED: videos need ffmpeg ***\n");
-    false
-}
+use support::{IN_PIXELS, fails, folder, has_ffmpeg, isophote, listing, succeeds};
 
 fn ffmpeg(folder: &Path, args: &str) {
     let mut command = Command::new("ffmpeg");
@@ -177,5 +166,48 @@ fn bad_videos_are_refused_and_nothing_is_left() {
     fails(command.stdin(Stdio::null()), 2, &["standard input", "YUV4MPEG"]);
     let mut command = apply(at, &["ink", "video.mp4", "out.mp4"]);
     fails(command.env("ISOPHOTE_FFMPEG", "/nowhere"), 1, &["ffmpeg", "install"]);
+    assert_eq!(listing(at), before, "nothing half-written is left");
+}
+
+#[test]
+fn scenes_become_videos() {
+    if !has_ffmpeg() {
+        return;
+    }
+    let folder = folder();
+    let at = folder.path();
+    support::cube(at);
+    let render = |args: &[&str]| {
+        let mut command = isophote();
+        command.current_dir(at).args(["render", "cube.gltf"]).args(args).args(["--size", "97x64"]);
+        command
+    };
+    let turn = ["--turntable", "--frames", "4"];
+    let (text, _) = succeeds(&mut render(&[&["turn.mp4", "--fps", "12", "--json"][..], &turn].concat()));
+    let events: Vec<serde_json::Value> =
+        text.lines().map(|line| serde_json::from_str(line).expect("lines of JSON")).collect();
+    let kinds: Vec<&str> = events.iter().filter_map(|e| e["event"].as_str()).collect();
+    assert_eq!(kinds, ["start", "frame", "frame", "frame", "frame", "end"]);
+    assert_eq!((&events[0]["frames"], &events[5]["written"]), (&4.into(), &4.into()));
+    assert_eq!((&events[2]["frame"], &events[2]["status"]), (&2.into(), &"written".into()));
+    // A last odd column is left out.
+    assert_eq!(
+        probe(&at.join("turn.mp4"), "v:0", "width,height,pix_fmt,r_frame_rate,nb_frames"),
+        "96,64,yuv420p,12/1,4"
+    );
+    // The pictures of the sequence, but for what is lost on the way.
+    succeeds(&mut render(&[&["turn.png"][..], &turn].concat()));
+    ffmpeg(at, "-framerate 12 -i turn.%04d.png -vf crop=96:64:0:0 -c:v ffv1 -pix_fmt gray own.mkv");
+    let difference = difference(at, "turn.mp4", "own.mkv");
+    assert!(difference < 3.0, "{difference} of 255");
+    let before = listing(at);
+    let (text, _) = succeeds(&mut render(&["turn.mp4", "--skip-existing", "--json"]));
+    assert!(text.contains("skipped"), "{text}");
+    let refused = |args: &[&str], words: &[&str]| fails(&mut render(args), 2, words);
+    refused(&["out.mp4", "--encode", "-c:v nonsense"], &["out.mp4", "nonsense"]);
+    refused(&["out.png", "--encode", "-c:v libx264"], &["--encode", "videos"]);
+    refused(&["no/out.mp4"], &["no/out.mp4"]);
+    refused(&["-"], &["is not a kind of picture"]);
+    fails(render(&["out.mp4"]).env("ISOPHOTE_FFMPEG", "/nowhere"), 1, &["ffmpeg", "install"]);
     assert_eq!(listing(at), before, "nothing half-written is left");
 }

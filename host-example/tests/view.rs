@@ -23,18 +23,36 @@ impl Drop for Running {
     }
 }
 
-/// Xvfb on a display that it chooses itself. It does not reset: it would whenever its only client
-/// leaves, as each call of xdotool does, and turn down whoever connects in that moment.
-fn display() -> Option<(Running, String)> {
+/// Xvfb on a display that it chooses itself, whose screen is a file in `folder`. It does not reset: it would whenever its only
+/// client leaves, as each call of xdotool does, and turn down whoever connects in that moment.
+fn display(folder: &Path) -> Option<(Running, String)> {
     let mut server = Command::new("Xvfb")
-        .args(["-displayfd", "1", "-screen", "0", "800x600x24", "-nolisten", "tcp", "-noreset"])
+        .args(["-displayfd", "1", "-screen", "0", "800x600x24", "-nolisten", "tcp", "-noreset", "-fbdir"])
+        .arg(folder)
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()
         .ok()?;
     let mut number = String::new();
     BufReader::new(server.stdout.take()?).read_line(&mut number).ok()?;
-    Some((Running(server), format!(":{}", number.trim())))
+    let display = format!(":{}", number.trim());
+    xdotool(&display, &["version"])?;
+    Some((Running(server), display))
+}
+
+/// Whether the test cannot be made here; on machines that test, it must be.
+fn skipped() {
+    assert!(std::env::var_os("CI").is_none(), "Xvfb and xdotool are needed: apt install xvfb xdotool");
+    eprintln!("SKIPPED: no Xvfb or xdotool");
+}
+
+/// A part of the screen, from the file that Xvfb keeps it in (XWD).
+fn screen(folder: &Path, [left, top, right, bottom]: [usize; 4]) -> Vec<u8> {
+    let file = std::fs::read(folder.join("Xvfb_screen0")).unwrap();
+    let number = |at: usize| u32::from_be_bytes(file[4 * at..][..4].try_into().unwrap()) as usize;
+    let (header, row, colors) = (number(0), number(12), number(19));
+    let pixels = &file[header + 12 * colors..];
+    (top..bottom).flat_map(|y| pixels[y * row + 4 * left..y * row + 4 * right].iter().copied()).collect()
 }
 
 fn xdotool(display: &str, arguments: &[&str]) -> Option<String> {
@@ -81,16 +99,13 @@ fn shown(title: &str) -> Option<(String, u32)> {
 
 #[test]
 fn a_window_shows_every_style_resizes_and_closes() {
-    let Some((_server, display)) = display().filter(|(_, d)| xdotool(d, &["version"]).is_some()) else {
-        assert!(std::env::var_os("CI").is_none(), "Xvfb and xdotool are needed: apt install xvfb xdotool");
-        eprintln!("SKIPPED: no Xvfb or xdotool");
-        return;
-    };
     let folder = tempfile::tempdir().unwrap();
+    let Some((_server, display)) = display(folder.path()) else { return skipped() };
     let scene = turning_triangle(folder.path());
     let mut command = support::isophote();
     command
         .env("DISPLAY", &display)
+        .env("ISOPHOTE_SETTINGS", folder.path().join("view.json"))
         .env_remove("WAYLAND_DISPLAY")
         .args(["view", "--size", "200x120", "--report"]);
     command.arg(&scene).args(STYLES.iter().flat_map(|s| ["--style", s]));
@@ -138,11 +153,106 @@ fn a_window_shows_every_style_resizes_and_closes() {
     assert!(!errors.contains("error:") && !errors.contains("warning:"), "{errors}");
 }
 
+/// The canvas of a window of 700x420 pixels, above what is said at its lower border.
+const CANVAS: [usize; 4] = [0, 60, 350, 300];
+/// Its left half, without the line of the wipe.
+const LEFT: [usize; 4] = [0, 80, 160, 300];
+/// Far along the first slider of its panel.
+const SLIDER: [&str; 2] = ["590", "119"];
+/// Where the pointer shows nothing.
+const ASIDE: [&str; 2] = ["320", "408"];
+
+#[test]
+fn a_slider_is_moved_and_taken_back_and_a_wipe_shows_the_original() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some((_server, display)) = display(folder.path()) else { return skipped() };
+    let scene = support::cube(folder.path());
+    let settings = folder.path().join("view.json");
+    std::fs::write(&settings, "{ no settings").unwrap();
+    let mut command = support::isophote();
+    command.env("DISPLAY", &display).env("ISOPHOTE_SETTINGS", &settings).env_remove("WAYLAND_DISPLAY");
+    command.args(["view", "--size", "700x420", "--style", "none", "--style", "blueprint"]).arg(&scene);
+    let mut viewer = Running(command.stderr(Stdio::piped()).spawn().unwrap());
+    let started = Instant::now();
+    let mut wait_for = |what: &str, done: &mut dyn FnMut() -> bool| {
+        while !done() {
+            assert!(started.elapsed() < PATIENCE, "waited too long for {what}");
+            assert!(viewer.0.try_wait().unwrap().is_none(), "the window was closed before {what}");
+            std::thread::sleep(Duration::from_millis(100));
+        }
+    };
+    let window = || xdotool(&display, &["search", "--name", "cube.gltf"]).filter(|w| !w.is_empty());
+    wait_for("a window", &mut || window().is_some());
+    let id = window().unwrap();
+    let see = || screen(folder.path(), CANVAS);
+    let press = |key: &str| xdotool(&display, &["windowfocus", "--sync", &id, "key", key]).is_some();
+    let point = |[x, y]: [&str; 2], then: &[&str]| {
+        xdotool(&display, &[&["mousemove", "--window", &id, x, y], then].concat()).is_some()
+    };
+    let title = || xdotool(&display, &["getwindowname", &id]).unwrap_or_default();
+    wait_for("the pointer", &mut || point(ASIDE, &[]));
+    wait_for("the original", &mut || shown(&title()).is_some_and(|(style, _)| style == "none"));
+    let original = settled(&|| screen(folder.path(), LEFT), Duration::from_secs(3));
+    let before = see();
+    wait_for("a key", &mut || press("2"));
+    wait_for("blueprint", &mut || see() != before && is_blue(&see()));
+    let blueprint = settled(&see, Duration::from_secs(3));
+    wait_for("the slider", &mut || point(SLIDER, &["sleep", "0.1", "click", "1"]) && point(ASIDE, &[]));
+    wait_for("wider lines", &mut || see() != blueprint && is_blue(&see()));
+    wait_for("undo", &mut || press("ctrl+z"));
+    wait_for("the lines of before", &mut || see() == blueprint);
+    wait_for("a wipe", &mut || press("w"));
+    wait_for("the original beside the look", &mut || screen(folder.path(), LEFT) == original);
+    wait_for("the end of the wipe", &mut || press("w"));
+    wait_for("the look alone", &mut || see() == blueprint);
+    assert!(press("q"));
+    while viewer.0.try_wait().unwrap().is_none() {
+        assert!(started.elapsed() < PATIENCE, "the window does not close");
+        std::thread::sleep(Duration::from_millis(100));
+    }
+    assert!(viewer.0.wait().unwrap().success());
+    let warnings = text(viewer.0.stderr.as_mut().unwrap());
+    assert!(warnings.contains("warning:") && warnings.contains("is not usable"), "{warnings}");
+    let remembered = std::fs::read_to_string(settings).unwrap();
+    assert!(remembered.contains("cube.gltf") && remembered.contains("blueprint"), "{remembered}");
+}
+
+/// What is seen when it has stayed the same for so long.
+fn settled(see: &dyn Fn() -> Vec<u8>, long: Duration) -> Vec<u8> {
+    let (mut seen, mut since) = (see(), Instant::now());
+    while since.elapsed() < long {
+        std::thread::sleep(Duration::from_millis(50));
+        let now = see();
+        if now != seen {
+            (seen, since) = (now, Instant::now());
+        }
+    }
+    seen
+}
+
+/// Whether most pixels are more blue than red, in whichever order the screen has its colours.
+fn is_blue(pixels: &[u8]) -> bool {
+    let blue = pixels.chunks_exact(4).filter(|pixel| pixel[0].abs_diff(pixel[2]) > 60).count();
+    blue * 4 > pixels.len() / 2
+}
+
 #[test]
 fn the_help_names_the_keys() {
     let output = Command::new(env!("CARGO_BIN_EXE_isophote")).args(["view", "--help"]).output().unwrap();
     let help = String::from_utf8(output.stdout).unwrap();
-    for key in ["drag", "Shift", "wheel", "1, 2, ...", "Tab", "Space", "  f  ", "  c  ", "q, Escape"] {
+    for key in [
+        "drag",
+        "Shift",
+        "wheel",
+        "1, 2, ...",
+        "Tab",
+        "Space",
+        "  f  ",
+        "  c  ",
+        "  w  ",
+        "hold",
+        "q, Escape",
+    ] {
         assert!(help.contains(key), "'{key}' is not in the help:\n{help}");
     }
 }

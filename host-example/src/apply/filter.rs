@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::asked::Asked;
 use super::backend::Backend;
 use super::convert;
 use super::exr::{ExrFile, Guide};
@@ -15,10 +16,7 @@ use super::working::WorkingSpace;
 use super::write::Format;
 use crate::error::{Error, Result};
 use crate::loader::catalogue::Kind;
-use crate::loader::contract::{
-    ISOPHOTE_ALPHA_PREMULTIPLIED, ISOPHOTE_ALPHA_STRAIGHT, ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR,
-    ISOPHOTE_SPACE_SRGB, IsophoteHistory, IsophoteRequest,
-};
+use crate::loader::contract::{IsophoteHistory, IsophoteRequest};
 use crate::loader::plan::{Role, Texture};
 use crate::loader::{Answer, Control, Device, Input, Library, Sequence};
 use crate::pixels::{Pixels, Precision};
@@ -69,8 +67,6 @@ struct Kept {
     sequence: Sequence,
 }
 
-/// Farthest from 0 that a picture may begin, pixels, as the contract has it.
-const MOST_ORIGIN: i32 = 1_000_000;
 /// Bytes a pixel of what is mixed with what, as floats, and of the result.
 const MIXED: u64 = 3 * 16;
 
@@ -236,13 +232,9 @@ impl Filter {
             let (color, bad) = own.working(at, there).unwrap_or((&picture.pixels, 0));
             filtered.replaced += bad;
             let precision = if to == source.state { color.precision() } else { Precision::F32 };
-            let mut request = self.request(name, color, source.state, working.space)?;
-            // Windows farther out than marks can be told apart are windows of their own.
-            if picture.origin.iter().all(|o| o.abs() <= MOST_ORIGIN) {
-                [request.origin_x, request.origin_y] = picture.origin.map(f64::from);
-            }
-            request.canonical_height = picture.display.map_or(0, |window| window.height as u32);
-            request.frame = own.number.unwrap_or_default();
+            let size = (color.width(), color.height());
+            let usual = self.library.request(size).map_err(|e| e.at(name, "use a smaller picture"))?;
+            let request = Asked::of(picture, source.state, working.space, own.number).request(usual);
             let job = Job { at, there, request, color, window };
             let share = 1.0 / count as f32;
             let mut report = |done: f32| progress((at as f32 + done) * share);
@@ -292,29 +284,6 @@ impl Filter {
         }
         let nothing = || Error::input(name, "is given no style", "name one");
         Ok((below.ok_or_else(nothing)?, replaced))
-    }
-
-    fn request(
-        &self,
-        name: &str,
-        color: &Pixels,
-        state: ImageState,
-        space: Space,
-    ) -> Result<IsophoteRequest> {
-        let size = (color.width(), color.height());
-        let request = self.library.request(size).map_err(|e| e.at(name, "use a smaller picture"))?;
-        Ok(IsophoteRequest {
-            space: match space {
-                Space::Srgb => ISOPHOTE_SPACE_SRGB,
-                Space::Acescg => ISOPHOTE_SPACE_ACESCG,
-                _ => ISOPHOTE_SPACE_LINEAR,
-            },
-            alpha: match state {
-                ImageState::DisplayReferred => ISOPHOTE_ALPHA_STRAIGHT,
-                ImageState::SceneReferred => ISOPHOTE_ALPHA_PREMULTIPLIED,
-            },
-            ..request
-        })
     }
 }
 

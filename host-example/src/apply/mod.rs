@@ -1,5 +1,6 @@
 //! Filtering pictures and sequences of pictures from file to file, without any scene.
 
+pub mod asked;
 pub mod backend;
 pub mod convert;
 pub mod dry_run;

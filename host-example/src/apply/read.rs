@@ -11,7 +11,7 @@ use image::codecs::tiff::TiffDecoder;
 use image::codecs::webp::WebPDecoder;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageResult, Limits};
 
-use super::exr::{self, ExrFile, Picture, Selection};
+use super::exr::{self, ExrFile, Offers, Picture, Selection};
 use super::{jpeg, png};
 use crate::error::{Error, Result};
 use crate::frames;
@@ -183,6 +183,14 @@ impl Opened {
                     .saturating_add(decoded.saturating_mul(2))
                     .saturating_add(pixels.saturating_mul(4 * 4 * 3))
             }
+        }
+    }
+
+    /// What can be chosen in the file: layers and views of an EXR file, nothing in others.
+    pub fn offers(&self) -> Offers {
+        match &self.0 {
+            Kind::Exr(file) => file.offers(),
+            Kind::Other(..) => Offers::default(),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Progress of a run: a bar for people, lines of JSON for programs, and a summary.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
@@ -54,6 +54,8 @@ pub struct Report {
     sequence: bool,
     /// How many there are; none where nobody knows exactly.
     frames: Option<u64>,
+    /// Hundredths of the picture that were told of.
+    told: AtomicU32,
     /// Whether it was said that nothing can be printed.
     unheard: AtomicBool,
     started: Instant,
@@ -78,6 +80,7 @@ impl Report {
             json,
             sequence,
             frames: Some(frames as u64),
+            told: AtomicU32::new(0),
             unheard: AtomicBool::new(false),
             started: Instant::now(),
             counts: Mutex::new(Counts::default()),
@@ -93,8 +96,13 @@ impl Report {
 
     /// The share of the frame at hand that is done.
     pub fn progress(&self, done: f32) {
-        if !self.sequence {
-            self.bar.set_position((done * 1000.0) as u64);
+        if self.sequence {
+            return;
+        }
+        self.bar.set_position((done * 1000.0) as u64);
+        let hundredths = (done * 100.0) as u32;
+        if self.json && self.told.fetch_max(hundredths, Ordering::Relaxed) < hundredths {
+            self.line(&json!({"event": "progress", "done": f64::from(hundredths) / 100.0}));
         }
     }
 

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use glam::{Mat4, Vec4};
+use glam::{Mat4, Vec3, Vec4};
 
 use super::budget::Budget;
-use super::model::{Draw, Node, Scene, Transform};
+use super::material::{Image, Material, Texture};
+use super::model::{Bounds, Draw, Mesh, Node, Scene, Transform};
 use super::{gltf_file, obj_file, pose};
 use crate::error::{Error, Result};
 
@@ -43,6 +44,51 @@ impl Scene {
         }
         scene.finish(path)?;
         Ok(scene)
+    }
+
+    /// A scene that no file holds: meshes that stand where they are, with what they are made of. Views of the whole need not
+    /// frame those that are named as backdrops.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when there is nothing to draw.
+    pub fn assembled(
+        name: &str,
+        meshes: Vec<Mesh>,
+        backdrops: &[&str],
+        materials: Vec<Material>,
+        textures: Vec<Texture>,
+        images: Vec<Image>,
+    ) -> Result<Self> {
+        let node = |(index, mesh): (usize, &Mesh)| Node {
+            name: mesh.name.clone(),
+            mesh: Some(index),
+            backdrop: backdrops.contains(&mesh.name.as_str()),
+            ..Node::default()
+        };
+        let nodes = meshes.iter().enumerate().map(node).collect();
+        let mut scene = Self { meshes, materials, textures, images, nodes, ..Self::empty(Vec::new()) };
+        scene.finish(Path::new(name))?;
+        Ok(scene)
+    }
+
+    /// A scene of nothing yet.
+    pub(super) fn empty(warnings: Vec<String>) -> Self {
+        Self {
+            name: String::new(),
+            meshes: Vec::new(),
+            materials: Vec::new(),
+            textures: Vec::new(),
+            images: Vec::new(),
+            nodes: Vec::new(),
+            order: Vec::new(),
+            cameras: Vec::new(),
+            lights: Vec::new(),
+            skins: Vec::new(),
+            animations: Vec::new(),
+            draws: Vec::new(),
+            bounds: Bounds { min: Vec3::ZERO, max: Vec3::ZERO, extremes: Vec::new() },
+            warnings,
+        }
     }
 
     /// Turns a scene whose +Z points up so that +Y does, and -Z is where its +Y was.

@@ -18,7 +18,7 @@ use self::normal_form::normal_form;
 use super::budget::{Budget, TOO_LARGE};
 use super::geometry;
 use super::material::TextureUse;
-use super::model::{Bounds, Mesh, Node, Primitive, Scene, Vertex};
+use super::model::{Mesh, Node, Primitive, Scene, Vertex};
 use crate::error::{Error, Result};
 
 /// Faces that meet at more than this keep a sharp edge between them when normals are averaged.
@@ -54,7 +54,7 @@ pub fn load(path: &Path, texture: Option<&Path>, budget: &Budget) -> Result<Scen
     })
     .map_err(|e| invalid(e.to_string()))?;
     let mut loader =
-        Loader { path, budget, images: HashMap::new(), scene: empty_scene(warnings.into_inner()) };
+        Loader { path, budget, images: HashMap::new(), scene: Scene::empty(warnings.into_inner()) };
     for material in materials.unwrap_or_default() {
         let converted = loader.material(&material);
         loader.scene.materials.push(converted);
@@ -84,25 +84,6 @@ pub fn load(path: &Path, texture: Option<&Path>, budget: &Budget) -> Result<Scen
         scene.nodes.push(Node { name: model.name, mesh, ..Node::default() });
     }
     Ok(scene)
-}
-
-fn empty_scene(warnings: Vec<String>) -> Scene {
-    Scene {
-        name: String::new(),
-        meshes: Vec::new(),
-        materials: Vec::new(),
-        textures: Vec::new(),
-        images: Vec::new(),
-        nodes: Vec::new(),
-        order: Vec::new(),
-        cameras: Vec::new(),
-        lights: Vec::new(),
-        skins: Vec::new(),
-        animations: Vec::new(),
-        draws: Vec::new(),
-        bounds: Bounds { min: Vec3::ZERO, max: Vec3::ZERO, extremes: Vec::new() },
-        warnings,
-    }
 }
 
 fn primitive(mesh: &tobj::Mesh, plain: usize) -> std::result::Result<Primitive, String> {

@@ -45,6 +45,17 @@ impl Kernels {
         &self.queue
     }
 
+    /// Compiles all that a plan needs.
+    pub(super) fn compile(&self, plan: &Plan) -> Result<()> {
+        let textures = plan.textures().map_err(refused)?;
+        for (index, pass) in (0..).zip(plan.passes().map_err(refused)?) {
+            let written = pass.outputs.iter().filter_map(|at| textures.get(*at as usize));
+            let formats: Vec<Format> = written.map(|texture| texture.format).collect();
+            self.get(plan, index, &pass, &formats)?;
+        }
+        Ok(())
+    }
+
     /// The kernel of pass `index`, and whether it had to be compiled.
     pub(super) fn get(
         &self,

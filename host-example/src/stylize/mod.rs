@@ -54,7 +54,20 @@ impl Stylizer {
     /// # Errors
     /// [`crate::error::Error::Input`] when an input that the style needs is open, [`crate::error::Error::Failure`] when the device refuses.
     pub fn new(kernels: &Arc<Kernels>, library: &Library, style: Style, size: (u32, u32)) -> Result<Self> {
-        let request = request(library, &style, size)?;
+        let request = frame_request(library, &style, size)?;
+        Self::with_request(kernels, library, style, request)
+    }
+
+    /// Makes `style` ready for pictures as `request` says. `kernels` are those of the device that they are on.
+    ///
+    /// # Errors
+    /// As [`Stylizer::new`].
+    pub fn with_request(
+        kernels: &Arc<Kernels>,
+        library: &Library,
+        style: Style,
+        request: IsophoteRequest,
+    ) -> Result<Self> {
         let past = style.past(library, &request)?;
         let plan = style.plan(library, &request, 0)?;
         let runner = PlanRunner::new(kernels, &plan, past.clone())?;
@@ -158,7 +171,15 @@ impl Stylizer {
     /// [`crate::error::Error::Input`] for impossible sizes, [`crate::error::Error::Failure`] when the device refuses; the style must then be
     /// made anew.
     pub fn resize(&mut self, size: (u32, u32)) -> Result<()> {
-        let request = IsophoteRequest { width: size.0, height: size.1, ..self.request };
+        self.resize_at_scale(size, self.request.scale)
+    }
+
+    /// As [`Stylizer::resize`], where `scale` is the size over that of the full picture.
+    ///
+    /// # Errors
+    /// As [`Stylizer::resize`].
+    pub fn resize_at_scale(&mut self, size: (u32, u32), scale: f32) -> Result<()> {
+        let request = IsophoteRequest { width: size.0, height: size.1, scale, ..self.request };
         if request == self.request {
             return Ok(());
         }
@@ -167,6 +188,16 @@ impl Stylizer {
         self.edited = false;
         self.forget();
         self.replan(0)
+    }
+
+    /// Compiles what later frames need too, where they look at those before, so that none of them waits for it.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Failure`] when the device refuses.
+    pub fn compile_all(&self) -> Result<()> {
+        (1..=self.past.frames).try_for_each(|known| {
+            self.runner.kernels().compile(&self.style.plan(&self.library, &self.request, known)?)
+        })
     }
 
     fn rebuild(&mut self) -> Result<()> {
@@ -192,6 +223,14 @@ impl Stylizer {
         self.bind_with(&targets.radiance, targets)
     }
 
+    /// Reads pictures of these names, as large as was asked for or larger.
+    ///
+    /// # Errors
+    /// As [`Stylizer::bind`].
+    pub fn bind_inputs(&mut self, inputs: &[(&str, &wgpu::TextureView)]) -> Result<()> {
+        self.runner.bind(inputs)
+    }
+
     fn bind_with(&mut self, color: &Target, targets: &Targets) -> Result<()> {
         // Where nobody wants rest positions no plan reads them, and anything may stand for them.
         let rest = targets.rest.as_ref().unwrap_or(&targets.normal);
@@ -214,6 +253,23 @@ impl Stylizer {
         self.runner.encode(encoder)?;
         self.known = (self.planned + 1).min(self.past.frames);
         Ok(())
+    }
+
+    /// As [`Stylizer::encode`], so many passes from one on; says whether the last was among them.
+    ///
+    /// # Errors
+    /// As [`Stylizer::encode`].
+    pub fn encode_some(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        from: usize,
+        count: usize,
+    ) -> Result<bool> {
+        let is_whole = self.runner.encode_some(encoder, from, count)?;
+        if is_whole {
+            self.known = (self.planned + 1).min(self.past.frames);
+        }
+        Ok(is_whole)
     }
 
     /// The passes with their textures.
@@ -265,7 +321,10 @@ impl Style {
 }
 
 /// What the renderer's frames are: linear light, premultiplied, with guides.
-fn request(library: &Library, style: &Style, size: (u32, u32)) -> Result<IsophoteRequest> {
+///
+/// # Errors
+/// [`crate::error::Error::Input`] for impossible sizes.
+pub fn frame_request(library: &Library, style: &Style, size: (u32, u32)) -> Result<IsophoteRequest> {
     let request = style.request(library, size).map_err(|e| e.at("--size", "choose another size"))?;
     Ok(IsophoteRequest {
         space: ISOPHOTE_SPACE_LINEAR,

@@ -269,13 +269,31 @@ impl PlanRunner {
     /// # Errors
     /// [`Error::Failure`] when the inputs are not bound.
     pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
+        self.encode_some(encoder, 0, usize::MAX).map(|_| ())
+    }
+
+    /// Records so many passes of a frame from one on, for frames of several submissions, and says whether the last was among
+    /// them.
+    ///
+    /// # Errors
+    /// As [`PlanRunner::encode`].
+    pub fn encode_some(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        from: usize,
+        count: usize,
+    ) -> Result<bool> {
+        let end = from.saturating_add(count).min(self.passes.len());
         let descriptor = wgpu::ComputePassDescriptor { label: Some("stylize"), timestamp_writes: None };
         let mut compute = encoder.begin_compute_pass(&descriptor);
-        (0..self.passes.len()).try_for_each(|index| self.encode_pass(&mut compute, index))?;
+        (from..end).try_for_each(|index| self.encode_pass(&mut compute, index))?;
         drop(compute);
-        self.rings.encode_copies(encoder);
-        self.rings.advance();
-        Ok(())
+        let is_whole = end == self.passes.len();
+        if is_whole {
+            self.rings.encode_copies(encoder);
+            self.rings.advance();
+        }
+        Ok(is_whole)
     }
 
     /// Records the pass of an index alone, for hosts that measure each.
@@ -291,6 +309,11 @@ impl PlanRunner {
         compute.set_bind_group(0, group, &[]);
         compute.dispatch_workgroups(x, y, z);
         Ok(())
+    }
+
+    /// The kernels of its device.
+    pub(super) fn kernels(&self) -> &Kernels {
+        &self.kernels
     }
 
     /// Objects made and uploads so far.

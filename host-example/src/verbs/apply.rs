@@ -66,7 +66,7 @@ pub struct ApplyArgs {
     /// Prints what would be done, and does nothing.
     #[arg(long)]
     pub dry_run: bool,
-    /// Prints a line of JSON for every frame.
+    /// Prints a line of JSON for every frame; of a picture by itself for every hundredth, too.
     #[arg(long)]
     pub json: bool,
     /// Sets a parameter; node.id=value for one node of a graph. May be repeated.

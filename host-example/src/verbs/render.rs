@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 
 use super::shared::{LengthArgs, SceneArgs, parse_size};
 use super::staging::StagingArgs;
 use crate::apply::read;
+use crate::apply::report::{Outcome, Report};
+use crate::apply::tasks::Task;
 use crate::error::{Error, Result};
 use crate::files;
 use crate::frames::{FrameList, Pattern};
@@ -19,6 +20,7 @@ use crate::scene::Scene;
 use crate::shot::{Options, Shot};
 use crate::stop::Stop;
 use crate::stylize::style::{Setting, Style};
+use crate::video::{self, Film};
 
 /// Options of `render`.
 #[derive(Args, Debug)]
@@ -28,7 +30,8 @@ pub struct RenderArgs {
     #[command(flatten)]
     staging: StagingArgs,
     /// The picture: .png; or .exr with the scene-linear colour, normals, depth, object numbers, motion and rest
-    /// positions. out.####.exr, out.@@@@.exr or out.%04d.exr for a sequence; .#### is added where it lacks.
+    /// positions. out.####.exr, out.@@@@.exr or out.%04d.exr for a sequence; .#### is added where it lacks. A video that
+    /// ffmpeg writes, such as .mp4, .mov, .mkv or .webm, on black where the background is transparent.
     out: PathBuf,
     /// Size of the picture in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
@@ -37,9 +40,15 @@ pub struct RenderArgs {
     /// per second, 49-72 is its third second.
     #[arg(long, value_name = "N|LIST", default_value = "1", value_parser = FrameList::or_count, allow_hyphen_values = true)]
     frames: FrameList,
-    /// Leaves pictures alone that are there already and whole.
+    /// Leaves pictures alone that are there already and whole, and a video that is there.
     #[arg(long)]
     skip_existing: bool,
+    /// Prints a line of JSON for every frame, as apply does.
+    #[arg(long)]
+    json: bool,
+    /// Options of ffmpeg's encoder for a video, such as "-c:v libx265 -crf 20".
+    #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
+    encode: Option<String>,
     /// Turns the camera once around the scene over all frames.
     #[arg(long, conflicts_with = "camera")]
     turntable: bool,
@@ -52,7 +61,7 @@ pub struct RenderArgs {
     /// Time of frame 1 in the animation in seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true)]
     start: f32,
-    /// Frames per second of the animation.
+    /// Frames per second of the animation, and of a video.
     #[arg(long, value_name = "N", default_value_t = 24.0)]
     fps: f32,
     /// Exposes and tone-maps the colour of EXR files too, as PNG files and the window have it.
@@ -95,47 +104,106 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     let scene = args.scene.load()?;
     let options = args.options(&scene)?;
     let mut shot = Shot::new(scene, style, options)?;
-    let frames = args.frames.frames();
-    let pattern = match Pattern::new(&args.out)? {
-        None if frames.len() == 1 => None,
-        _ => Some(Pattern::or_added(&args.out)?),
-    };
     files::sweep(&args.out);
     let stop = Stop::on_signals();
+    let frames = args.frames.frames();
     if frames.len() == 1 {
         stop.ends_the_process("the picture");
     }
-    let bar = progress_bar(frames.len());
-    for (done, &number) in frames.iter().enumerate() {
-        if stop.is_requested() {
-            return Err(Error::failure(
-                format!("stopped after {done} of {} frames", frames.len()),
-                "start again with --skip-existing to go on",
-            ));
-        }
-        let file = pattern.as_ref().map_or_else(|| args.out.clone(), |pattern| pattern.file(number));
-        if !(args.skip_existing && read::is_whole(&file)) {
-            let picture = shot.draw(number)?;
-            if output::is_exr(&file) {
-                save_layers(&mut shot, &file, &picture)?;
-            } else {
-                output::save(&file, &picture)?;
-            }
-        }
-        bar.inc(1);
-    }
-    bar.finish_and_clear();
-    Ok(())
+    let report = Report::new(frames.len(), frames.len() > 1, args.json);
+    let result = match video::is_video(&args.out) {
+        true => args.film(&mut shot, &stop, &report),
+        false => args.pictures(&mut shot, &stop, &report),
+    };
+    report.end(result.is_ok());
+    result
 }
 
 impl RenderArgs {
+    /// Renders every frame to a file of its own.
+    fn pictures(&self, shot: &mut Shot, stop: &Stop, report: &Report) -> Result<()> {
+        let frames = self.frames.frames();
+        let pattern = match Pattern::new(&self.out)? {
+            None if frames.len() == 1 => None,
+            _ => Some(Pattern::or_added(&self.out)?),
+        };
+        for (done, &number) in frames.iter().enumerate() {
+            if stop.is_requested() {
+                return Err(Error::failure(
+                    format!("stopped after {done} of {} frames", frames.len()),
+                    "start again with --skip-existing to go on",
+                ));
+            }
+            let file = pattern.as_ref().map_or_else(|| self.out.clone(), |pattern| pattern.file(number));
+            let is_there = self.skip_existing && read::is_whole(&file);
+            if !is_there {
+                let picture = shot.draw(number)?;
+                if output::is_exr(&file) {
+                    save_layers(shot, &file, &picture)?;
+                } else {
+                    output::save(&file, &picture)?;
+                }
+            }
+            let outcome = if is_there { Outcome::Skipped } else { Outcome::Written(0) };
+            report.frame(&self.task(number, file), &outcome);
+        }
+        Ok(())
+    }
+
+    /// Renders all frames into a video.
+    fn film(&self, shot: &mut Shot, stop: &Stop, report: &Report) -> Result<()> {
+        let frames = self.frames.frames();
+        if self.skip_existing && self.out.is_file() {
+            frames.iter().for_each(|n| report.frame(&self.task(*n, self.out.clone()), &Outcome::Skipped));
+            return Ok(());
+        }
+        files::write_by_path(&self.out, |place| {
+            let mut film = None::<Film<'_>>;
+            for (done, &number) in frames.iter().enumerate() {
+                if stop.is_requested() {
+                    let problem = format!("stopped after {done} of {} frames", frames.len());
+                    return Err(Error::failure(problem, "start again"));
+                }
+                let picture = shot.draw(number)?;
+                let unequal = || Error::failure("a picture has no pixels", "use another --size");
+                let frame = video::shown(&picture).ok_or_else(unequal)?;
+                let film = match &mut film {
+                    Some(film) => film,
+                    None => {
+                        let rate = f64::from(self.fps);
+                        film.insert(Film::start(&frame, rate, (&self.out, place), self.encode.as_deref())?)
+                    }
+                };
+                if !film.put(&frame)? {
+                    break;
+                }
+                report.frame(&self.task(number, self.out.clone()), &Outcome::Written(0));
+            }
+            film.map_or(Ok(()), Film::end)
+        })
+    }
+
+    fn task(&self, number: i64, output: PathBuf) -> Task {
+        Task { frame: Some(number), input: self.scene.scene.clone(), output }
+    }
+
     fn is_stylized(&self) -> bool {
         self.style != Path::new("none")
     }
 
     /// Refuses what can be refused without a library, a scene or a device.
     fn check(&self) -> Result<()> {
-        output::check_extension(&self.out)?;
+        let is_video = video::is_video(&self.out) && self.out != Path::new("-");
+        if !is_video {
+            output::check_extension(&self.out)?;
+        }
+        if self.encode.is_some() && !is_video {
+            return Err(Error::input(
+                "--encode",
+                "is for videos",
+                "leave it out, or name a video such as out.mp4",
+            ));
+        }
         files::check_writable(&self.out)?;
         let steadiness = self.steadiness.map(|s| format!("--steadiness {s}"));
         let setting = self.set.first().map(|setting| format!("--set {setting}")).or(steadiness);
@@ -237,16 +305,4 @@ fn save_layers(shot: &mut Shot, file: &Path, color: &Picture) -> Result<()> {
     }));
     // A matrix column by column is the same for row vectors row by row.
     output::save_layers(file, &layers, shot.view().map(|view| view.world_to_view.to_cols_array()))
-}
-
-/// A bar on standard error, for sequences only, and none where no terminal listens.
-fn progress_bar(count: usize) -> ProgressBar {
-    if count < 2 {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(count as u64);
-    if let Ok(style) = ProgressStyle::with_template("{wide_bar} frame {pos} of {len}, {eta} left") {
-        bar.set_style(style);
-    }
-    bar
 }

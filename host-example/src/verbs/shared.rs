@@ -1,6 +1,6 @@
 //! Arguments that several verbs have.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
@@ -11,11 +11,19 @@ use crate::scene::Scene;
 use crate::stylize::lengths::Lengths;
 use crate::stylize::style::Style;
 
-/// The scene of `render` and `view`.
+/// The scene of `render`.
 #[derive(Args, Debug)]
 pub struct SceneArgs {
     /// The scene: .gltf, .glb or .obj.
     pub scene: PathBuf,
+    /// How it is read.
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+}
+
+/// How scenes are read.
+#[derive(Args, Debug)]
+pub struct ReadingArgs {
     /// Image that colours an OBJ without textures.
     #[arg(long, value_name = "FILE")]
     pub texture: Option<PathBuf>,
@@ -39,19 +47,24 @@ impl SceneArgs {
     /// # Errors
     /// As [`Scene::load`].
     pub fn load(&self) -> Result<Scene> {
-        let mut scene = Scene::load(&self.scene, self.texture.as_deref())?;
+        self.reading.load(&self.scene)
+    }
+}
+
+impl ReadingArgs {
+    /// Loads a scene and prints its warnings.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn load(&self, path: &Path) -> Result<Scene> {
+        let mut scene = Scene::load(path, self.texture.as_deref())?;
         if self.up == Up::Z {
             scene.turn_z_up();
         }
         for warning in &scene.warnings {
-            output::warn(format_args!("{}: {warning}", self.scene.display()));
+            output::warn(format_args!("{}: {warning}", path.display()));
         }
         Ok(scene)
-    }
-
-    /// Name of the file, without its folder.
-    pub fn name(&self) -> String {
-        self.scene.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
     }
 }
 

@@ -132,6 +132,14 @@ impl StagingArgs {
         })
     }
 
+    /// The file of the picture of the surroundings.
+    pub fn surroundings(&self) -> Option<PathBuf> {
+        match &self.background {
+            Behind::File(path) => Some(path.clone()),
+            _ => None,
+        }
+    }
+
     /// Whether the scene casts its shadow on an invisible ground.
     pub fn ground(&self, scene: &Scene) -> bool {
         self.ground || !self.no_ground && floor::lacks_floor(scene)

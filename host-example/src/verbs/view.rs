@@ -1,35 +1,49 @@
-//! `isophote view`: a window that renders a scene and stylizes every frame.
+//! `isophote view`: the artist's window.
+
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::shared::{LengthArgs, SceneArgs, parse_size};
+use super::shared::{LengthArgs, ReadingArgs, parse_size};
 use super::staging::StagingArgs;
 use crate::error::Result;
 use crate::loader::Library;
-use crate::stylize::style::Setting;
+use crate::stylize::style::{Setting, Style};
 use crate::view;
-use crate::view::viewer::{Options, Viewer, usable_styles};
+use crate::view::document::kind::Kind;
+use crate::view::document::{self, Document};
+use crate::view::look::{Look, PLAIN};
+use crate::view::reel::Reel;
+use crate::view::scenery::{Lighting, Scenery, Staging};
+use crate::view::session::Session;
+use crate::view::settings::Settings;
+
+/// The look of a window that was never open.
+const FIRST: &str = "cartoon";
 
 /// Options of `view`.
 #[derive(Args, Debug)]
-#[command(after_help = view::KEYS)]
+#[command(after_help = view::keys())]
 pub struct ViewArgs {
+    /// A scene (.gltf, .glb or .obj), a picture (PNG, JPEG, TIFF, WebP, HDR or EXR), a sequence (shot.####.exr) or a video.
+    /// Without one the window asks what to open.
+    file: Option<PathBuf>,
     #[command(flatten)]
-    scene: SceneArgs,
+    reading: ReadingArgs,
     #[command(flatten)]
     staging: StagingArgs,
     /// A style for the keys 1, 2, ...: none, the id of a node, a look, or a graph file or preset (.json). May be repeated
     /// [default: none and every node of the group styles].
     #[arg(long, value_name = "STYLE")]
-    style: Vec<String>,
+    style: Vec<PathBuf>,
     /// Sets a parameter of the styles that have it. May be repeated.
     #[arg(long, value_name = "ID=VALUE")]
     set: Vec<Setting>,
     #[command(flatten)]
     lengths: LengthArgs,
-    /// Size of the window in pixels.
-    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
-    size: (u32, u32),
+    /// Size of the window in pixels [default: what it was last, at first 1440x900].
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    size: Option<(u32, u32)>,
     /// Closes the window after so many frames.
     #[arg(long, value_name = "N")]
     frames: Option<u32>,
@@ -45,20 +59,63 @@ pub struct ViewArgs {
 /// [`crate::error::Error::Failure`] without a display or a graphics device.
 pub fn run(args: &ViewArgs) -> Result<()> {
     let library = Library::open()?;
-    let styles = usable_styles(&library, &args.style, &args.set)?;
-    let scene = args.scene.load()?;
-    let options = Options {
-        name: args.scene.name(),
-        styles,
-        settings: args.set.clone(),
-        lengths: args.lengths.lengths,
-        size: args.size,
+    let looks = looks(&library, args)?;
+    let (settings, problem) = Settings::read();
+    let last = settings.look.clone().unwrap_or_else(|| FIRST.into());
+    let last = Some(last).filter(|_| args.style.is_empty());
+    let mut session = Session::new(library, looks, settings)?;
+    problem.iter().for_each(|problem| session.notes.complain(problem));
+    session.prepare(&args.set, args.lengths.lengths);
+    session.record.limit = args.frames;
+    session.resume(last.as_deref());
+    if let Some(path) = &args.file {
+        open(&mut session, path, args)?;
+    }
+    view::show(session, args.size, args.report)
+}
+
+/// Opens what was named, before there is a window.
+fn open(session: &mut Session, path: &Path, args: &ViewArgs) -> Result<()> {
+    let document = Document::open(path, &document::Options::default())?;
+    if document.kind() != Kind::Scene {
+        session.show_reel(Reel::new(document)?);
+        return Ok(());
+    }
+    let scene = args.reading.load(path)?;
+    let staging = Staging {
         framing: args.staging.framing(),
         camera: args.staging.camera(&scene)?,
-        light: args.staging.light(),
-        background: args.staging.background()?,
+        lighting: Lighting {
+            sun: args.staging.light(),
+            background: args.staging.background()?,
+            surroundings: args.staging.surroundings(),
+            ..Lighting::default()
+        },
         ground: args.staging.ground(&scene),
-        frames: args.frames,
     };
-    view::show(Viewer::new(library, scene, options), args.report)
+    let (width, height) = args.size.or(session.settings.window).unwrap_or((16, 10));
+    let scenery = Scenery::new(scene, staging, width as f32 / height as f32);
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    session.show_scene(scenery, Some(path.to_owned()), name);
+    Ok(())
+}
+
+/// The looks of the keys, checked to be usable.
+fn looks(library: &Library, args: &ViewArgs) -> Result<Vec<Look>> {
+    let mut names = args.style.clone();
+    if names.is_empty() {
+        names.push(PLAIN.into());
+        let catalogue = library.catalogue().map_err(|e| e.at("the library", "install it again"))?;
+        names.extend(catalogue.nodes.iter().filter(|n| n.group == "styles").map(|n| n.id.into()));
+    }
+    let looks: Vec<Look> = names.iter().map(|name| Look::open(library, name)).collect::<Result<_>>()?;
+    let styles: Vec<Style> =
+        looks.iter().filter_map(|look| look.style(library).transpose()).collect::<Result<_>>()?;
+    for setting in &args.set {
+        let mut refusals = styles.iter().map(|style| style.set(setting));
+        if let Some(refusal) = refusals.next().filter(|_| !refusals.any(|r| r.is_ok())) {
+            refusal?;
+        }
+    }
+    Ok(looks)
 }

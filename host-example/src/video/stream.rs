@@ -98,6 +98,30 @@ impl Stream {
         })
     }
 
+    /// Of frames of our own, as most players take them: so many a second, of an even number of rows and columns.
+    pub fn of_frames((width, height): (u32, u32), rate: f64) -> Self {
+        const HD: &str = "bt709";
+        let tags =
+            [("-color_range", "tv"), ("-colorspace", HD), ("-color_trc", HD), ("-color_primaries", HD)];
+        Self {
+            width,
+            height,
+            rate: format!("{rate:.3}"),
+            is_steady: true,
+            frames: 0,
+            pixels: "yuv420p".into(),
+            aspect: "1:1".into(),
+            range: "tv",
+            matrix: HD.into(),
+            tags: tags.map(|(option, value)| [option.into(), value.into()]).into(),
+        }
+    }
+
+    /// Frames per second as a number.
+    pub fn frames_per_second(&self) -> f64 {
+        fraction(&self.rate)
+    }
+
     /// Of a YUV4MPEG stream, with its first line.
     ///
     /// # Errors

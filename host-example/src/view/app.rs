@@ -1,80 +1,113 @@
-//! The viewer's window: what keys and mouse do, and when a frame is drawn.
+//! The window: its events, and when a frame is drawn.
 
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
+use egui_winit::State;
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
-use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, WindowEvent};
-use winit::event_loop::{ActiveEventLoop, ControlFlow};
-use winit::keyboard::{Key, NamedKey};
+use winit::event::{ElementState, KeyEvent, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
+use winit::keyboard::{Key, ModifiersState, NamedKey};
 use winit::window::{Window, WindowId};
 
+use super::desk::Desk;
+use super::pace::Pace;
+use super::reel::Reel;
+use super::session::{Session, Wish};
 use super::stage::{Drawn, Stage};
-use super::viewer::Viewer;
+use super::ui;
+use super::worker::Wake;
 use crate::error::{Error, Result};
 
-/// Radians per pixel of dragging.
-const TURN: f32 = 0.008;
-/// Factor on the distance per notch of the wheel.
-const ZOOM: f32 = 0.88;
-/// How often a lost device is opened anew before the viewer gives up.
+/// How often a lost device is opened anew before the window gives up.
 const REVIVALS: u32 = 3;
-/// Seconds between two updates of the title.
-const TITLE_SECONDS: f32 = 0.25;
+/// Time between two updates of the title.
+const TITLE: Duration = Duration::from_millis(250);
+/// Size of the window in pixels where nobody says anything else.
+const SIZE: (u32, u32) = (1440, 900);
+
+/// What arrives at the window besides its own events.
+#[derive(Debug)]
+pub enum Event {
+    /// Something was done beside the window.
+    Done,
+    /// A program for people with impairments asks for something.
+    Access(egui_winit::accesskit_winit::Event),
+}
+
+impl From<egui_winit::accesskit_winit::Event> for Event {
+    fn from(event: egui_winit::accesskit_winit::Event) -> Self {
+        Self::Access(event)
+    }
+}
 
 /// The window and what it shows.
 pub struct App {
-    viewer: Viewer,
-    window: Option<Arc<Window>>,
+    session: Session,
+    desk: Desk,
+    pace: Pace,
+    size: Option<(u32, u32)>,
+    // Dropped in order: the device before the window.
     stage: Option<Stage>,
-    /// Ended the viewer, when something did.
+    input: Option<State>,
+    window: Option<Arc<Window>>,
+    proxy: EventLoopProxy<Event>,
+    wake: Wake,
+    /// Ended the window, when something did.
     pub failure: Option<Error>,
     revivals: u32,
-    dragging: Option<Drag>,
-    cursor: (f64, f64),
-    shift: bool,
+    modifiers: ModifiersState,
     hidden: bool,
-    dirty: bool,
-    titled: Instant,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Drag {
-    Orbit,
-    Pan,
+    /// When the next frame is wanted, if nothing happens before.
+    due: Option<Instant>,
+    titled: Option<Instant>,
+    /// Events for the next frame.
+    late: Vec<egui::Event>,
 }
 
 impl App {
-    /// A viewer whose window opens once the event loop runs.
-    pub fn new(viewer: Viewer) -> Self {
-        Self {
-            viewer,
-            window: None,
+    /// A window that opens once the event loop runs, with a size in pixels if it is to have a certain one.
+    pub fn new(session: Session, size: Option<(u32, u32)>, proxy: EventLoopProxy<Event>) -> Result<Self> {
+        let waker = proxy.clone();
+        let wake: Wake = Arc::new(move || {
+            // Nobody is to be woken once the window is closed.
+            let _ = waker.send_event(Event::Done);
+        });
+        Ok(Self {
+            desk: Desk::new(&wake)?,
+            pace: Pace::default(),
+            session,
+            size,
             stage: None,
+            input: None,
+            window: None,
+            proxy,
+            wake,
             failure: None,
             revivals: 0,
-            dragging: None,
-            cursor: (0.0, 0.0),
-            shift: false,
+            modifiers: ModifiersState::empty(),
             hidden: false,
-            dirty: true,
-            titled: Instant::now(),
-        }
+            due: Some(Instant::now()),
+            titled: None,
+            late: Vec::new(),
+        })
     }
 
     /// What was shown, for whoever asked for a report.
-    pub fn viewer(&self) -> &Viewer {
-        &self.viewer
+    pub fn session(&self) -> &Session {
+        &self.session
     }
 
     fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
         let window = match &self.window {
             Some(window) => Arc::clone(window),
             None => {
-                let (width, height) = self.viewer.size;
+                let (width, height) = self.size.or(self.session.settings.window).unwrap_or(SIZE);
                 let attributes = Window::default_attributes()
-                    .with_title(self.viewer.title(None))
+                    .with_title(self.session.title())
+                    // What reads the window aloud must be there before it is seen.
+                    .with_visible(false)
                     .with_inner_size(PhysicalSize::new(width, height));
                 let window = event_loop.create_window(attributes).map_err(|e| {
                     Error::failure(
@@ -85,22 +118,35 @@ impl App {
                 Arc::clone(self.window.insert(Arc::new(window)))
             }
         };
-        let mut stage = Stage::new(&window, event_loop.owned_display_handle(), &self.viewer)?;
-        stage.set_style(&self.viewer.library, self.viewer.load(self.viewer.style())?)?;
-        self.viewer.adapter = stage.adapter();
+        let stage = Stage::new(&window, event_loop.owned_display_handle(), &self.wake)?;
+        if self.input.is_none() {
+            let context = egui::Context::default();
+            ui::theme::apply(&context);
+            let scale = Some(window.scale_factor() as f32);
+            let side = Some(stage.most_texels());
+            let mut input = State::new(context, egui::ViewportId::ROOT, event_loop, scale, None, side);
+            input.init_accesskit(event_loop, &window, self.proxy.clone());
+            self.input = Some(input);
+        } else if let Some(input) = &self.input {
+            // The letters lived on the device that is gone.
+            input.egui_ctx().set_fonts(egui::FontDefinitions::default());
+        }
+        window.set_visible(true);
+        self.session.record.adapter = stage.adapter();
+        self.pace.is_software = stage.is_software();
         self.stage = Some(stage);
-        self.dirty = true;
+        self.due = Some(Instant::now());
         Ok(())
     }
 
-    /// Ends the viewer on an error, unless a new device may help.
+    /// Ends the window on an error, unless a new device may help.
     fn handle(&mut self, event_loop: &ActiveEventLoop, result: Result<()>) {
         let Err(error) = result else { return };
         let lost = self.stage.as_ref().is_some_and(Stage::is_lost);
         self.stage = None;
         if lost && self.revivals < REVIVALS {
             self.revivals += 1;
-            eprintln!("warning: {error}; opening the device again");
+            self.session.notes.complain(&error);
             match self.open(event_loop) {
                 Ok(()) => return,
                 Err(error) => self.failure = Some(error),
@@ -112,77 +158,123 @@ impl App {
     }
 
     fn draw(&mut self) -> Result<()> {
-        let (Some(window), Some(stage)) = (&self.window, &mut self.stage) else { return Ok(()) };
-        self.dirty = false;
+        let (Some(window), Some(stage), Some(input)) = (&self.window, &mut self.stage, &mut self.input)
+        else {
+            return Ok(());
+        };
+        self.due = None;
+        let session = &mut self.session;
+        self.desk.collect(session);
+        let context = input.egui_ctx().clone();
+        let mut raw = input.take_egui_input(window);
+        self.late = one_click(&mut raw.events, std::mem::take(&mut self.late));
+        let output = context.run_ui(raw, |ui| ui::show(ui, session));
+        input.handle_platform_output(window, output.platform_output);
+        let delay =
+            output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay);
+        let shapes = context.tessellate(output.shapes, output.pixels_per_point);
+        stage.panel.set(shapes, output.textures_delta, output.pixels_per_point);
+        if !context.egui_is_using_pointer() && !context.text_edit_focused() {
+            session.let_go();
+        }
+        let copied = self.desk.grant(session);
+        copied.into_iter().for_each(|text| input.set_clipboard_text(text));
+        session.frame_first();
+        if let Some(scenery) = &mut session.scenery {
+            scenery.advance();
+        }
+        if let Some(Err(error)) = session.reel.as_mut().map(Reel::advance) {
+            session.notes.complain(&error);
+        }
+        let scale = self.pace.scale(session);
+        let problems = stage.follow(session, scale)?;
+        problems.iter().for_each(|problem| session.notes.complain(problem));
+        let was_busy = session.busy;
+        session.busy = stage.is_busy().then_some("Preparing the look").or(self.desk.busy());
         let started = Instant::now();
-        let view = self.viewer.advance();
-        let drawn = stage.draw(window, &self.viewer.scene, &self.viewer.pose, &view, &self.viewer.look)?;
-        if drawn == Drawn::Skipped {
-            self.dirty = true;
-            return Ok(());
-        }
-        self.revivals = 0;
-        self.viewer.count(started.elapsed());
-        if self.titled.elapsed().as_secs_f32() > TITLE_SECONDS {
-            self.titled = Instant::now();
-            window.set_title(&self.viewer.title(Some(started.elapsed())));
-        }
-        Ok(())
-    }
-
-    fn key(&mut self, event_loop: &ActiveEventLoop, event: &KeyEvent) -> Result<()> {
-        if event.state != ElementState::Pressed {
-            return Ok(());
-        }
-        match event.logical_key.as_ref() {
-            Key::Named(NamedKey::Escape) | Key::Character("q") => event_loop.exit(),
-            Key::Named(NamedKey::Space) => self.viewer.toggle_playing(),
-            Key::Named(NamedKey::Tab) => return self.switch(self.viewer.next_style()),
-            Key::Character("f") => self.viewer.frame_all(),
-            Key::Character("c") => self.viewer.use_file_camera(),
-            Key::Character(text) => {
-                if let Some(number) =
-                    text.parse::<usize>().ok().filter(|n| (1..=self.viewer.styles.len()).contains(n))
-                {
-                    return self.switch(number - 1);
-                }
-                return Ok(());
+        let always =
+            session.record.limit.is_some() || session.scenery.as_ref().is_some_and(|scenery| scenery.playing);
+        let drawn = stage.draw(window, session, always)?;
+        let is_probed = session.probed != stage.probed;
+        session.probed = stage.probed;
+        let again = self.pace.next(drawn, started.elapsed());
+        let delay = delay.filter(|delay| *delay < Duration::from_secs(3600));
+        let delay = delay.into_iter().chain(again).min();
+        self.due = delay.map(|delay| Instant::now() + delay);
+        match drawn {
+            Drawn::Skipped => self.due = Some(Instant::now() + Duration::from_millis(10)),
+            Drawn::Picture => {
+                let look = session.look().source.display().to_string();
+                let size = window.inner_size();
+                session.record.count(&look, (size.width, size.height), started.elapsed());
             }
-            _ => return Ok(()),
+            Drawn::Begun => self.due = Some(Instant::now()),
+            Drawn::Controls => {}
         }
-        self.dirty = true;
+        if session.reel.as_ref().is_some_and(Reel::is_waiting) {
+            let soon = Instant::now() + Duration::from_millis(20);
+            self.due = Some(self.due.map_or(soon, |due| due.min(soon)));
+        }
+        if !problems.is_empty() || is_probed || !self.late.is_empty() || session.busy != was_busy {
+            self.due = Some(Instant::now());
+        }
+        if drawn != Drawn::Skipped {
+            self.revivals = 0;
+        }
+        if self.titled.is_none_or(|at| at.elapsed() > TITLE) {
+            self.titled = Some(Instant::now());
+            window.set_title(&session.title());
+        }
         Ok(())
     }
 
-    fn switch(&mut self, index: usize) -> Result<()> {
-        let Some(stage) = &mut self.stage else { return Ok(()) };
-        let loaded = self.viewer.load(&self.viewer.styles[index]);
-        match loaded.and_then(|style| stage.set_style(&self.viewer.library, style)) {
-            // A graph file that was edited meanwhile, say: the style before stays.
-            Err(error @ Error::Input { .. }) => eprintln!("warning: {error}"),
-            result => {
-                result?;
-                self.viewer.switched(index);
+    /// What a key does, unless something is being typed.
+    fn key(&mut self, event: &KeyEvent) {
+        let session = &mut self.session;
+        let pressed = event.state == ElementState::Pressed;
+        if event.logical_key.as_ref() == Key::Character("\\") {
+            session.easel.peek = pressed;
+            return;
+        }
+        if !pressed {
+            return;
+        }
+        if self.modifiers.control_key() || self.modifiers.super_key() {
+            match event.logical_key.as_ref() {
+                Key::Character("z") if !self.modifiers.shift_key() => session.undo(),
+                Key::Character("z" | "Z" | "y") => session.redo(),
+                Key::Character("o") => session.wishes.push(Wish::ChooseFile),
+                Key::Character("s") => session.wishes.push(Wish::SaveLook(self.modifiers.shift_key())),
+                Key::Character("S") => session.wishes.push(Wish::SaveLook(true)),
+                Key::Character("q") => session.wishes.push(Wish::Quit),
+                _ => {}
             }
+            return;
         }
-        self.dirty = true;
-        Ok(())
+        ui::keys::press(session, &event.logical_key);
     }
 
-    fn moved(&mut self, x: f64, y: f64) {
-        let (dx, dy) = ((x - self.cursor.0) as f32, (y - self.cursor.1) as f32);
-        self.cursor = (x, y);
-        let height = self.window.as_ref().map_or(1, |w| w.inner_size().height).max(1) as f32;
-        match self.dragging {
-            Some(Drag::Orbit) => self.viewer.orbit().rotate(-dx * TURN, dy * TURN),
-            Some(Drag::Pan) => self.viewer.orbit().pan(-dx / height, dy / height),
-            None => return,
+    /// Whether something is being typed, which keys belong to then.
+    fn is_typing(&self) -> bool {
+        self.input.as_ref().is_some_and(|input| input.egui_ctx().text_edit_focused())
+    }
+
+    /// Lets the controls see an event first.
+    fn pass_on(&mut self, event: &WindowEvent) {
+        let (Some(window), Some(input)) = (&self.window, &mut self.input) else { return };
+        let tab = matches!(event, WindowEvent::KeyboardInput { event, .. }
+            if event.logical_key == Key::Named(NamedKey::Tab));
+        // Tab goes from style to style, unless something is being typed.
+        if tab && !input.egui_ctx().text_edit_focused() {
+            return;
         }
-        self.dirty = true;
+        if input.on_window_event(window, event).repaint && !matches!(event, WindowEvent::RedrawRequested) {
+            self.due = Some(Instant::now());
+        }
     }
 }
 
-impl ApplicationHandler for App {
+impl ApplicationHandler<Event> for App {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
         if self.stage.is_none() {
             let opened = self.open(event_loop);
@@ -194,7 +286,18 @@ impl ApplicationHandler for App {
         self.stage = None;
     }
 
+    fn user_event(&mut self, _: &ActiveEventLoop, event: Event) {
+        self.due = Some(Instant::now());
+        if let (Event::Access(event), Some(input)) = (event, &mut self.input)
+            && let egui_winit::accesskit_winit::WindowEvent::ActionRequested(request) = event.window_event
+        {
+            input.on_accesskit_action_request(request);
+        }
+    }
+
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let typing = self.is_typing();
+        self.pass_on(&event);
         let result = match event {
             WindowEvent::CloseRequested => {
                 event_loop.exit();
@@ -202,10 +305,11 @@ impl ApplicationHandler for App {
             }
             WindowEvent::Resized(size) => {
                 self.hidden = size.width == 0 || size.height == 0;
-                self.dirty = true;
+                self.due = Some(Instant::now());
+                self.session.record.begin();
                 match &mut self.stage {
                     Some(stage) if !self.hidden => {
-                        self.viewer.resized((size.width, size.height));
+                        self.session.settings.window = Some((size.width, size.height));
                         stage.resize(size)
                     }
                     _ => Ok(()),
@@ -213,34 +317,27 @@ impl ApplicationHandler for App {
             }
             WindowEvent::Occluded(hidden) => {
                 self.hidden = hidden;
-                self.dirty = true;
+                self.due = Some(Instant::now());
                 Ok(())
             }
-            WindowEvent::KeyboardInput { event, .. } => self.key(event_loop, &event),
+            WindowEvent::KeyboardInput { event, is_synthetic, .. } => {
+                let is_real = !is_synthetic || event.state == ElementState::Released;
+                if is_real && !typing {
+                    self.key(&event);
+                    self.due = Some(Instant::now());
+                }
+                Ok(())
+            }
             WindowEvent::ModifiersChanged(modifiers) => {
-                self.shift = modifiers.state().shift_key();
+                self.modifiers = modifiers.state();
                 Ok(())
             }
-            WindowEvent::MouseInput { state, button, .. } => {
-                let drag = match button {
-                    MouseButton::Left if self.shift => Drag::Pan,
-                    MouseButton::Left => Drag::Orbit,
-                    _ => Drag::Pan,
-                };
-                self.dragging = (state == ElementState::Pressed).then_some(drag);
+            WindowEvent::Focused(false) => {
+                self.session.easel.peek = false;
                 Ok(())
             }
-            WindowEvent::CursorMoved { position, .. } => {
-                self.moved(position.x, position.y);
-                Ok(())
-            }
-            WindowEvent::MouseWheel { delta, .. } => {
-                let notches = match delta {
-                    MouseScrollDelta::LineDelta(_, y) => y,
-                    MouseScrollDelta::PixelDelta(p) => p.y as f32 / 40.0,
-                };
-                self.viewer.orbit().zoom(ZOOM.powf(notches));
-                self.dirty = true;
+            WindowEvent::DroppedFile(path) => {
+                self.session.wishes.push(Wish::Open(path));
                 Ok(())
             }
             WindowEvent::RedrawRequested => self.draw(),
@@ -250,21 +347,66 @@ impl ApplicationHandler for App {
     }
 
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
-        if self.viewer.finished() {
+        if self.session.record.is_finished() || self.desk.is_over() {
             event_loop.exit();
             return;
         }
-        let wanted = !self.hidden && (self.dirty || self.viewer.playing);
-        // A picture that stands still costs nothing.
-        event_loop.set_control_flow(if wanted { ControlFlow::Poll } else { ControlFlow::Wait });
-        if let Some(window) = self.window.as_ref().filter(|_| wanted) {
+        let always = self.session.is_playing() || self.session.record.limit.is_some();
+        let due = if always { Some(Instant::now()) } else { self.due };
+        let Some(due) = due.filter(|_| !self.hidden) else {
+            // A picture that stands still costs nothing.
+            event_loop.set_control_flow(ControlFlow::Wait);
+            return;
+        };
+        if due > Instant::now() {
+            event_loop.set_control_flow(ControlFlow::WaitUntil(due));
+            return;
+        }
+        event_loop.set_control_flow(ControlFlow::Poll);
+        if let Some(window) = &self.window {
             window.request_redraw();
         }
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
+        self.session.settings.look = Some(self.session.look().source.clone());
+        if let Err(error) = self.session.settings.write() {
+            self.session.notes.complain(&error);
+        }
         // The device goes before the window that its surface belongs to.
         self.stage = None;
+        self.input = None;
         self.window = None;
+    }
+}
+
+/// Leaves at most one press or release of a button among the events, those of before first, and returns the rest: controls
+/// do not see a click that begins and ends within one frame, as clicks do where frames are slow.
+fn one_click(events: &mut Vec<egui::Event>, before: Vec<egui::Event>) -> Vec<egui::Event> {
+    events.splice(..0, before);
+    let is_button = |event: &egui::Event| matches!(event, egui::Event::PointerButton { .. });
+    let second = events.iter().enumerate().filter(|(_, event)| is_button(event)).nth(1);
+    second.map(|(at, _)| at).map_or_else(Vec::new, |at| events.split_off(at))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fast_click_lasts_two_frames() {
+        let button = |pressed| egui::Event::PointerButton {
+            pos: egui::pos2(1.0, 2.0),
+            button: egui::PointerButton::Primary,
+            pressed,
+            modifiers: egui::Modifiers::NONE,
+        };
+        let moved = egui::Event::PointerMoved(egui::pos2(1.0, 2.0));
+        let mut events = vec![moved.clone(), button(true), button(false), moved.clone()];
+        let late = one_click(&mut events, Vec::new());
+        assert_eq!(events, [moved.clone(), button(true)]);
+        let mut next = vec![moved.clone()];
+        assert!(one_click(&mut next, late).is_empty());
+        assert_eq!(next, [button(false), moved.clone(), moved]);
     }
 }

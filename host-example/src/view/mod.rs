@@ -1,44 +1,72 @@
-//! The viewer: a window that renders a scene and stylizes every frame. [`KEYS`] says what can be done in it.
+//! The artist's window: a scene or a picture, and the look that is put on it, edited while it is watched.
+//!
+//! | what | where |
+//! |---|---|
+//! | the window's events, and when a frame is drawn | `app`, `pace` |
+//! | all that is known of what is shown, and steps back | `session`, `history`, `look`, `value`, `scenery`, `reel`, `easel` |
+//! | work beside the window | `worker`, `desk`, `idle`, `document`, `export` |
+//! | what lives on the device | `stage`, `source`, `pictures`, `lane`, `canvas`, `probe`, `panel` |
+//! | the controls | `ui` |
 
 mod app;
-mod present;
+mod canvas;
+mod command;
+mod demo;
+mod desk;
+pub mod document;
+mod easel;
+pub mod export;
+mod history;
+mod idle;
+mod lane;
+pub mod look;
+mod notes;
+mod pace;
+mod panel;
+mod pictures;
+mod probe;
+pub mod record;
+pub mod reel;
+pub mod scenery;
+pub mod session;
+pub mod settings;
+mod source;
 mod stage;
-pub mod viewer;
+pub mod ui;
+pub mod value;
+mod worker;
 
 use winit::error::EventLoopError;
 use winit::event_loop::EventLoop;
 
 use crate::error::{Error, Result};
-use crate::output;
-use app::App;
-use viewer::Viewer;
+use app::{App, Event};
+use session::Session;
 
 /// What keys and mouse do, for the help of the program.
-pub const KEYS: &str = "\
-Keys and mouse:
-  drag         orbits; with Shift or another button, pans
-  wheel        zooms
-  1, 2, ...    show the style of that number; Tab the next one
-  Space        plays and pauses the animation
-  f            frames the scene
-  c            looks through the file's camera
-  q, Escape    close the window";
+pub fn keys() -> String {
+    let mut text = "Keys and mouse:".to_owned();
+    for (key, what) in ui::keys::KEYS {
+        text += &format!("\n  {key:<16}{what}");
+    }
+    text
+}
 
-/// Opens the window, returns when it is closed, and prints a report of what was shown if asked to.
+/// Opens the window, returns when it is closed, and prints a report of what was shown if asked to. Without `size` in pixels
+/// it is as large as it was last.
 ///
 /// # Errors
-/// [`Error::Failure`] without a display or a graphics device; [`Error::Input`] for scenes and styles that
-/// cannot be shown.
-pub fn show(viewer: Viewer, with_report: bool) -> Result<()> {
+/// [`Error::Failure`] without a display or a graphics device.
+pub fn show(session: Session, size: Option<(u32, u32)>, with_report: bool) -> Result<()> {
     let failed = |e: &EventLoopError| {
         let problem = reason(&e.to_string()).to_owned();
         Error::failure(format!("no window can be opened: {problem}"), "start the viewer in a desktop session")
     };
-    let event_loop = EventLoop::new().map_err(|e| failed(&e))?;
-    let mut app = App::new(viewer);
+    let event_loop = EventLoop::<Event>::with_user_event().build().map_err(|e| failed(&e))?;
+    let mut app = App::new(session, size, event_loop.create_proxy())?;
     event_loop.run_app(&mut app).map_err(|e| failed(&e))?;
     if with_report {
-        report(app.viewer())?;
+        app.session().record.report()?;
     }
     app.failure.map_or(Ok(()), Err)
 }
@@ -46,17 +74,4 @@ pub fn show(viewer: Viewer, with_report: bool) -> Result<()> {
 /// Why the system refuses a window, without the line of winit's source that the text begins with.
 fn reason(problem: &str) -> &str {
     problem.split_once(".rs:").and_then(|(_, place)| place.split_once(": ")).map_or(problem, |(_, why)| why)
-}
-
-fn report(viewer: &Viewer) -> Result<()> {
-    let mut text = format!("{}\n", viewer.adapter);
-    for stretch in viewer.stretches() {
-        let mut times = stretch.times.clone();
-        times.sort_unstable();
-        let median = times.get(times.len() / 2).map_or(0.0, |t| t.as_secs_f64() * 1e3);
-        let (width, height) = stretch.size;
-        let style = &stretch.style;
-        text += &format!("{style} {width}x{height}: {} frames, {median:.1} ms each\n", times.len());
-    }
-    output::print(&text)
 }

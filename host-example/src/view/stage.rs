@@ -1,55 +1,91 @@
-//! Everything of the viewer that lives on the graphics device: surface, renderer, style, presentation.
+//! Everything of the window that lives on the graphics device: surface, picture, looks, canvas and panel.
 //!
-//! When the device is lost, the stage is thrown away and made anew; scene, camera and style are kept
-//! outside.
+//! When the device is lost, the stage is thrown away and made anew; what is shown and how is kept outside.
 
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use winit::dpi::PhysicalSize;
 use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
-use super::present::Present;
-use super::viewer::Viewer;
+use super::canvas::{Arrangement, Canvas, Numbers, SURROUND, Shown};
+use super::easel::Overlay;
+use super::lane::{Lane, Part};
+use super::look::Look;
+use super::panel::Panel;
+use super::pictures::{PictureSource, numbers};
+use super::probe::Probe;
+use super::session::{Session, Which};
+use super::source::{SceneSource, Source};
+use super::worker::Wake;
 use crate::error::{Error, Result};
-use crate::loader::Library;
 use crate::loader::catalogue::Kind;
-use crate::render::Renderer;
+use crate::loader::contract::IsophoteRequest;
 use crate::render::gpu::Gpu;
-use crate::render::look::Look;
-use crate::scene::Scene;
+use crate::render::layouts;
+use crate::render::look::Look as Light;
 use crate::scene::camera::View;
-use crate::scene::pose::Pose;
-use crate::stylize::Stylizer;
 use crate::stylize::kernels::Kernels;
-use crate::stylize::style::Style;
 
-/// Surface, renderer and style of one device. Fields are dropped in order: what uses the device before it.
+/// All of one device. Fields are dropped in order: what uses the device before it.
 pub struct Stage {
-    stylizer: Option<Stylizer>,
-    kernels: Arc<Kernels>,
-    renderer: Renderer,
-    present: Present,
+    /// The look, what it is compared with, and what is shown instead.
+    lanes: [Lane; 3],
+    source: Option<Source>,
+    canvas: Canvas,
+    probe: Probe,
+    /// Colours under the pointer, before and after, as of the last frame.
+    pub probed: Option<[[f32; 4]; 2]>,
+    /// Draws the controls.
+    pub panel: Panel,
     surface: wgpu::Surface<'static>,
     config: wgpu::SurfaceConfiguration,
     gpu: Gpu,
+    made: Option<Made>,
+    /// Grows when the source is another one.
+    sources: u64,
+    /// Whether the picture is only begun.
+    is_begun: bool,
+    /// Passes of a picture that are recorded at once, where the processor draws.
+    passes: usize,
+    /// What drawing the window took last, without the picture.
+    cost: Duration,
 }
 
 /// What became of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drawn {
-    /// It is on its way to the screen.
-    Shown,
+    /// It is on its way to the screen; the picture in it is a new one.
+    Picture,
+    /// So it is; the picture in it is the one of before, and another one is begun.
+    Begun,
+    /// So it is, with the picture of before.
+    Controls,
     /// There was no surface to draw on; try again later.
     Skipped,
 }
 
+/// What a picture was made of. While it stays the same, so does the picture.
+#[derive(Clone, Debug, PartialEq)]
+struct Made {
+    shown: [Which; 2],
+    overlay: Overlay,
+    asked: IsophoteRequest,
+    revisions: [u64; 3],
+    source: u64,
+    scene: Option<(View, Light, f32)>,
+}
+
+/// What recording a part of a picture may take.
+const GOAL: [Duration; 2] = [Duration::from_millis(15), Duration::from_millis(40)];
+
 impl Stage {
-    /// Opens a device for `window` and uploads the scene.
+    /// Opens a device for `window`.
     ///
     /// # Errors
     /// [`Error::Failure`] when there is no adapter for the window or the device refuses.
-    pub fn new(window: &Arc<Window>, display: OwnedDisplayHandle, viewer: &Viewer) -> Result<Self> {
+    pub fn new(window: &Arc<Window>, display: OwnedDisplayHandle, wake: &Wake) -> Result<Self> {
         let descriptor = wgpu::InstanceDescriptor::new_with_display_handle_from_env(Box::new(display));
         let instance = wgpu::Instance::new(descriptor);
         let surface = surface(&instance, window)?;
@@ -61,40 +97,40 @@ impl Stage {
                 "install a Vulkan driver with X11 or Wayland support",
             )
         })?;
-        // The pictures are linear light: a surface that encodes by itself saves the shader the work.
+        // Controls are blended as designers expect it, which is on encoded values.
         let formats = surface.get_capabilities(&gpu.adapter).formats;
-        config.format = formats.iter().copied().find(wgpu::TextureFormat::is_srgb).unwrap_or(config.format);
+        let plain = [wgpu::TextureFormat::Bgra8Unorm, wgpu::TextureFormat::Rgba8Unorm];
+        config.format = plain.into_iter().find(|format| formats.contains(format)).unwrap_or(config.format);
         config.present_mode = wgpu::PresentMode::AutoVsync;
         surface.configure(&gpu.device, &config);
-        let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &viewer.scene, size)?;
-        renderer.set_background(&viewer.background, false)?;
-        if viewer.ground {
-            renderer.add_ground();
-        }
-        let present = Present::new(&gpu.device, config.format);
+        let canvas = Canvas::new(&gpu.device, config.format);
+        let probe = Probe::new(&gpu.device);
+        let panel = Panel::new(&gpu.device, config.format);
         let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
+        let lane = || Lane::new(&kernels, Arc::clone(wake));
+        let lanes = [lane()?, lane()?, lane()?];
         gpu.check()?;
-        let mut stage = Self { stylizer: None, kernels, renderer, present, surface, config, gpu };
-        stage.show();
-        Ok(stage)
+        Ok(Self {
+            lanes,
+            source: None,
+            canvas,
+            probe,
+            probed: None,
+            panel,
+            surface,
+            config,
+            gpu,
+            made: None,
+            sources: 0,
+            is_begun: false,
+            passes: 4,
+            cost: Duration::ZERO,
+        })
     }
 
-    /// Shows frames in `style` from now on, or as they were rendered.
-    ///
-    /// # Errors
-    /// As [`Stylizer::new`]; the style before stays.
-    pub fn set_style(&mut self, library: &Library, style: Option<Style>) -> Result<()> {
-        let size = (self.config.width, self.config.height);
-        let mut stylizer = style.map(|s| Stylizer::new(&self.kernels, library, s, size)).transpose()?;
-        if let Some(stylizer) = &mut stylizer {
-            if stylizer.wants_rest_positions()? {
-                self.renderer.add_rest_positions();
-            }
-            stylizer.bind(self.renderer.targets())?;
-        }
-        self.stylizer = stylizer;
-        self.show();
-        self.gpu.check()
+    /// Whether pictures are computed by the processor, which takes its time.
+    pub fn is_software(&self) -> bool {
+        self.gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu
     }
 
     /// Takes over the size of the window.
@@ -108,61 +144,253 @@ impl Stage {
         }
         (self.config.width, self.config.height) = size;
         self.surface.configure(&self.gpu.device, &self.config);
-        self.renderer.resize(size)?;
-        if let Some(stylizer) = &mut self.stylizer {
-            stylizer.resize(size)?;
-            stylizer.bind(self.renderer.targets())?;
-        }
-        self.show();
         self.gpu.check()
     }
 
-    /// Draws one frame: scene, style and presentation in one submission.
+    /// Takes over what is open, its size and the looks, as far as that can be done at once; the rest goes on beside the
+    /// window. Returns what went wrong with the looks.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the device fails, [`Error::Input`] for a scene beyond its limits.
+    pub fn follow(&mut self, session: &Session, scale: f32) -> Result<Vec<Error>> {
+        self.follow_source(session, scale)?;
+        let Some(source) = &mut self.source else { return Ok(Vec::new()) };
+        let overlay = session.easel.overlay.node().map(|node| Look::open(&session.library, node.as_ref()));
+        let overlay = overlay.transpose()?.unwrap_or_else(Look::plain);
+        let compared = session.compared.clone().unwrap_or_else(Look::plain);
+        let asked = source.asked();
+        let mut problems = Vec::new();
+        for (lane, look) in self.lanes.iter_mut().zip([session.look(), &compared, &overlay]) {
+            problems.extend(lane.follow(&session.library, look, asked).err());
+            if let Source::Scene(source) = source
+                && lane.wants_rest_positions()?
+                && source.add_rest_positions()
+            {
+                lane.unbind();
+            }
+        }
+        self.gpu.check()?;
+        Ok(problems)
+    }
+
+    /// Takes over the scene or picture that is open, its frame and its size.
+    fn follow_source(&mut self, session: &Session, scale: f32) -> Result<()> {
+        let usual = session.library.request((1, 1)).map_err(|e| e.at("the library", "install it again"))?;
+        let gpu = &self.gpu;
+        let (is_new, source) = match (&session.scenery, &session.reel, self.source.take()) {
+            (Some(scenery), _, old) => {
+                let [_, half] = session.easel.halves();
+                let pixels = |length: f32| ((length * scale).round() as u32).max(1);
+                let size = (pixels(half.width), pixels(half.height));
+                match old {
+                    Some(Source::Scene(mut source)) if source.is_of(scenery) => {
+                        (source.follow(scenery, size, scale)?, Source::Scene(source))
+                    }
+                    _ => {
+                        let usual = IsophoteRequest { scale, ..usual };
+                        (true, Source::Scene(Box::new(SceneSource::new(gpu, scenery, size, usual)?)))
+                    }
+                }
+            }
+            (None, Some(reel), old) => {
+                let Some((frame, scale)) = reel.frame(scale < 1.0) else { return Ok(()) };
+                match old {
+                    Some(Source::Picture(source)) if source.shows(frame) => {
+                        self.source = Some(Source::Picture(source));
+                        return Ok(());
+                    }
+                    Some(Source::Picture(mut source)) => {
+                        self.sources += 1;
+                        match source.follow(gpu, frame, scale) {
+                            true => (false, Source::Picture(source)),
+                            false => (true, Source::Picture(PictureSource::new(gpu, frame, scale, usual)?)),
+                        }
+                    }
+                    _ => (true, Source::Picture(PictureSource::new(gpu, frame, scale, usual)?)),
+                }
+            }
+            (None, None, _) => return Ok(()),
+        };
+        self.source = Some(source);
+        if is_new {
+            self.lanes.iter_mut().for_each(Lane::unbind);
+            self.sources += 1;
+        }
+        Ok(())
+    }
+
+    /// Whether a look is being built.
+    pub fn is_busy(&self) -> bool {
+        self.lanes.iter().any(Lane::is_busy)
+    }
+
+    /// Draws one frame in one submission: the picture, if it is to be another than before, canvas and controls. `always`:
+    /// the picture even if it is the same.
     ///
     /// # Errors
     /// [`Error::Failure`] when the device is lost or reports an error.
-    pub fn draw(
-        &mut self,
-        window: &Arc<Window>,
-        scene: &Scene,
-        pose: &Pose,
-        view: &View,
-        look: &Look,
-    ) -> Result<Drawn> {
-        use wgpu::CurrentSurfaceTexture as Current;
-        let (frame, renew) = match self.surface.get_current_texture() {
-            Current::Success(frame) => (frame, false),
-            Current::Suboptimal(frame) => (frame, true),
-            Current::Timeout | Current::Occluded => return Ok(Drawn::Skipped),
-            Current::Lost => {
-                self.surface = surface(&self.gpu.instance, window)?;
-                self.surface.configure(&self.gpu.device, &self.config);
-                return Ok(Drawn::Skipped);
-            }
-            Current::Outdated | Current::Validation => {
-                self.gpu.check()?;
-                self.surface.configure(&self.gpu.device, &self.config);
-                return Ok(Drawn::Skipped);
-            }
-        };
-        self.update_style()?;
+    pub fn draw(&mut self, window: &Arc<Window>, session: &Session, always: bool) -> Result<Drawn> {
+        self.panel.upload(&self.gpu.device, &self.gpu.queue);
+        let Some((frame, renew)) = self.next_frame(window)? else { return Ok(Drawn::Skipped) };
         let target = frame.texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.renderer.encode(&mut encoder, scene, pose, view, look);
-        if let Some(stylizer) = &mut self.stylizer {
-            stylizer.encode(&mut encoder)?;
-        }
-        self.present.encode(&mut encoder, &target);
+        let drawn = self.make(&mut encoder, session, always)?;
+        let started = Instant::now();
+        self.arrange(session);
+        self.encode_probe(&mut encoder, session);
+        self.paint(&mut encoder, &target, session);
         self.gpu.queue.submit([encoder.finish()]);
+        self.probe.ask();
         window.pre_present_notify();
         self.gpu.queue.present(frame);
+        self.panel.free();
         // The time of a frame is only known once it is done; a viewer that runs ahead of its device
         // would also answer the mouse late.
         self.gpu.wait()?;
+        self.probed = self.probe.read();
+        self.cost = started.elapsed();
         if renew {
             self.surface.configure(&self.gpu.device, &self.config);
         }
-        Ok(Drawn::Shown)
+        Ok(drawn)
+    }
+
+    /// Records the picture, if it is to be another one. Where the processor draws, a part of it is done at once instead, and
+    /// what is left with the next frames, so that the window answers meanwhile.
+    fn make(&mut self, encoder: &mut wgpu::CommandEncoder, session: &Session, always: bool) -> Result<Drawn> {
+        let made = self.to_make(session);
+        let mut begins = made.is_some() && (always || made != self.made);
+        if !begins && !self.is_begun {
+            return Ok(Drawn::Controls);
+        }
+        self.made = made;
+        if always || !self.is_software() {
+            self.encode_picture(encoder, session, begins, usize::MAX)?;
+            self.is_begun = false;
+            return Ok(Drawn::Picture);
+        }
+        let started = Instant::now();
+        loop {
+            let part = Instant::now();
+            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+            self.is_begun = !self.encode_picture(&mut encoder, session, begins, self.passes)?;
+            self.gpu.queue.submit([encoder.finish()]);
+            self.gpu.wait()?;
+            begins = false;
+            self.passes = match part.elapsed() {
+                took if took < GOAL[0] => self.passes.saturating_mul(2).min(64),
+                took if took > GOAL[1] => (self.passes / 2).max(1),
+                _ => self.passes,
+            };
+            if !self.is_begun {
+                return Ok(Drawn::Picture);
+            }
+            // What is spent on the window is spent on the picture, too.
+            if started.elapsed() > self.cost.max(GOAL[1]) {
+                return Ok(Drawn::Begun);
+            }
+        }
+    }
+
+    /// Draws canvas and controls.
+    fn paint(&mut self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView, session: &Session) {
+        let size = (self.config.width, self.config.height);
+        self.panel.prepare(&self.gpu.device, &self.gpu.queue, encoder, size);
+        let grey = wgpu::Color { r: SURROUND.into(), g: SURROUND.into(), b: SURROUND.into(), a: 1.0 };
+        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("window"),
+            color_attachments: &[Some(layouts::cleared(target, grey))],
+            ..Default::default()
+        });
+        let mut pass = pass.forget_lifetime();
+        if self.source.is_some() {
+            self.canvas.draw(&mut pass, session.easel.area, size);
+        }
+        self.panel.draw(&mut pass, size);
+    }
+
+    /// The texture to draw on, and whether the surface must be configured anew afterwards.
+    fn next_frame(&mut self, window: &Arc<Window>) -> Result<Option<(wgpu::SurfaceTexture, bool)>> {
+        use wgpu::CurrentSurfaceTexture as Current;
+        match self.surface.get_current_texture() {
+            Current::Success(frame) => return Ok(Some((frame, false))),
+            Current::Suboptimal(frame) => return Ok(Some((frame, true))),
+            Current::Timeout | Current::Occluded => return Ok(None),
+            Current::Lost => self.surface = surface(&self.gpu.instance, window)?,
+            Current::Outdated | Current::Validation => self.gpu.check()?,
+        }
+        self.surface.configure(&self.gpu.device, &self.config);
+        Ok(None)
+    }
+
+    /// What the picture would be made of now.
+    fn to_make(&self, session: &Session) -> Option<Made> {
+        let source = self.source.as_ref()?;
+        let scene = session.scenery.as_ref();
+        Some(Made {
+            shown: session.shown(),
+            overlay: session.easel.overlay,
+            asked: source.asked(),
+            revisions: self.lanes.each_ref().map(Lane::revision),
+            source: self.sources,
+            scene: scene.map(|scenery| (scenery.view(), *scenery.light(), scenery.time().0)),
+        })
+    }
+
+    /// Records the picture and the looks that are shown, or a part of it, and says whether all is recorded.
+    fn encode_picture(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        session: &Session,
+        begins: bool,
+        passes: usize,
+    ) -> Result<bool> {
+        let Some(source) = &mut self.source else { return Ok(true) };
+        if let (Source::Scene(source), Some(scenery), true) = (&mut *source, &session.scenery, begins) {
+            source.encode(encoder, scenery);
+        }
+        let asked = source.asked();
+        let shown = session.shown();
+        let part = Part { begins, passes, number: source.number() };
+        let mut is_whole = true;
+        for (lane, which) in self.lanes.iter_mut().zip([Which::Look, Which::Compared, Which::Overlay]) {
+            if shown.contains(&which) {
+                is_whole &= lane.encode(encoder, asked, part, |stylizer| source.bind(stylizer))?;
+            }
+        }
+        Ok(is_whole)
+    }
+
+    /// Says what lies where on the canvas.
+    fn arrange(&mut self, session: &Session) {
+        let Some(source) = &self.source else { return };
+        let easel = &session.easel;
+        let places = easel.places(session.nominal_size());
+        let [left, right] = session.shown();
+        let pictures = [(left, places[0]), (right, places[1])].map(|(which, place)| {
+            let (view, numbers) = picture(source, &self.lanes, easel.overlay, which);
+            Shown { view, numbers, place }
+        });
+        let arrangement = Arrangement {
+            area: easel.area,
+            pictures,
+            split: easel.split(),
+            exposure: easel.exposure.exp2(),
+            middle: session.scenery.as_ref().map_or(1.0, |scenery| scenery.distance()),
+            square: 8.0,
+        };
+        self.canvas.set(&self.gpu.device, &self.gpu.queue, &arrangement);
+    }
+
+    /// Lets the pixels under the pointer be read.
+    fn encode_probe(&mut self, encoder: &mut wgpu::CommandEncoder, session: &Session) {
+        let (Some(source), Some(pointer)) = (&self.source, session.pointer) else { return };
+        let size = session.nominal_size();
+        let Some((x, y)) = session.easel.pixel(size, pointer) else { return };
+        let place = [(x as f32 + 0.5) / size.0 as f32, (y as f32 + 0.5) / size.1 as f32];
+        let (before, _) = source.original();
+        let after = self.lanes[0].output().map_or(before, |(view, ..)| view);
+        self.probe.encode(encoder, [before, after], place);
     }
 
     /// Whether the device is gone, and with it the stage.
@@ -170,28 +398,45 @@ impl Stage {
         self.gpu.is_lost()
     }
 
+    /// Most texels of a texture across.
+    pub fn most_texels(&self) -> usize {
+        self.gpu.device.limits().max_texture_dimension_2d as usize
+    }
+
     /// Name of the adapter.
     pub fn adapter(&self) -> String {
         self.gpu.adapter.get_info().name
     }
+}
 
-    /// Lets the style look at as many frames before as there are by now.
-    fn update_style(&mut self) -> Result<()> {
-        if let Some(stylizer) = &mut self.stylizer
-            && stylizer.update()?
-        {
-            stylizer.bind(self.renderer.targets())?;
-            self.show();
-        }
-        Ok(())
+/// One of the pictures that can be shown; the original where there is nothing else yet.
+fn picture<'s>(
+    source: &'s Source,
+    lanes: &'s [Lane; 3],
+    overlay: Overlay,
+    which: Which,
+) -> (&'s wgpu::TextureView, Numbers) {
+    let guide = match overlay {
+        Overlay::Normal => Some(Numbers::Normal),
+        Overlay::Depth => Some(Numbers::Depth),
+        Overlay::ObjectId => Some(Numbers::ObjectId),
+        Overlay::Motion => Some(Numbers::Motion),
+        _ => None,
+    };
+    let guide = guide.filter(|_| which == Which::Overlay);
+    if let Some((numbers, view)) = guide.and_then(|numbers| Some((numbers, source.guide(numbers)?))) {
+        return (view, numbers);
     }
-
-    fn show(&mut self) {
-        let (picture, kind) = match &self.stylizer {
-            Some(stylizer) => (stylizer.output(), stylizer.kind()),
-            None => (&self.renderer.targets().color.view, Kind::Color),
-        };
-        self.present.bind(&self.gpu.device, &self.gpu.queue, picture, kind);
+    let lane = match which {
+        Which::Original => None,
+        Which::Look => lanes[0].output(),
+        Which::Compared => lanes[1].output(),
+        Which::Overlay => lanes[2].output(),
+    };
+    match lane {
+        Some((view, Kind::Scalar, _)) => (view, Numbers::Grey),
+        Some((view, _, space)) => (view, numbers(space)),
+        None => source.original(),
     }
 }
 

@@ -145,3 +145,14 @@ pub fn assets() -> Option<PathBuf> {
     let folder = root().join("../shared/assets");
     folder.is_dir().then_some(folder)
 }
+
+/// Whether ffmpeg is there; where it must be, its absence fails.
+pub fn has_ffmpeg() -> bool {
+    let is_there = |name: &str| Command::new(name).arg("-version").output().is_ok_and(|o| o.status.success());
+    if is_there("ffmpeg") && is_there("ffprobe") {
+        return true;
+    }
+    assert!(std::env::var("CI").is_err(), "ffmpeg is missing; install it");
+    eprintln!("\n*** SKIPPED: videos need ffmpeg ***\n");
+    false
+}

@@ -268,7 +268,7 @@ fn is_named(exr: &File, group: &Group, wanted: &str) -> bool {
 }
 
 /// How likely a layer is the picture that is meant, as [`rank`], where Cryptomattes may have any name.
-fn likely(group: &Group, mattes: &[Matte<'_>]) -> Option<u32> {
+pub fn likely(group: &Group, mattes: &[Matte<'_>]) -> Option<u32> {
     rank(group).filter(|_| mattes.iter().all(|matte| !matte.has(&group.layer)))
 }
 

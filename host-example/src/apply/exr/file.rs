@@ -7,6 +7,7 @@ use isophote_exr_edit::{Decoded, Edit, File, Limits, PartEdit, Sample, Window};
 use super::choose::{self, Chosen, Selection};
 use super::fault::Fault;
 use super::mask::{self, ChosenMask, MaskSource, OnUnknown};
+use super::offers::{self, Offers};
 use super::picture::{self, Picture};
 use crate::error::Result;
 use crate::pixels::{MOST_PIXELS, Pixels, Samples};
@@ -131,6 +132,11 @@ impl Opened {
             Ok(Self { exr, selection: selection.clone(), chosen })
         };
         open().map_err(|fault| fault.of(path))
+    }
+
+    /// What can be chosen in the file, and what is.
+    pub fn offers(&self) -> Offers {
+        offers::offers(&self.exr, &self.chosen)
     }
 
     /// Size of the largest picture.

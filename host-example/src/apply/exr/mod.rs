@@ -11,11 +11,13 @@ mod mask;
 mod mattes;
 mod motion;
 mod names;
+mod offers;
 mod picture;
 
 pub use self::choose::{Guide, GuideChoice, Selection};
 pub use self::file::{ExrFile, Opened, is_whole, mask_of, motion_of};
 pub use self::mask::{MaskSource, OnUnknown, add};
 pub use self::names::components;
+pub use self::offers::{Layer, Offers};
 pub use self::picture::Picture;
 pub use isophote_motion::Convention;

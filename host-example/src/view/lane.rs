@@ -1,0 +1,255 @@
+//! One look on the device: built beside the window, edited in it.
+
+use std::sync::Arc;
+
+use super::look::{Knob, Look};
+use super::worker::{Wake, Worker};
+use crate::error::{Error, Result};
+use crate::loader::Library;
+use crate::loader::catalogue::Kind;
+use crate::loader::contract::{IsophoteRequest, IsophoteSpace};
+use crate::stylize::Stylizer;
+use crate::stylize::kernels::Kernels;
+use crate::stylize::preset::Track;
+use crate::stylize::style::Setting;
+
+/// What is to be built.
+struct Job {
+    library: Library,
+    kernels: Arc<Kernels>,
+    recipe: Recipe,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Recipe {
+    look: Look,
+    /// What pictures the look is for; the reference of lengths is the look's own affair, and frames come later.
+    asked: IsophoteRequest,
+}
+
+/// A look that can be recorded.
+struct Ready {
+    stylizer: Stylizer,
+    recipe: Recipe,
+    knobs: Vec<Knob>,
+    /// Whether it reads what there is to read.
+    bound: bool,
+    /// Number of the last frame that was recorded.
+    number: Option<i64>,
+    /// Passes of a picture that were recorded, while it is not whole.
+    done: usize,
+}
+
+/// The part of a picture that is recorded at once.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// Whether it is the first.
+    pub begins: bool,
+    /// Most passes.
+    pub passes: usize,
+    /// Number of the frame, where frames follow one another.
+    pub number: Option<i64>,
+}
+
+/// A look on its way to the canvas.
+pub struct Lane {
+    worker: Worker<Job, (Recipe, Result<Ready>)>,
+    kernels: Arc<Kernels>,
+    ready: Option<Ready>,
+    /// What was last asked of the worker, or refused.
+    asked: Option<Recipe>,
+    revision: u64,
+    /// The last picture that was whole, its kind, and what its colours are.
+    shown: Option<(wgpu::TextureView, Kind, IsophoteSpace)>,
+}
+
+impl Lane {
+    /// A lane without a look.
+    ///
+    /// # Errors
+    /// As [`Worker::new`].
+    pub fn new(kernels: &Arc<Kernels>, wake: Wake) -> Result<Self> {
+        let worker = Worker::new("look", wake, |job: Job| {
+            let built = build(&job);
+            (job.recipe, built)
+        })?;
+        Ok(Self { worker, kernels: Arc::clone(kernels), ready: None, asked: None, revision: 0, shown: None })
+    }
+
+    /// Follows `look` for pictures as `asked`: at once where only values change, and behind the picture otherwise.
+    ///
+    /// # Errors
+    /// What the library or the device has against the look; the look before stays.
+    pub fn follow(&mut self, library: &Library, look: &Look, asked: IsophoteRequest) -> Result<()> {
+        let answer = self.worker.answer();
+        let wanted = Recipe { look: look.clone(), asked };
+        if look.is_plain() {
+            self.revision += u64::from(self.ready.is_some());
+            (self.ready, self.asked, self.shown) = (None, None, None);
+            return Ok(());
+        }
+        if let Some((recipe, built)) = answer.filter(|_| self.asked.is_some()) {
+            match built {
+                Ok(ready) => {
+                    self.ready = Some(ready);
+                    self.revision += 1;
+                }
+                // It is not asked for again until something else is wanted.
+                Err(error) if self.asked.as_ref() == Some(&recipe) => return Err(error),
+                Err(_) => {}
+            }
+        }
+        if self.ready.as_ref().is_some_and(|ready| ready.recipe == wanted) {
+            // What was asked for meanwhile is wanted no more.
+            self.asked = None;
+            return Ok(());
+        }
+        if self.asked.as_ref() == Some(&wanted) {
+            return Ok(());
+        }
+        let followed = self.ready.as_mut().map_or(Ok(false), |ready| ready.follow(&wanted));
+        self.asked = Some(wanted.clone());
+        if followed.inspect_err(|_| self.ready = None)? {
+            self.revision += 1;
+            self.asked = None;
+            return Ok(());
+        }
+        self.worker.ask(Job { library: library.clone(), kernels: Arc::clone(&self.kernels), recipe: wanted });
+        Ok(())
+    }
+
+    /// Whether the look that is wanted is being built.
+    pub fn is_busy(&self) -> bool {
+        self.worker.is_busy() && self.asked.is_some()
+    }
+
+    /// A number that grows with every change of what the lane gives.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// The last picture that was whole, its kind, and what its colours are.
+    pub fn output(&self) -> Option<(&wgpu::TextureView, Kind, IsophoteSpace)> {
+        self.shown.as_ref().map(|(view, kind, space)| (view, *kind, *space))
+    }
+
+    /// Whether the look must see rest positions of pictures as `asked`.
+    ///
+    /// # Errors
+    /// As [`Stylizer::wants_rest_positions`].
+    pub fn wants_rest_positions(&self) -> Result<bool> {
+        self.ready.as_ref().map_or(Ok(false), |ready| ready.stylizer.wants_rest_positions())
+    }
+
+    /// Records a part of the look on a picture as `asked`, if it is for such; `bind` says what it reads. Says whether the
+    /// picture is whole.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the device refuses.
+    pub fn encode(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        asked: IsophoteRequest,
+        part: Part,
+        bind: impl FnOnce(&mut Stylizer) -> Result<()>,
+    ) -> Result<bool> {
+        let Some(ready) = self.ready.as_mut().filter(|ready| ready.recipe.asked == asked) else {
+            return Ok(true);
+        };
+        let Ready { stylizer, bound, number, done, .. } = ready;
+        if part.begins {
+            *done = 0;
+            if part.number.is_some() && part.number != number.map(|number| number + 1) {
+                stylizer.forget();
+            }
+            *number = part.number;
+            stylizer.at_frame(part.number.unwrap_or_default())?;
+            if stylizer.update()? || !*bound {
+                bind(stylizer)?;
+                *bound = true;
+            }
+        } else if *done == usize::MAX {
+            return Ok(true);
+        }
+        let is_whole = stylizer.encode_some(encoder, *done, part.passes)?;
+        *done = if is_whole { usize::MAX } else { *done + part.passes };
+        if is_whole {
+            self.shown = Some((stylizer.output().clone(), stylizer.kind(), asked.space));
+        }
+        Ok(is_whole)
+    }
+
+    /// The inputs are others now.
+    pub fn unbind(&mut self) {
+        if let Some(ready) = &mut self.ready {
+            ready.bound = false;
+        }
+    }
+}
+
+impl Ready {
+    /// Takes over what can be without building anything, and says whether that was all.
+    fn follow(&mut self, wanted: &Recipe) -> Result<bool> {
+        let (old, new) = (&self.recipe.look, &wanted.look);
+        let is_same = old.preset.style == new.preset.style
+            && old.preset.lengths == new.preset.lengths
+            && old.style_name() == new.style_name();
+        let IsophoteRequest { width, height, scale, .. } = wanted.asked;
+        let asked = IsophoteRequest { width, height, scale, ..self.recipe.asked };
+        if !is_same || asked != wanted.asked {
+            return Ok(false);
+        }
+        let track = |look: &Look, knob: &Knob| {
+            look.preset
+                .params
+                .iter()
+                .rev()
+                .find(|(name, _)| *name == knob.name)
+                .map(|(_, track)| track.clone())
+        };
+        let mut settings = Vec::new();
+        for knob in &self.knobs {
+            let (before, after) = (track(old, knob), track(new, knob));
+            if before == after {
+                continue;
+            }
+            let is_still = |track: &Option<Track>| !matches!(track, Some(Track::Keys { .. }));
+            if knob.param.structural || !is_still(&before) || !is_still(&after) {
+                return Ok(false);
+            }
+            let (node, param) = match knob.name.rsplit_once('.') {
+                Some((node, param)) => (Some(node.to_owned()), param),
+                None => (None, knob.name.as_str()),
+            };
+            let value = new.value(knob).text();
+            settings.push(Setting { node, param: param.to_owned(), value });
+        }
+        for setting in &settings {
+            self.stylizer.set(setting)?;
+        }
+        if asked != self.recipe.asked {
+            self.stylizer.resize_at_scale((width, height), scale)?;
+            (self.bound, self.done) = (false, 0);
+        }
+        self.recipe = wanted.clone();
+        Ok(true)
+    }
+}
+
+fn build(job: &Job) -> Result<Ready> {
+    let Job { library, kernels, recipe } = job;
+    let Recipe { look, asked } = recipe;
+    let missing = || Error::failure("the plain look has no style", "choose a style");
+    let style = look.style(library)?.ok_or_else(missing)?;
+    let request = IsophoteRequest { reference_height: style.lengths.reference_height(), ..*asked };
+    let stylizer = Stylizer::with_request(kernels, library, style, request)?;
+    stylizer.compile_all()?;
+    Ok(Ready {
+        stylizer,
+        recipe: recipe.clone(),
+        knobs: look.knobs(library)?,
+        bound: false,
+        number: None,
+        done: 0,
+    })
+}

@@ -1,0 +1,276 @@
+//! A look: a style with the values of its parameters, as it is edited, saved and handed to other programs.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value as Json;
+
+use super::value::Value;
+use crate::error::{Error, Result};
+use crate::files;
+use crate::loader::catalogue::Param;
+use crate::loader::{Library, Refusal};
+use crate::stylize::preset::{self, Preset, Track};
+use crate::stylize::source;
+use crate::stylize::style::{Setting, Style};
+use crate::stylize::title::Title;
+
+/// The style that leaves pictures as they are.
+pub const PLAIN: &str = "none";
+
+/// A style with the values of its parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Look {
+    /// What people call it.
+    pub name: String,
+    /// What it was opened as: the id of a node, or the path of a graph file or preset.
+    pub source: PathBuf,
+    /// Style and parameters. The paths of graph files are relative to `source`.
+    pub preset: Preset,
+    /// What `source` says by itself.
+    opened: Preset,
+}
+
+/// One parameter of a look that can be changed.
+#[derive(Clone, Debug)]
+pub struct Knob {
+    /// Its name in presets and for `--set`.
+    pub name: String,
+    /// Index of the node within the graph.
+    pub node: u32,
+    /// The label of the node, for graphs of several.
+    pub of: &'static str,
+    /// What the node says about it.
+    pub param: Param,
+    /// The value that it has where the look says nothing.
+    pub default: Value,
+}
+
+impl Look {
+    /// The look that leaves pictures as they are.
+    pub fn plain() -> Self {
+        let preset = bare(String::new());
+        Self { name: "Original".into(), source: PLAIN.into(), opened: preset.clone(), preset }
+    }
+
+    /// Opens a node, a graph file or a preset, or the plain look by its name, and checks that it can be shown.
+    ///
+    /// # Errors
+    /// As [`Style::load`].
+    pub fn open(library: &Library, path: &Path) -> Result<Self> {
+        if path == Path::new(PLAIN) {
+            return Ok(Self::plain());
+        }
+        let id = path.to_str().unwrap_or_default();
+        let (name, preset) = match library.find_node(id) {
+            Ok(node) => (node.label.to_owned(), bare(node.id.to_owned())),
+            // Whatever is no node may be a file; if it is not, this says so in the best words.
+            Err(_) => {
+                Style::load(library, path, &[])?;
+                let text = source::read(path)?;
+                let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                let preset = if preset::is_graph(&text) { bare(file) } else { Preset::parse(path, &text)? };
+                let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+                (preset.title.name.clone().unwrap_or(stem), preset)
+            }
+        };
+        let mut look = Self { name, source: path.to_owned(), opened: preset.clone(), preset };
+        look.style(library)?;
+        let knobs = look.knobs(library)?;
+        look.use_names_of(&knobs);
+        look.opened = look.preset.clone();
+        Ok(look)
+    }
+
+    /// Whether pictures stay as they are.
+    pub fn is_plain(&self) -> bool {
+        self.preset.style.is_empty()
+    }
+
+    /// The style as the library knows it; none for the plain look.
+    ///
+    /// # Errors
+    /// As [`Style::of_preset`].
+    pub fn style(&self, library: &Library) -> Result<Option<Style>> {
+        if self.is_plain() {
+            return Ok(None);
+        }
+        Style::of_preset(library, &self.source, &self.preset).map(Some)
+    }
+
+    /// All parameters, in the order of the nodes and their declarations.
+    ///
+    /// # Errors
+    /// As [`Style::of_preset`].
+    pub fn knobs(&self, library: &Library) -> Result<Vec<Knob>> {
+        let bare = Self { preset: Preset { params: Vec::new(), ..self.preset.clone() }, ..self.clone() };
+        let Some(style) = bare.style(library)? else { return Ok(Vec::new()) };
+        let failed = |e: Refusal| e.at(&self.name, "choose another look");
+        let is_single = library.find_node(&self.preset.style).is_ok();
+        let own = style.graph.to_json().map_err(failed)?;
+        let own: Json = serde_json::from_str(&own).unwrap_or_default();
+        let mut knobs = Vec::new();
+        for node in 0..style.graph.count() {
+            let name = style.graph.name(node).map_err(failed)?;
+            let spec = style.graph.spec(node).map_err(failed)?;
+            let set = own["nodes"].as_array().into_iter().flatten().find(|entry| entry["name"] == *name);
+            for param in spec.params {
+                let given =
+                    set.and_then(|entry| Value::parse(&param.kind, &text_of(&entry["params"][param.id])));
+                let Some(default) = given.or_else(|| Value::default(&param.kind)) else { continue };
+                let name =
+                    if is_single && node == 0 { param.id.into() } else { format!("{name}.{}", param.id) };
+                knobs.push(Knob { name, node, of: spec.label, param, default });
+            }
+        }
+        Ok(knobs)
+    }
+
+    /// Calls all parameters by the names of their knobs; presets may leave out the node where only one has a parameter.
+    fn use_names_of(&mut self, knobs: &[Knob]) {
+        for (name, _) in &mut self.preset.params {
+            if knobs.iter().all(|knob| knob.name != *name)
+                && let Some(knob) = knobs.iter().find(|knob| knob.param.id == *name)
+            {
+                name.clone_from(&knob.name);
+            }
+        }
+    }
+
+    /// The value of a parameter at the first keyframe, or everywhere.
+    pub fn value(&self, knob: &Knob) -> Value {
+        let track = self.preset.params.iter().rev().find(|(name, _)| *name == knob.name);
+        let text = track.and_then(|(_, track)| match track {
+            Track::Still(text) => Some(text),
+            Track::Keys { keys, .. } => keys.first().map(|(_, text)| text),
+        });
+        text.and_then(|text| Value::parse(&knob.param.kind, text)).unwrap_or_else(|| knob.default.clone())
+    }
+
+    /// Whether a parameter changes from frame to frame.
+    pub fn is_animated(&self, knob: &Knob) -> bool {
+        self.preset
+            .params
+            .iter()
+            .any(|(name, track)| *name == knob.name && matches!(track, Track::Keys { .. }))
+    }
+
+    /// Whether a parameter is not what it is where nobody changes it.
+    pub fn differs(&self, knob: &Knob) -> bool {
+        self.is_animated(knob) || self.value(knob) != knob.default
+    }
+
+    /// Gives a parameter one value for all frames.
+    pub fn set(&mut self, knob: &Knob, value: &Value) {
+        let track = Track::Still(value.text());
+        let place = self.preset.params.iter_mut().find(|(name, _)| *name == knob.name);
+        match place {
+            _ if *value == knob.default => self.reset(knob),
+            Some((_, old)) => *old = track,
+            None => self.preset.params.push((knob.name.clone(), track)),
+        }
+    }
+
+    /// Gives a parameter its default.
+    pub fn reset(&mut self, knob: &Knob) {
+        self.preset.params.retain(|(name, _)| *name != knob.name);
+    }
+
+    /// Takes a setting of the command line over, if there is such a parameter.
+    pub fn take(&mut self, knobs: &[Knob], setting: &Setting) {
+        let is_meant = |knob: &&Knob| match &setting.node {
+            Some(node) => knob.name == format!("{node}.{}", setting.param),
+            None => knob.param.id == setting.param,
+        };
+        let Some(knob) = knobs.iter().find(is_meant) else { return };
+        if let Some(value) = Value::parse(&knob.param.kind, &setting.value) {
+            self.set(knob, &value);
+        }
+    }
+
+    /// Whether it is not what it was opened or saved as.
+    pub fn is_changed(&self) -> bool {
+        self.preset != self.opened
+    }
+
+    /// Settings that turn what it was opened as into it.
+    pub fn settings(&self, knobs: &[Knob]) -> Vec<String> {
+        let opened = Self { preset: self.opened.clone(), ..self.clone() };
+        let track = |look: &Self, name: &str| {
+            look.preset.params.iter().rev().find(|(own, _)| own == name).map(|(_, track)| track.clone())
+        };
+        let is_changed = |knob: &&Knob| track(&opened, &knob.name) != track(self, &knob.name);
+        let text = |knob: &Knob| format!("{}={}", knob.name, self.value(knob).text());
+        knobs.iter().filter(is_changed).map(text).collect()
+    }
+
+    /// Forgets all changes since it was opened.
+    pub fn revert(&mut self) {
+        self.preset = self.opened.clone();
+    }
+
+    /// Whether parameters change from frame to frame.
+    pub fn has_keyframes(&self) -> bool {
+        self.preset.params.iter().any(|(_, track)| matches!(track, Track::Keys { .. }))
+    }
+
+    /// What names the style for `apply` and `render`: the id of a node, or the path of a graph file.
+    pub fn style_name(&self) -> PathBuf {
+        self.preset.style_beside(&self.source).into()
+    }
+
+    /// The preset as it can be read from anywhere: the path of its graph file is absolute.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for paths that no preset can hold.
+    pub fn whole(&self) -> Result<Preset> {
+        let graph = self.style_name();
+        if graph.extension().is_none() {
+            return Ok(self.preset.clone());
+        }
+        let whole =
+            std::path::absolute(&graph).unwrap_or_else(|_| graph.clone()).into_os_string().into_string();
+        let style = whole.map_err(|_| {
+            Error::file(&graph, "has a path that is no UTF-8, which no preset can hold", "rename it")
+        })?;
+        Ok(Preset { style, ..self.preset.clone() })
+    }
+
+    /// Writes the look as a preset, and is what is in that file from then on.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for names that do not end in .json or that no preset can hold, [`Error::Failure`] when the disk
+    /// refuses.
+    pub fn save(&mut self, file: &Path) -> Result<()> {
+        if !file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
+            return Err(Error::file(file, "is no name of a look", "end it in .json"));
+        }
+        let mut preset = self.preset.clone();
+        // The name is that of the file from now on.
+        preset.title.name = None;
+        if self.source.parent() != file.parent() {
+            preset.style = self.whole()?.style;
+        }
+        let text = preset.to_json();
+        files::write(file, |out| std::io::Write::write_all(out, text.as_bytes()).map_err(|e| e.to_string()))?;
+        self.opened = preset.clone();
+        self.preset = preset;
+        self.source = file.to_owned();
+        self.name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(())
+    }
+}
+
+/// A style without any settings.
+fn bare(style: String) -> Preset {
+    Preset { title: Title::default(), style, lengths: None, params: Vec::new() }
+}
+
+/// A value of a graph file as people write it.
+fn text_of(json: &Json) -> String {
+    match json {
+        Json::String(text) => text.clone(),
+        Json::Array(parts) => parts.iter().map(Json::to_string).collect::<Vec<_>>().join(","),
+        Json::Null => String::new(),
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,432 @@
+//! What the window shows and what was done to it. All of it outlives a lost device.
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+use super::easel::{Compare, Easel, Overlay};
+use super::history::History;
+use super::look::{Knob, Look};
+use super::notes::Notes;
+use super::record::Record;
+use super::reel::Reel;
+use super::scenery::{Lighting, Scenery};
+use super::settings::Settings;
+use super::value::Value;
+use crate::apply::exr::Guide;
+use crate::error::Result;
+use crate::loader::Library;
+use crate::stylize::lengths::Lengths;
+use crate::stylize::style::Setting;
+
+/// What only the window itself can do, asked for by its controls.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Wish {
+    /// Open this file.
+    Open(PathBuf),
+    /// Show a dialog and open what is chosen.
+    ChooseFile,
+    /// Open the scene that comes with the program.
+    OpenDemo,
+    /// Show a dialog and take the look that is chosen.
+    ChooseLook,
+    /// Take the look that is named so.
+    TakeLook(PathBuf),
+    /// Save the look, after a dialog if it has no file of its own yet or `true`.
+    SaveLook(bool),
+    /// Show a dialog and take the picture that is chosen as what is around the scene.
+    ChooseSurroundings,
+    /// Show a dialog and write the picture, or all frames, there.
+    Export,
+    /// End the export.
+    CancelExport,
+    /// Put the command line of the present picture on the clipboard.
+    CopyCommand,
+    /// Close the window.
+    Quit,
+}
+
+/// What undo brings back.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    current: usize,
+    look: Look,
+    lighting: Option<Lighting>,
+}
+
+/// What a picture is made of, as the canvas has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// The picture as it was.
+    Original,
+    /// The look.
+    Look,
+    /// What the look is compared with.
+    Compared,
+    /// What is shown instead of the look.
+    Overlay,
+}
+
+/// All that the window knows.
+pub struct Session {
+    /// The dynamic library.
+    pub library: Library,
+    /// Looks in the order of the keys 1, 2, ...
+    pub looks: Vec<Look>,
+    /// Parameters of the present look.
+    pub knobs: Vec<Knob>,
+    /// Names of those that have no effect at the moment.
+    pub idle: HashSet<String>,
+    /// What the look is compared with, if not with the original.
+    pub compared: Option<Look>,
+    /// The scene that is open.
+    pub scenery: Option<Scenery>,
+    /// The picture, sequence or video that is open, where no scene is.
+    pub reel: Option<Reel>,
+    /// The file that is open.
+    pub file: Option<PathBuf>,
+    /// What is open, for the title.
+    pub name: String,
+    /// Where pictures lie.
+    pub easel: Easel,
+    /// What there is to say.
+    pub notes: Notes,
+    /// Frames and times.
+    pub record: Record,
+    /// What is remembered from one time to the next.
+    pub settings: Settings,
+    /// What the controls ask the window for.
+    pub wishes: Vec<Wish>,
+    /// Whether the help is open.
+    pub shows_help: bool,
+    /// What is being done beside the window.
+    pub busy: Option<&'static str>,
+    /// The share of an export that is done.
+    pub exported: Option<f32>,
+    /// Where the pointer is on the picture, in pixels of the window.
+    pub pointer: Option<[f32; 2]>,
+    /// Colours under the pointer, before and after.
+    pub probed: Option<[[f32; 4]; 2]>,
+    /// Whether the scene was opened before its place in the window was known.
+    is_unframed: bool,
+    current: usize,
+    edits: History<State>,
+}
+
+impl Session {
+    /// A window of these looks, at least one, with nothing open.
+    ///
+    /// # Errors
+    /// As [`Look::knobs`].
+    pub fn new(library: Library, looks: Vec<Look>, settings: Settings) -> Result<Self> {
+        let knobs = looks.first().map_or_else(|| Ok(Vec::new()), |look| look.knobs(&library))?;
+        Ok(Self {
+            library,
+            looks,
+            knobs,
+            idle: HashSet::new(),
+            compared: None,
+            scenery: None,
+            reel: None,
+            file: None,
+            name: String::new(),
+            easel: Easel::default(),
+            notes: Notes::default(),
+            record: Record::default(),
+            settings,
+            wishes: Vec::new(),
+            shows_help: false,
+            busy: None,
+            exported: None,
+            pointer: None,
+            probed: None,
+            is_unframed: false,
+            current: 0,
+            edits: History::default(),
+        })
+    }
+
+    /// The look that is shown and edited.
+    pub fn look(&self) -> &Look {
+        &self.looks[self.current]
+    }
+
+    /// Its place among the looks.
+    pub fn current(&self) -> usize {
+        self.current
+    }
+
+    /// Whether there is anything to look at.
+    pub fn has_picture(&self) -> bool {
+        self.scenery.is_some() || self.reel.is_some()
+    }
+
+    /// Whether there is such a thing to show of the picture.
+    pub fn has_overlay(&self, overlay: Overlay) -> bool {
+        let guide = match overlay {
+            Overlay::None | Overlay::Orientation | Overlay::Lines => return true,
+            Overlay::Normal => Guide::Normal,
+            Overlay::Depth => Guide::Depth,
+            Overlay::ObjectId => Guide::ObjectId,
+            Overlay::Motion => Guide::Motion,
+        };
+        let frame = self.reel.as_ref().and_then(|reel| reel.frame(false));
+        self.scenery.is_some() || frame.is_some_and(|(frame, _)| frame.guide(guide).is_some())
+    }
+
+    /// Whether time passes.
+    pub fn is_playing(&self) -> bool {
+        self.scenery.as_ref().is_some_and(|scenery| scenery.playing)
+            || self.reel.as_ref().is_some_and(|reel| reel.playing)
+    }
+
+    /// Starts or stops time.
+    pub fn toggle_playing(&mut self) {
+        if let Some(scenery) = &mut self.scenery {
+            scenery.toggle_playing();
+        } else if let Some(reel) = &mut self.reel {
+            reel.toggle_playing();
+        }
+    }
+
+    /// Shows all there is.
+    pub fn frame_all(&mut self) {
+        self.easel.fit();
+        let [_, half] = self.easel.halves();
+        if let Some(scenery) = &mut self.scenery {
+            scenery.frame_all(half.width / half.height);
+        }
+    }
+
+    /// Frames a scene that was just opened, by the place that it has in the window.
+    pub fn frame_first(&mut self) {
+        if std::mem::take(&mut self.is_unframed) {
+            self.frame_all();
+        }
+    }
+
+    /// Size of the picture as it is placed: what is rendered smaller for the moment is shown as large.
+    pub fn nominal_size(&self) -> (u32, u32) {
+        let [_, half] = self.easel.halves();
+        self.reel.as_ref().map_or((half.width as u32, half.height as u32), Reel::size)
+    }
+
+    /// The look was saved.
+    pub fn saved(&mut self, look: Look) {
+        let current = self.current;
+        self.looks[current] = look;
+        self.turn_to(current);
+    }
+
+    /// The pictures on the left and on the right of the split.
+    pub fn shown(&self) -> [Which; 2] {
+        let look = if self.easel.overlay == Overlay::None { Which::Look } else { Which::Overlay };
+        let other = if self.compared.is_some() { Which::Compared } else { Which::Original };
+        match self.easel.compare {
+            _ if self.easel.peek => [Which::Original; 2],
+            Compare::Off => [look; 2],
+            Compare::Wipe | Compare::Side => [other, look],
+        }
+    }
+
+    /// What undo would bring back.
+    fn state(&self) -> State {
+        State {
+            current: self.current,
+            look: self.look().clone(),
+            lighting: self.scenery.as_ref().map(|scenery| scenery.lighting.clone()),
+        }
+    }
+
+    fn restore(&mut self, state: State) {
+        let State { current, look, lighting } = state;
+        if current < self.looks.len() {
+            self.looks[current] = look;
+            self.turn_to(current);
+        }
+        if let (Some(scenery), Some(lighting)) = (&mut self.scenery, lighting) {
+            scenery.lighting = lighting;
+            scenery.relight();
+        }
+    }
+
+    fn turn_to(&mut self, index: usize) {
+        if index != self.current {
+            self.record.begin();
+        }
+        self.current = index;
+        match self.look().knobs(&self.library) {
+            Ok(knobs) => self.knobs = knobs,
+            Err(error) => self.notes.complain(&error),
+        }
+        self.idle.clear();
+    }
+
+    /// Changes the look; changes of the same thing are one step until [`Session::let_go`].
+    pub fn edit(&mut self, what: &str, change: impl FnOnce(&mut Look)) {
+        let before = self.state();
+        let current = self.current;
+        change(&mut self.looks[current]);
+        if *self.look() != before.look {
+            self.edits.record(what, &before);
+        }
+    }
+
+    /// Gives a parameter a value.
+    pub fn set(&mut self, knob: &Knob, value: &Value) {
+        self.edit(&knob.name, |look| look.set(knob, value));
+    }
+
+    /// Gives a parameter its default.
+    pub fn reset(&mut self, knob: &Knob) {
+        self.let_go();
+        self.edit(&knob.name, |look| look.reset(knob));
+        self.let_go();
+    }
+
+    /// Gives all parameters their defaults.
+    pub fn reset_all(&mut self) {
+        self.let_go();
+        self.edit("all", |look| look.preset.params.clear());
+        self.let_go();
+    }
+
+    /// Shows the look of an index.
+    pub fn choose(&mut self, index: usize) {
+        if index >= self.looks.len() || index == self.current {
+            return;
+        }
+        self.let_go();
+        let before = self.state();
+        self.edits.record("look", &before);
+        self.turn_to(index);
+        self.let_go();
+    }
+
+    /// Shows the next look.
+    pub fn choose_next(&mut self) {
+        self.choose((self.current + 1) % self.looks.len());
+    }
+
+    /// Shows a look that may be new here.
+    pub fn take(&mut self, look: Look) {
+        let known = self.looks.iter().position(|known| known.source == look.source);
+        let index = known.unwrap_or(self.looks.len());
+        match known {
+            Some(index) if index != self.current => self.looks[index] = look,
+            Some(_) => {
+                self.let_go();
+                self.edit("look", |old| *old = look);
+                self.let_go();
+                self.turn_to(self.current);
+            }
+            None => self.looks.push(look),
+        }
+        self.choose(index);
+    }
+
+    /// Settings of the command line, for all looks that have such parameters, and what lengths mean.
+    pub fn prepare(&mut self, settings: &[Setting], lengths: Option<Lengths>) {
+        for look in self.looks.iter_mut().filter(|look| !look.is_plain()) {
+            if lengths.is_some() {
+                look.preset.lengths = lengths;
+            }
+            let knobs = look.knobs(&self.library).unwrap_or_default();
+            settings.iter().for_each(|setting| look.take(&knobs, setting));
+        }
+    }
+
+    /// Shows the look that was shown last, if it is still there.
+    pub fn resume(&mut self, last: Option<&Path>) {
+        let Some(last) = last else { return };
+        let known = self.looks.iter().position(|look| look.source == last);
+        match known {
+            Some(index) => self.turn_to(index),
+            None => {
+                if let Ok(look) = Look::open(&self.library, last) {
+                    self.looks.push(look);
+                    self.turn_to(self.looks.len() - 1);
+                }
+            }
+        }
+    }
+
+    /// Changes the light.
+    pub fn relight(&mut self, what: &str, change: impl FnOnce(&mut Lighting)) {
+        let before = self.state();
+        let Some(scenery) = &mut self.scenery else { return };
+        change(&mut scenery.lighting);
+        if Some(&scenery.lighting) != before.lighting.as_ref() {
+            scenery.relight();
+            self.edits.record(what, &before);
+        }
+    }
+
+    /// Whatever was being changed is let go of.
+    pub fn let_go(&mut self) {
+        if self.edits.is_open() {
+            let now = self.state();
+            self.edits.close(&now);
+        }
+    }
+
+    /// Takes the last step back.
+    pub fn undo(&mut self) {
+        let now = self.state();
+        if let Some(before) = self.edits.undo(&now) {
+            self.restore(before);
+        }
+    }
+
+    /// Takes the last step that was taken back again.
+    pub fn redo(&mut self) {
+        let now = self.state();
+        if let Some(after) = self.edits.redo(&now) {
+            self.restore(after);
+        }
+    }
+
+    /// Whether there are steps to take back, and to take again.
+    pub fn can(&self) -> [bool; 2] {
+        [self.edits.can_undo(), self.edits.can_redo()]
+    }
+
+    /// A scene is open from now on.
+    pub fn show_scene(&mut self, scenery: Scenery, file: Option<PathBuf>, name: String) {
+        self.is_unframed = scenery.camera().is_none();
+        (self.scenery, self.reel) = (Some(scenery), None);
+        self.begin(file, name);
+    }
+
+    /// A picture, sequence or video is open from now on.
+    pub fn show_reel(&mut self, reel: Reel) {
+        let file = reel.path();
+        let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        (self.scenery, self.reel) = (None, Some(reel));
+        self.begin(Some(file), name);
+    }
+
+    fn begin(&mut self, file: Option<PathBuf>, name: String) {
+        if let Some(file) = &file {
+            self.settings.remember(file);
+        }
+        (self.file, self.name) = (file, name);
+        self.easel.fit();
+        self.easel.overlay = Overlay::None;
+        self.record.begin();
+        self.edits = History::default();
+    }
+
+    /// Title of the window: what is open, the look, frames shown since the last switch, time of the last one.
+    pub fn title(&self) -> String {
+        let style = self.look().source.file_stem().unwrap_or_default().to_string_lossy();
+        if !self.has_picture() {
+            return "Isophote".into();
+        }
+        match self.record.present() {
+            Some((frames, time)) => {
+                format!("{} - {style} - frame {frames} - {:.1} ms", self.name, time.as_secs_f64() * 1e3)
+            }
+            None => format!("{} - {style}", self.name),
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! What single keys do. The help of the program and of the window say so too.
+
+use winit::keyboard::{Key, NamedKey};
+
+use crate::view::easel::Compare;
+use crate::view::session::{Session, Wish};
+
+/// Keys and what they do, for the help of the program and of the window.
+pub const KEYS: [(&str, &str); 23] = [
+    ("drag", "turns the scene; moves a picture"),
+    ("Shift+drag", "pans, as other buttons do"),
+    ("wheel", "zooms"),
+    ("Ctrl+wheel", "magnifies the pixels under the pointer"),
+    ("Ctrl+drag", "moves what is magnified"),
+    ("1, 2, ...", "show the style of that number"),
+    ("Tab", "shows the next style"),
+    ("\\ (hold)", "shows the original while it is held"),
+    ("w", "compares by a wipe"),
+    ("e", "compares side by side"),
+    ("z", "shows pixels as large as the screen's, or all of the picture"),
+    ("0", "shows all of the picture"),
+    ("Space", "plays and pauses"),
+    ("Left, Right", "show the frame before and the next"),
+    ("f", "frames the scene"),
+    ("c", "looks through the file's camera"),
+    ("p", "hides and shows the panel"),
+    ("Ctrl+Z, Ctrl+Y", "takes the last step back, and takes it again"),
+    ("Ctrl+O", "opens a file"),
+    ("Ctrl+S", "saves the look; with Shift under another name"),
+    ("r", "sets everything back to the style's defaults"),
+    ("?", "shows and hides the help"),
+    ("q, Escape", "close the window"),
+];
+
+/// A key was pressed, without Ctrl.
+pub fn press(session: &mut Session, key: &Key) {
+    let toggled = |now: Compare, wanted: Compare| if now == wanted { Compare::Off } else { wanted };
+    match key.as_ref() {
+        Key::Named(NamedKey::Escape) if session.shows_help => session.shows_help = false,
+        Key::Named(NamedKey::Escape) | Key::Character("q") => session.wishes.push(Wish::Quit),
+        Key::Named(NamedKey::Space) => session.toggle_playing(),
+        Key::Named(NamedKey::Tab) => session.choose_next(),
+        Key::Named(key @ (NamedKey::ArrowLeft | NamedKey::ArrowRight)) => {
+            if let Some(reel) = &mut session.reel {
+                reel.step(if key == NamedKey::ArrowLeft { -1 } else { 1 });
+            }
+        }
+        Key::Named(NamedKey::F1) | Key::Character("?") => session.shows_help = !session.shows_help,
+        Key::Character("f") => session.frame_all(),
+        Key::Character("c") => {
+            if let Some(scenery) = &mut session.scenery {
+                scenery.use_file_camera();
+            }
+        }
+        Key::Character("w") => session.easel.compare = toggled(session.easel.compare, Compare::Wipe),
+        Key::Character("e") => session.easel.compare = toggled(session.easel.compare, Compare::Side),
+        Key::Character("z") => session.easel.toggle_actual(),
+        Key::Character("0") => session.easel.fit(),
+        Key::Character("p") => session.settings.panel_hidden = !session.settings.panel_hidden,
+        Key::Character("r") => session.reset_all(),
+        Key::Character(text) => {
+            if let Some(number) = text.parse::<usize>().ok().filter(|number| *number > 0) {
+                session.choose(number - 1);
+            }
+        }
+        _ => {}
+    }
+}

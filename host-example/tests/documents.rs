@@ -1,0 +1,421 @@
+//! Documents of the window: what they hold is what `apply` hands to the library, and nothing that is opened ends the window.
+
+mod support;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use image::{DynamicImage, Rgb32FImage, Rgba32FImage};
+use isophote_host::apply::backend::Backend;
+use isophote_host::apply::exr::{Guide, Selection};
+use isophote_host::apply::filter::{self, Filter, Look};
+use isophote_host::apply::memory::Budget;
+use isophote_host::apply::read;
+use isophote_host::apply::reel::{Held, Window};
+use isophote_host::apply::space::Space;
+use isophote_host::apply::write::Format;
+use isophote_host::loader::{Control, Input, Library};
+use isophote_host::pixels::{Pixels, Precision, Samples};
+use isophote_host::stylize::style::Style;
+use isophote_host::view::document::frame::Frame;
+use isophote_host::view::document::kind::Kind;
+use isophote_host::view::document::{Document, Options};
+
+use support::{assets, folder, has_ffmpeg, isophote, picture, succeeds};
+
+/// This only ends a test that hangs.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+fn library() -> Library {
+    Library::from_file(support::library()).expect("the library")
+}
+
+fn floats(width: u32, height: u32, channels: u32, data: Vec<f32>) -> Pixels {
+    Pixels::new(width, height, channels, Samples::F32(data)).expect("as many numbers as pixels")
+}
+
+/// What the style makes of a frame, handed over as the window does, with these guides.
+fn stylized(frame: &Frame, name: &str, (channels, precision): (u32, Precision)) -> Pixels {
+    let library = library();
+    let mut style = Style::load(&library, name, &[]).expect("a style");
+    let usable = filter::usable_guides(&library, &style).expect("the library answers");
+    let size = (frame.width, frame.height);
+    let request = frame.request(style.request(&library, size).expect("a request"));
+    let color = floats(size.0, size.1, 4, frame.color.as_flattened().to_vec());
+    let wanted = frame.guides.iter().filter(|image| usable.contains(&image.guide));
+    let guides: Vec<(&str, Pixels)> = wanted
+        .map(|image| (image.guide.id(), floats(size.0, size.1, image.channels, image.data.clone())))
+        .collect();
+    let mut inputs = vec![Input { name: "color", pixels: &color }];
+    inputs.extend(guides.iter().map(|(name, pixels)| Input { name, pixels }));
+    let mut target = Pixels::zeroed(size.0, size.1, channels, precision);
+    style.graph.process(None, &request, &inputs, &mut target, &mut Control::default()).expect("a result");
+    target
+}
+
+/// What `apply` makes of a file, before it is put back into the primaries of the file.
+fn applied(path: &Path, name: &str, space: Option<Space>) -> Pixels {
+    let library = library();
+    let style = Style::load(&library, name, &[]).expect("a style");
+    let wanted = filter::usable_guides(&library, &style).expect("the library answers");
+    let source = read::read(path, &Selection { wanted, ..Selection::default() }).expect("a picture");
+    let budget = Budget::new(u64::MAX);
+    let format = if source.exr.is_some() { Format::Exr } else { Format::Tiff };
+    let own = Arc::new(Held::new(None, source, true, budget.share()));
+    let exr = own.take_exr();
+    let window = Window { frames: vec![Arc::clone(&own)], own };
+    let mut filter =
+        Filter::new(library, vec![Look::whole(style)], Backend::Cpu, space, 0).expect("a filter");
+    let filtered = filter.run("picture", &window, exr.as_ref(), format, &mut |_| {}).expect("a result");
+    filtered.results.into_iter().next().expect("a picture")
+}
+
+/// Opens a picture, and makes sure that the window's result is that of `apply`.
+fn is_the_same(path: &Path, space: Option<Space>) -> Arc<Frame> {
+    let options = Options { space, ..Options::default() };
+    let document = Document::open(path, &options).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(document.kind(), Kind::Picture);
+    let frame = document.wait(1).expect("a picture");
+    // It reads colour, normals, depth and object numbers.
+    let expected = applied(path, "cartoon", space);
+    let made = stylized(&frame, "cartoon", (expected.channels(), expected.precision()));
+    assert!(made == expected, "{} is another picture", path.display());
+    frame
+}
+
+/// Red, green, blue and alpha of any kind, with light beyond white and what is no number.
+fn bright(width: u32, height: u32) -> Rgba32FImage {
+    let source = picture(width, height);
+    Rgba32FImage::from_fn(width, height, |x, y| {
+        let alpha = if x < width / 2 { 1.0 } else { y as f32 / height as f32 };
+        let [r, g, b] = source.get_pixel(x, y).0.map(|v| f32::from(v) / 60.0 * alpha);
+        image::Rgba([if x == 3 && y == 4 { f32::NAN } else { r }, g, b, alpha])
+    })
+}
+
+#[test]
+fn pictures_are_what_apply_hands_over() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let rgb = DynamicImage::from(picture(61, 47));
+    let clear = DynamicImage::from(bright(61, 47));
+    let save = |name: &str, picture: DynamicImage| picture.save(at(name)).expect("the folder is writable");
+    save("rgb.png", rgb.clone());
+    save("deep.png", rgb.to_rgb16().into());
+    save("grey.png", rgb.to_luma8().into());
+    save("clear.png", clear.to_rgba8().into());
+    save("rgb.jpg", rgb.clone());
+    save("clear.tif", clear.to_rgba16().into());
+    save("light.tif", clear.clone());
+    save("rgb.webp", rgb.clone());
+    save(
+        "light.hdr",
+        DynamicImage::from(Rgb32FImage::from_fn(61, 47, |x, y| {
+            image::Rgb(picture(61, 47).get_pixel(x, y).0.map(|v| f32::from(v) / 30.0))
+        })),
+    );
+    for name in [
+        "rgb.png",
+        "deep.png",
+        "grey.png",
+        "clear.png",
+        "rgb.jpg",
+        "clear.tif",
+        "light.tif",
+        "rgb.webp",
+        "light.hdr",
+    ] {
+        let frame = is_the_same(&at(name), None);
+        assert_eq!((frame.width, frame.height, frame.number), (61, 47, None), "{name}");
+    }
+    let light = is_the_same(&at("light.tif"), Some(Space::Acescg));
+    assert_eq!((light.asked.space, light.replaced), (Space::Acescg, 1));
+    is_the_same(&at("rgb.png"), Some(Space::Linear));
+}
+
+/// A frame of the cube with everything that `render` knows.
+fn rendered(folder: &Path, name: &str) -> PathBuf {
+    let scene = support::cube(folder);
+    let out = folder.join(name);
+    succeeds(isophote().arg("render").arg(scene).arg(&out).args([
+        "--size",
+        "72x48",
+        "--turntable",
+        "--frames",
+        "3",
+    ]));
+    out
+}
+
+#[test]
+fn guides_are_found_by_their_names() {
+    let folder = folder();
+    let pattern = rendered(folder.path(), "cube.####.exr");
+    let path = folder.path().join("cube.0002.exr");
+    let frame = is_the_same(&path, None);
+    let channels = |guide| frame.guide(guide).map(|image| image.channels);
+    assert_eq!(channels(Guide::Normal), Some(4));
+    assert_eq!(channels(Guide::Depth), Some(1));
+    assert_eq!(channels(Guide::ObjectId), Some(1));
+    assert_eq!(channels(Guide::Motion), Some(2));
+    assert_eq!(channels(Guide::RestPosition), Some(4));
+    assert!(frame.guides.iter().all(|image| image.data.len() == 72 * 48 * image.channels as usize));
+    let document = Document::open(&path, &Options::default()).expect("a picture");
+    let offers = document.offers();
+    assert_eq!(offers.layer, "");
+    let names: Vec<(&str, bool)> = offers.layers.iter().map(|l| (l.name.as_str(), l.is_data)).collect();
+    assert!(names.contains(&("", false)) && names.contains(&("N", true)), "{names:?}");
+    let normal = offers.guides.iter().find(|(guide, _)| *guide == Guide::Normal).expect("normals");
+    assert_eq!(normal.1, ["N.X", "N.Y", "N.Z"]);
+    assert_eq!(document.sequence().as_deref(), Some(pattern.as_path()));
+    // A layer of data is shown where that is insisted on.
+    let layer = |force| {
+        let selection = Selection { layer: Some("N".into()), force, ..Selection::default() };
+        Document::open(&path, &Options { selection, ..Options::default() })
+    };
+    assert_eq!(layer(true).expect("normals").offers().layer, "N");
+    assert!(layer(false).unwrap_err().to_string().contains("--force-layer"));
+}
+
+#[test]
+fn real_files_are_what_apply_hands_over() {
+    let Some(assets) = assets() else {
+        eprintln!("\n*** SKIPPED: there are no assets beside the repository ***\n");
+        return;
+    };
+    for name in [
+        "exr/DisplayWindow/t05.exr",
+        "exr/TestImages/BrightRingsNanInf.exr",
+        "exr/TestImages/GammaChart.exr",
+        "exr/LuminanceChroma/Flowers.exr",
+    ] {
+        is_the_same(&assets.join(name), None);
+    }
+    let beachball = assets.join("exr/Beachball/multipart.0001.exr");
+    let document = Document::open(&beachball, &Options::default()).expect("a picture");
+    let offers = document.offers();
+    let main =
+        offers.layers.iter().find(|layer| layer.name == offers.layer).expect("the layer that was read");
+    assert_eq!(main.views, ["right", "left"], "{offers:?}");
+    let options = |view: &str| Options {
+        selection: Selection { view: Some(view.into()), ..Selection::default() },
+        ..Options::default()
+    };
+    let seen =
+        |view: &str| Document::open(&beachball, &options(view)).expect("a view").wait(1).expect("a picture");
+    assert!(seen("left").color != seen("right").color, "views are chosen");
+    assert!(Document::open(&beachball, &options("middle")).is_err());
+}
+
+#[test]
+fn sequences_are_read_ahead_within_their_bound() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    for number in [1, 2, 3, 4, 5, 6, 9] {
+        let mut picture = picture(40, 30);
+        picture.put_pixel(0, 0, image::Rgb([number, 0, 0]));
+        picture.save(at(&format!("shot.000{number}.png"))).expect("the folder is writable");
+    }
+    fs::write(at("shot.0005.png"), "no picture").expect("the folder is writable");
+    let bytes = 40 * 30 * 16;
+    let options = Options { cache: bytes * 3, ..Options::default() };
+    let open = |name: &str, as_sequence| {
+        Document::open(&at(name), &Options { as_sequence, ..options.clone() })
+            .unwrap_or_else(|e| panic!("{e}"))
+    };
+    assert_eq!(open("shot.0003.png", false).kind(), Kind::Picture);
+    for document in [open("shot.####.png", false), open("shot.0003.png", true), open("", false)] {
+        assert_eq!((document.kind(), document.path()), (Kind::Sequence, at("shot.####.png").as_path()));
+        let frames = document.frames().expect("frames");
+        assert_eq!(frames.numbers, [1, 2, 3, 4, 5, 6, 9]);
+        assert_eq!((frames.first(), frames.last(), frames.rate), (1, 9, 24.0));
+    }
+    let document = open("shot.####.png", false);
+    let red = |number: i64| document.wait(number).map(|frame| (frame.number, frame.color[0][0] * 255.0));
+    document.play(1);
+    for number in [1, 2, 3, 4, 6, 9, 1, 4] {
+        assert_eq!(red(number).expect("a frame"), (Some(number), number as f32));
+        let cached = document.frames().expect("frames").cached;
+        assert!(cached.len() <= 3 && cached.contains(&number), "{cached:?} at {number}");
+    }
+    // Frame 5 is no picture, which the others do not suffer from; 7 there is none.
+    assert!(red(5).unwrap_err().to_string().contains("shot.0005.png"));
+    assert!(red(7).unwrap_err().to_string().contains("frame 7"));
+    red(3).expect("a frame");
+    wait_until(|| document.frames().is_some_and(|f| f.cached == [3, 4, 6]));
+    document.play(-1);
+    wait_until(|| document.frames().is_some_and(|f| f.cached == [1, 2, 3]));
+    document.play(0);
+    assert!(document.frame(3).is_some_and(|frame| frame.is_ok()), "frames in memory are there at once");
+}
+
+fn wait_until(is_so: impl Fn() -> bool) {
+    let started = Instant::now();
+    while !is_so() {
+        assert!(started.elapsed() < PATIENCE, "it does not come to that");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+fn ffmpeg(folder: &Path, args: &str) {
+    let mut command = Command::new("ffmpeg");
+    succeeds(command.current_dir(folder).args(["-v", "error", "-y"]).args(args.split(' ')));
+}
+
+#[test]
+fn any_frame_of_a_video_is_the_same_as_in_order() {
+    if !has_ffmpeg() {
+        return;
+    }
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let source = "-f lavfi -i testsrc2=s=64x48:r=30000/1001:d=4";
+    let h264 = "-c:v libx264 -g 30 -bf 3 -pix_fmt yuv420p";
+    for (name, codec) in [
+        ("a.mp4", h264),
+        ("a.mkv", "-c:v libx264 -g 50 -bf 3 -pix_fmt yuv420p"),
+        ("a.webm", "-c:v libvpx-vp9 -g 40 -pix_fmt yuv420p"),
+        ("a.mov", "-c:v prores_ks"),
+        ("a.avi", "-c:v mpeg4 -bf 2"),
+        ("a.ts", h264),
+        ("a.y4m", "-pix_fmt yuv420p"),
+        ("late.mkv", &format!("{h264} -output_ts_offset 3.3")),
+        // Frames of unequal length.
+        ("uneven.mp4", &format!("-vf select=gt(mod(n\\,4)\\,0) -fps_mode vfr {h264}")),
+        ("few.mp4", &format!("-vf select=not(eq(n\\,50)) -fps_mode vfr {h264}")),
+    ] {
+        ffmpeg(folder.path(), &format!("{source} {codec} {name}"));
+        any_frame_is_the_same(&at(name));
+    }
+    // Of a copy, frames before the cut are decoded and not shown.
+    ffmpeg(folder.path(), "-ss 1.21 -i a.mp4 -c copy cut.mp4");
+    any_frame_is_the_same(&at("cut.mp4"));
+}
+
+/// Frames of a video in any order are those in order, which are those that `apply` reads.
+fn any_frame_is_the_same(path: &Path) {
+    let name = path.display();
+    let open = || Document::open(path, &Options::default()).unwrap_or_else(|e| panic!("{e}"));
+    let ordered = open();
+    ordered.play(1);
+    let mut all: Vec<Arc<Frame>> = Vec::new();
+    while let Ok(frame) = ordered.wait(all.len() as i64 + 1) {
+        all.push(frame);
+    }
+    let frames = ordered.frames().expect("frames");
+    assert_eq!((frames.first(), frames.last()), (1, all.len() as i64), "{name}");
+    assert!(all.len() > 70, "{name} has {} frames", all.len());
+    let document = open();
+    for number in [999, 1, 61, 60, 59, 30, 31, 32, 70, 2, 69].map(|n| n.min(all.len() as i64)) {
+        let frame = document.wait(number).unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert!(frame == all[number as usize - 1], "{name}: frame {number} is another");
+    }
+    document.play(-1);
+    for number in (20..60).rev() {
+        let frame = document.wait(number).expect("a frame");
+        assert!(frame == all[number as usize - 1], "{name}: frame {number} is another backward");
+    }
+    let raw = Command::new("ffmpeg")
+        .args(["-v", "error", "-i"])
+        .arg(path)
+        .args(["-fps_mode", "passthrough", "-f", "rawvideo", "-pix_fmt", "gray", "-"])
+        .output()
+        .expect("ffmpeg runs");
+    if !name.to_string().contains("uneven") {
+        assert_eq!(raw.stdout.len() / (64 * 48), all.len(), "{name} has as many frames");
+    }
+}
+
+#[test]
+fn what_cannot_be_opened_says_why() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    picture(64, 48).save(at("whole.png")).expect("the folder is writable");
+    let bytes = fs::read(at("whole.png")).expect("a picture");
+    fs::write(at("cut.png"), &bytes[..bytes.len() / 2]).expect("the folder is writable");
+    fs::write(at("empty.exr"), "").expect("the folder is writable");
+    fs::write(at("text.exr"), "text").expect("the folder is writable");
+    fs::write(at("text.mp4"), "text").expect("the folder is writable");
+    fs::create_dir(at("folder")).expect("the folder is writable");
+    let refused = |name: &str, words: &[&str]| {
+        let text = Document::open(&at(name), &Options::default()).expect_err(name).to_string();
+        for word in words {
+            assert!(text.contains(word), "{name} does not say '{word}': {text}");
+        }
+    };
+    refused("missing.png", &["missing.png", "cannot be opened"]);
+    refused("missing.####.png", &["matches no file"]);
+    refused("folder", &["folder without numbered pictures"]);
+    refused("cut.png", &["cut.png", "damaged"]);
+    refused("empty.exr", &["empty.exr", "is empty"]);
+    refused("text.exr", &["text.exr", "neither PNG"]);
+    if has_ffmpeg() {
+        refused("text.mp4", &["text.mp4", "ffmpeg"]);
+    }
+    let scene = support::cube(folder.path());
+    let scene = Document::open(&scene, &Options::default()).expect("a scene");
+    assert!(scene.kind() == Kind::Scene && scene.frames().is_none());
+    assert!(scene.wait(1).unwrap_err().to_string().contains("is a scene"));
+    let mut loading = Document::begin(at("whole.png"), Options::default());
+    wait_until_some(|| loading.poll()).expect("a picture");
+}
+
+#[test]
+fn large_pictures_are_loaded_beside_the_window() {
+    let folder = folder();
+    let path = folder.path().join("8k.jpg");
+    let tile = picture(256, 256);
+    let large = image::RgbImage::from_fn(7680, 4320, |x, y| *tile.get_pixel(x % 256, y % 256));
+    large.save(&path).expect("the folder is writable");
+    let started = Instant::now();
+    let mut loading = Document::begin(path, Options::default());
+    assert!(loading.poll().is_none() && started.elapsed() < Duration::from_millis(50), "nobody waits for it");
+    let document = wait_until_some(|| loading.poll()).expect("a picture");
+    eprintln!("8K in {:.2} s", started.elapsed().as_secs_f64());
+    let frame = document.wait(1).expect("a picture");
+    assert_eq!((frame.width, frame.height, frame.bytes()), (7680, 4320, 7680 * 4320 * 16));
+    // A header that asks for all memory.
+    let huge = folder.path().join("huge.hdr");
+    fs::write(&huge, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 90000 +X 90000\n")
+        .expect("the folder is writable");
+    let text = Document::open(&huge, &Options::default()).unwrap_err().to_string();
+    assert!(text.contains("huge.hdr"), "{text}");
+}
+
+fn wait_until_some<T>(mut poll: impl FnMut() -> Option<T>) -> T {
+    let started = Instant::now();
+    loop {
+        if let Some(value) = poll() {
+            return value;
+        }
+        assert!(started.elapsed() < PATIENCE, "it does not come to that");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_document_that_is_dropped_leaves_no_thread_and_no_process() {
+    if !has_ffmpeg() {
+        return;
+    }
+    let folder = folder();
+    ffmpeg(folder.path(), "-f lavfi -i testsrc2=s=320x240:r=25:d=20 -c:v libx264 -preset ultrafast a.mp4");
+    let path = folder.path().join("a.mp4");
+    // Processes that hold the video open, by what the system tells of their command lines.
+    let busy = || {
+        let entries = fs::read_dir("/proc").expect("a list of processes").flatten();
+        let lines = entries.filter_map(|entry| fs::read(entry.path().join("cmdline")).ok());
+        let name = path.to_string_lossy().into_owned();
+        lines.filter(|line| String::from_utf8_lossy(line).contains(&name)).count()
+    };
+    let document = Document::open(&path, &Options { cache: 8 << 20, ..Options::default() }).expect("a video");
+    document.play(1);
+    document.wait(5).expect("a frame");
+    assert_eq!(busy(), 1, "the decoder waits for the frames to be shown");
+    drop(document);
+    wait_until(|| busy() == 0);
+}

@@ -1,0 +1,147 @@
+//! The controls of `isophote view`, without a window: every parameter of every style is found by its label, and what is done
+//! to it changes the look.
+
+mod support;
+
+use std::collections::HashMap;
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use isophote_host::loader::Library;
+use isophote_host::scene::Scene;
+use isophote_host::view::look::Look;
+use isophote_host::view::scenery::{Scenery, Staging};
+use isophote_host::view::session::Session;
+use isophote_host::view::settings::Settings;
+use isophote_host::view::ui;
+use isophote_host::view::value::Value;
+
+/// A session of all styles with a scene.
+fn session() -> Session {
+    let library = Library::from_file(support::library()).unwrap();
+    let mut names = vec!["none".to_owned()];
+    let catalogue = library.catalogue().unwrap();
+    names.extend(catalogue.nodes.iter().filter(|n| n.group == "styles").map(|n| n.id.to_owned()));
+    let looks = names.iter().map(|name| Look::open(&library, name.as_ref()).unwrap()).collect();
+    let mut session = Session::new(library, looks, Settings::default()).unwrap();
+    let folder = support::folder();
+    let scene = Scene::load(&support::cube(folder.path()), None).unwrap();
+    session.show_scene(Scenery::new(scene, Staging::default(), 1.5), None, "cube".into());
+    session
+}
+
+/// The controls in a window large enough for all of them.
+fn harness(session: Session) -> Harness<'static, Session> {
+    let mut harness = Harness::builder()
+        .with_size(egui::vec2(1200.0, 2400.0))
+        .build_ui_state(|ui, session: &mut Session| ui::show(ui, session), session);
+    ui::theme::apply(&harness.ctx);
+    harness.run_ok();
+    harness
+}
+
+/// Opens headings that are not among those that were opened before: they stay open from style to style.
+fn open_headings(harness: &mut Harness<'_, Session>, closed: &mut Vec<&str>) {
+    closed.retain(|heading| {
+        let found = harness.query_by_label(heading).map(|heading| heading.click());
+        harness.run_ok();
+        found.is_none()
+    });
+}
+
+#[test]
+fn every_parameter_of_every_style_is_found_by_its_label() {
+    let mut harness = harness(session());
+    let mut closed = vec!["Advanced", "Time", "Output", "Scene and light"];
+    for index in 1..harness.state().looks.len() {
+        harness.state_mut().choose(index);
+        harness.run_ok();
+        open_headings(&mut harness, &mut closed);
+        let session = harness.state();
+        let mut labels: HashMap<&str, usize> = HashMap::new();
+        for knob in &session.knobs {
+            *labels.entry(knob.param.label).or_default() += 1;
+        }
+        assert!(labels.len() > 10);
+        let name = session.look().name.clone();
+        for (label, count) in labels {
+            let is_control = |role| role != egui::accesskit::Role::Label;
+            let found =
+                harness.query_all_by_label(label).filter(|node| is_control(node.accesskit_node().role()));
+            let found = found.count();
+            assert!(found >= count, "{name}: '{label}' is the name of {found} controls");
+        }
+    }
+}
+
+#[test]
+fn a_value_is_undone_redone_and_set_back() {
+    let mut harness = harness(session());
+    harness.state_mut().choose(1);
+    harness.run_ok();
+    let session = harness.state_mut();
+    let knob = session.knobs.iter().find(|knob| matches!(knob.default, Value::Float(_))).unwrap().clone();
+    let Value::Float(before) = session.look().value(&knob) else { unreachable!() };
+    for step in 1..4 {
+        session.set(&knob, &Value::Float(before + 0.125 * step as f32));
+    }
+    session.let_go();
+    let after = Value::Float(before + 0.375);
+    assert_eq!(session.look().value(&knob), after);
+    assert!(session.look().differs(&knob) && session.look().is_changed());
+    session.undo();
+    assert_eq!(session.look().value(&knob), Value::Float(before), "a drag is one step");
+    session.redo();
+    assert_eq!(session.look().value(&knob), after);
+    harness.run_ok();
+    harness.get_by_label("Reset all").click();
+    harness.run_ok();
+    assert!(!harness.state().look().differs(&knob));
+    harness.get_by_label("Undo").click();
+    harness.run_ok();
+    assert_eq!(harness.state().look().value(&knob), after);
+}
+
+#[test]
+fn controls_can_be_used_by_programs_that_read_windows_aloud() {
+    let mut harness = harness(session());
+    let index = harness.state().looks.iter().position(|look| look.name == "Cartoon").unwrap();
+    harness.state_mut().choose(index);
+    harness.run_ok();
+    let knob = harness.state().knobs.iter().find(|knob| knob.param.label == "Posterize").unwrap().clone();
+    let slider = harness
+        .query_all_by_label("Posterize")
+        .find(|node| node.accesskit_node().role() == egui::accesskit::Role::Slider);
+    slider.unwrap().click();
+    harness.run_ok();
+    assert!(harness.state().look().differs(&knob), "a click in the middle of a slider sets it");
+    harness.get_by_label("Wipe").click();
+    harness.run_ok();
+    assert_eq!(harness.query_all_by_label("Wipe").count(), 2, "the line of the wipe has a name, too");
+    harness.get_by_label("?").click();
+    harness.run_ok();
+    assert!(harness.query_by_label_contains("original while it is held").is_some());
+}
+
+#[test]
+fn a_saved_look_is_the_same_look_and_its_command_is_short() {
+    let folder = support::folder();
+    let file = folder.path().join("mine.json");
+    let mut session = session();
+    session.choose(1);
+    let knobs = session.knobs.clone();
+    let changed = knobs.iter().filter(|knob| !matches!(knob.default, Value::Choice(_)));
+    for knob in changed.take(4) {
+        let other = knob.default.others(&knob.param.kind).swap_remove(0);
+        session.set(knob, &other);
+    }
+    let mut look = session.look().clone();
+    assert_eq!(look.settings(&knobs).len(), 4);
+    look.save(&file).unwrap();
+    assert!(!look.is_changed() && look.settings(&knobs).is_empty());
+    let opened = Look::open(&session.library, &file).unwrap();
+    assert_eq!(opened, look);
+    std::fs::write(&file, r#"{"style": "cartoon", "parameters": {"later": 1}}"#).unwrap();
+    let error = Look::open(&session.library, &file).unwrap_err().to_string();
+    assert!(error.contains("later"), "{error}");
+}
