@@ -208,6 +208,12 @@ fn real_files_are_what_apply_hands_over() {
         |view: &str| Document::open(&beachball, &options(view)).expect("a view").wait(1).expect("a picture");
     assert!(seen("left").color != seen("right").color, "views are chosen");
     assert!(Document::open(&beachball, &options("middle")).is_err());
+    for entry in fs::read_dir(assets.join("exr/Damaged")).expect("damaged files").flatten() {
+        let path = entry.path();
+        if let Err(error) = Document::open(&path, &Options::default()) {
+            assert!(error.to_string().starts_with(&path.display().to_string()), "{error}");
+        }
+    }
 }
 
 #[test]

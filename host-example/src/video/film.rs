@@ -63,7 +63,7 @@ impl<'a> Film<'a> {
     /// Waits for the end of the video.
     ///
     /// # Errors
-    /// As [`Encoder::end`].
+    /// [`Error::Input`] with what ffmpeg complains of.
     pub fn end(self) -> Result<()> {
         self.encoder.end()
     }
