@@ -50,7 +50,7 @@ fn sequences_are_read_ahead_within_their_bound() {
     for document in [open("shot.####.png", false), open("shot.0003.png", true), open("", false)] {
         assert_eq!((document.kind(), document.path()), (Kind::Sequence, at("shot.####.png").as_path()));
         let frames = document.frames().expect("frames");
-        assert_eq!(frames.numbers, [1, 2, 3, 4, 5, 6, 9]);
+        assert_eq!(*frames.numbers, [1, 2, 3, 4, 5, 6, 9]);
         assert_eq!((frames.first(), frames.last(), frames.rate), (1, 9, 24.0));
     }
     let document = open("shot.####.png", false);

@@ -58,7 +58,7 @@ impl Default for Options {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frames {
     /// Their numbers, in order; at least one. Those of a video are a guess where its container does not tell.
-    pub numbers: Vec<i64>,
+    pub numbers: Arc<[i64]>,
     /// Numbers of those that are in memory.
     pub cached: Vec<i64>,
     /// Frames per second.
@@ -201,7 +201,7 @@ fn sequence(path: &Path, reading: Reading, cache: u64) -> Result<(Offers, Conten
     let first = offers.next().unwrap_or_else(|| Ok(Offers::default()));
     // One bad frame is no bad sequence.
     let offers = first.or_else(|error| offers.find_map(Result::ok).ok_or(error))?;
-    let player = Player::start(Source::Files(pattern, reading), Store::new(cache, numbers))?;
+    let player = Player::start(Source::Files(pattern, reading), Store::new(cache, numbers.into()))?;
     Ok((offers, Content::Moving { player, rate: RATE }))
 }
 

@@ -80,9 +80,9 @@ impl Player {
     }
 
     /// All frames that there are, and those that are in memory.
-    pub fn numbers(&self) -> (Vec<i64>, Vec<i64>) {
+    pub fn numbers(&self) -> (Arc<[i64]>, Vec<i64>) {
         let state = self.shared.state();
-        (state.store.numbers().to_vec(), state.store.cached())
+        (Arc::clone(state.store.numbers()), state.store.cached())
     }
 
     fn go_to(&self, state: &mut State, number: i64) -> Option<Result<Arc<Frame>>> {

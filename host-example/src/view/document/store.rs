@@ -24,7 +24,7 @@ pub struct Store {
     /// Bytes of the last frame that was read, which the next will hardly exceed.
     usual: u64,
     /// All frames that there are, in order.
-    numbers: Vec<i64>,
+    numbers: Arc<[i64]>,
     /// Index of the frame that is shown.
     at: usize,
     /// 1 forward, -1 backward, 0 for a play that stands still.
@@ -33,17 +33,17 @@ pub struct Store {
 
 impl Store {
     /// A store of at most so many bytes, but for the one frame that is shown.
-    pub fn new(most: u64, numbers: Vec<i64>) -> Self {
+    pub fn new(most: u64, numbers: Arc<[i64]>) -> Self {
         Self { most, bytes: 0, read: BTreeMap::new(), usual: 0, numbers, at: 0, direction: 0 }
     }
 
     /// All frames that there are, in order.
-    pub fn numbers(&self) -> &[i64] {
+    pub fn numbers(&self) -> &Arc<[i64]> {
         &self.numbers
     }
 
     /// Takes over that there are other frames than was thought.
-    pub fn renumber(&mut self, numbers: Vec<i64>) {
+    pub fn renumber(&mut self, numbers: Arc<[i64]>) {
         self.at = self.at.min(numbers.len().saturating_sub(1));
         self.numbers = numbers;
     }
