@@ -16,8 +16,8 @@
 //! ```
 //!
 //! Name, description and tags are for people and may be left out, like all but the style.
-//! `style` is the id of a node, or the path of a graph file relative to the preset; `node.id` then names the
-//! parameter of one node. `"lengths": "pixels"` makes lengths pixels of the picture instead of those of one 1080
+//! `style` is the id of a node, the path of a graph file relative to the preset, or a graph written out; `node.id` then
+//! names the parameter of one node. `"lengths": "pixels"` makes lengths pixels of the picture instead of those of one 1080
 //! lines high. Keyframes are values by frame: before the first and after the last their values
 //! hold, between two of them numbers and colours change evenly (`linear`) or not at all (`step`), the rest
 //! never does. Whole numbers are rounded.
@@ -42,7 +42,7 @@ const BETWEEN: &str = "between";
 pub struct Preset {
     /// What it says about itself.
     pub title: Title,
-    /// The id of a node or the path of a graph file.
+    /// The id of a node, the path of a graph file, or the JSON of a graph.
     pub style: String,
     /// What lengths mean, where the file says so.
     pub lengths: Option<Lengths>,
@@ -110,6 +110,7 @@ impl Preset {
         let title = Title::take(path, &mut file, &mut faults);
         let style = match file.remove("style") {
             Some(Value::String(style)) => style,
+            Some(graph @ Value::Object(_)) => graph.to_string(),
             other => {
                 faults.push(match other {
                     Some(_) => Error::file(path, "its style is no text", "write the id of a node"),
@@ -157,6 +158,11 @@ impl Preset {
         }
     }
 
+    /// The style as people are told of it.
+    pub fn style_shown(&self) -> &str {
+        if is_written_out(&self.style) { "a graph of its own" } else { &self.style }
+    }
+
     /// The preset as the text of a file.
     pub fn to_json(&self) -> String {
         format!("{:#}\n", Value::Object(self.object()))
@@ -182,13 +188,19 @@ impl Preset {
         let mut file = Map::new();
         self.title.put(&mut file);
         let [style, lengths, parameters] = KEYS;
-        file.insert(style.into(), self.style.as_str().into());
+        let graph = is_written_out(&self.style).then(|| serde_json::from_str(&self.style).ok()).flatten();
+        file.insert(style.into(), graph.unwrap_or_else(|| self.style.as_str().into()));
         if let Some(kind) = self.lengths {
             file.insert(lengths.into(), kind.id().into());
         }
         file.insert(parameters.into(), params.into());
         file
     }
+}
+
+/// Whether what names a style is a graph itself, as JSON.
+pub fn is_written_out(style: &str) -> bool {
+    style.trim_start().starts_with('{')
 }
 
 /// Whether the text of a JSON file is a graph and not a preset.

@@ -387,6 +387,10 @@ struct Opened {
 }
 
 fn open(library: &Library, style: &OsStr) -> Result<Opened> {
+    if let Some(json) = style.to_str().filter(|text| preset::is_written_out(text)) {
+        let graph = library.graph_from_json(json).map_err(|e| e.at("the graph", "correct it"))?;
+        return Ok(Opened { graph, single: false, preset: None });
+    }
     let path = Path::new(style);
     // No node has a name that is no text.
     let refused = match library.single(&style.to_string_lossy()) {

@@ -229,7 +229,7 @@ fn show(library: &Library, file: &Path, frame: Option<i64>) -> Result<()> {
     if !tags.is_empty() {
         text += &format!("tags: {}\n", tags.join(", "));
     }
-    text += &format!("{}\n", preset.style);
+    text += &format!("{}\n", preset.style_shown());
     for (name, track) in &preset.params {
         let value = match track {
             Track::Still(value) => value.clone(),
@@ -265,7 +265,7 @@ fn check(library: &Library, files: &[PathBuf]) -> Result<()> {
                 output::print(&format!(
                     "{}: {} with {count} parameter{}{animated}\n",
                     file.display(),
-                    preset.style,
+                    preset.style_shown(),
                     if count == 1 { "" } else { "s" }
                 ))?;
             }

@@ -10,23 +10,25 @@ use crate::stylize::lengths::Lengths;
 
 /// The command line, quoted for a shell.
 pub fn line(session: &Session) -> String {
-    let look = session.look();
+    let look = session.seen();
+    let style = look.rebuilt().map_or_else(|| quoted_path(&look.source), quoted);
     let mut words = vec!["isophote".to_owned()];
     let input = session.file.as_deref().map_or_else(|| "SCENE.gltf".into(), quoted_path);
     match &session.reel {
         Some(reel) => {
-            words.extend(["apply".to_owned(), quoted_path(&look.source), input]);
+            words.extend(["apply".to_owned(), style, input]);
             words.push(quoted_path(&output(reel)));
         }
         None => {
             words.extend(["render".to_owned(), input, "picture.png".to_owned()]);
             words.extend(staging(session).iter().map(|word| quoted(word)));
             if !look.is_plain() {
-                words.push(format!("--style {}", quoted_path(&look.source)));
+                words.push(format!("--style {style}"));
             }
         }
     }
-    words.extend(look.settings(&session.knobs).iter().map(|setting| format!("--set {}", quoted(setting))));
+    let knobs = look.knobs(&session.library).unwrap_or_default();
+    words.extend(look.settings(&knobs).iter().map(|setting| format!("--set {}", quoted(setting))));
     if look.preset.lengths == Some(Lengths::Pixels) {
         words.push("--lengths pixels".into());
     }

@@ -14,6 +14,7 @@ use super::look::Look;
 use super::reel::Reel;
 use super::scenery::{Scenery, Staging};
 use super::session::{Session, Wish};
+use super::watch::Watch;
 use super::worker::{Wake, Worker};
 use crate::error::{Error, Result};
 use crate::loader::Library;
@@ -51,6 +52,9 @@ enum Dialog {
 pub struct Desk {
     opener: Worker<Job, Result<Opened>>,
     critic: Worker<Question, idle::Answer>,
+    /// Reads looks again whose files have changed.
+    reader: Worker<(Library, PathBuf), (PathBuf, Result<Look>)>,
+    watch: Watch,
     /// What the critic was asked last.
     asked: Option<Look>,
     chosen: Receiver<(Dialog, Option<PathBuf>)>,
@@ -72,6 +76,11 @@ impl Desk {
         Ok(Self {
             opener: Worker::new("open", Arc::clone(wake), open)?,
             critic: Worker::new("controls", Arc::clone(wake), idle::answer)?,
+            reader: Worker::new("look again", Arc::clone(wake), |(library, path): (Library, PathBuf)| {
+                let read = Look::open(&library, &path);
+                (path, read)
+            })?,
+            watch: Watch::new(wake)?,
             asked: None,
             chosen,
             choose,
@@ -114,6 +123,13 @@ impl Desk {
                 Ok(opened) => take(session, opened),
                 Err(error) => session.notes.complain(&error),
             }
+        }
+        self.watch.follow(session.look().files());
+        if self.watch.has_changed() {
+            self.reader.ask((session.library.clone(), session.look().source.clone()));
+        }
+        if let Some((source, read)) = self.reader.answer() {
+            session.reload(&source, read);
         }
         if let Some(answer) = self.critic.answer()
             && answer.look == *session.look()

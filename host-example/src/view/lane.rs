@@ -193,6 +193,7 @@ impl Ready {
         let (old, new) = (&self.recipe.look, &wanted.look);
         let is_same = old.preset.style == new.preset.style
             && old.preset.lengths == new.preset.lengths
+            && old.has_graph_of(new)
             && old.style_name() == new.style_name();
         let IsophoteRequest { width, height, scale, .. } = wanted.asked;
         let asked = IsophoteRequest { width, height, scale, ..self.recipe.asked };

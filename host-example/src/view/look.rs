@@ -1,9 +1,11 @@
 //! A look: a style with the values of its parameters, as it is edited, saved and handed to other programs.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde_json::Value as Json;
 
+use super::chain::{Chain, Watched};
 use super::value::Value;
 use crate::error::{Error, Result};
 use crate::files;
@@ -28,6 +30,8 @@ pub struct Look {
     pub preset: Preset,
     /// What `source` says by itself.
     opened: Preset,
+    /// What is in the graph file that it was opened with.
+    graph: Option<Arc<str>>,
 }
 
 /// One parameter of a look that can be changed.
@@ -49,7 +53,7 @@ impl Look {
     /// The look that leaves pictures as they are.
     pub fn plain() -> Self {
         let preset = bare(String::new());
-        Self { name: "Original".into(), source: PLAIN.into(), opened: preset.clone(), preset }
+        Self { name: "Original".into(), source: PLAIN.into(), opened: preset.clone(), preset, graph: None }
     }
 
     /// Opens a node, a graph file or a preset, or the plain look by its name, and checks that it can be shown.
@@ -73,11 +77,12 @@ impl Look {
                 (preset.title.name.clone().unwrap_or(stem), preset)
             }
         };
-        let mut look = Self { name, source: path.to_owned(), opened: preset.clone(), preset };
+        let mut look = Self { name, source: path.to_owned(), opened: preset.clone(), preset, graph: None };
         look.style(library)?;
         let knobs = look.knobs(library)?;
         look.use_names_of(&knobs);
         look.opened = look.preset.clone();
+        look.graph = look.graph_file().map(|file| source::read(&file)).transpose()?.map(Into::into);
         Ok(look)
     }
 
@@ -192,9 +197,87 @@ impl Look {
         self.preset != self.opened
     }
 
+    /// The file of its graph, if it has one.
+    fn graph_file(&self) -> Option<PathBuf> {
+        Some(self.style_name()).filter(|path| !self.is_written_out() && is_json(path))
+    }
+
+    /// The files that it was opened from.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let own = Some(self.source.clone()).filter(|path| is_json(path));
+        let mut files: Vec<PathBuf> = own.into_iter().chain(self.graph_file()).collect();
+        files.dedup();
+        files
+    }
+
+    /// Whether it and another look were opened from files that say the same.
+    pub fn has_origin_of(&self, other: &Self) -> bool {
+        self.opened == other.opened && self.has_graph_of(other)
+    }
+
+    /// Whether it and another look were opened with the same graph file.
+    pub fn has_graph_of(&self, other: &Self) -> bool {
+        self.graph == other.graph
+    }
+
+    /// Whether its graph is a part of it and no file.
+    pub fn is_written_out(&self) -> bool {
+        preset::is_written_out(&self.preset.style)
+    }
+
+    /// The graph that makes what was opened into it, where another graph is needed.
+    pub fn rebuilt(&self) -> Option<&str> {
+        (self.preset.style != self.opened.style).then_some(self.preset.style.as_str())
+    }
+
+    /// The list of nodes that the graph is, if it is one.
+    ///
+    /// # Errors
+    /// As [`Style::of_preset`].
+    pub fn chain(&self, library: &Library) -> Result<Option<Chain>> {
+        if self.is_plain() {
+            return Ok(None);
+        }
+        if self.is_written_out() {
+            return Ok(Chain::read(library, &self.preset.style));
+        }
+        let bare = Self { preset: Preset { params: Vec::new(), ..self.preset.clone() }, ..self.clone() };
+        let Some(style) = bare.style(library)? else { return Ok(None) };
+        let json = style.graph.to_json().map_err(|e: Refusal| e.at(&self.name, "choose another look"))?;
+        Ok(Chain::read(library, &json))
+    }
+
+    /// The look with another list of nodes; values of nodes that stay are kept.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for lists that yield no picture, such as those with a node of lines amid nodes of colours.
+    pub fn with_chain(&self, library: &Library, chain: &Chain) -> Result<Self> {
+        let mut look = self.clone();
+        look.preset.style = chain.json();
+        if !self.is_written_out() && library.find_node(&self.preset.style).is_ok() {
+            // A node on its own has parameters without a name before them.
+            for (name, _) in look.preset.params.iter_mut().filter(|(name, _)| !name.contains('.')) {
+                *name = format!("{}.{name}", self.preset.style);
+            }
+        }
+        look.preset.params.retain(|(name, _)| name.rsplit_once('.').is_some_and(|(node, _)| chain.has(node)));
+        look.style(library)?;
+        Ok(look)
+    }
+
+    /// The look as a part of its list shows it.
+    pub fn watched(&self, library: &Library, chain: &Chain, watched: &Watched) -> Result<Self> {
+        let look = self.with_chain(library, chain)?;
+        let preset = Preset { style: chain.watched(watched), ..look.preset };
+        Ok(Self { preset, ..look })
+    }
+
     /// Settings that turn what it was opened as into it.
     pub fn settings(&self, knobs: &[Knob]) -> Vec<String> {
-        let opened = Self { preset: self.opened.clone(), ..self.clone() };
+        let mut opened = Self { preset: self.opened.clone(), ..self.clone() };
+        if self.rebuilt().is_some() {
+            opened.preset.params.clear();
+        }
         let track = |look: &Self, name: &str| {
             look.preset.params.iter().rev().find(|(own, _)| own == name).map(|(_, track)| track.clone())
         };
@@ -224,7 +307,7 @@ impl Look {
     /// [`Error::Input`] for paths that no preset can hold.
     pub fn whole(&self) -> Result<Preset> {
         let graph = self.style_name();
-        if graph.extension().is_none() {
+        if self.is_written_out() || graph.extension().is_none() {
             return Ok(self.preset.clone());
         }
         let whole =
@@ -258,6 +341,10 @@ impl Look {
         self.name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         Ok(())
     }
+}
+
+fn is_json(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
 }
 
 /// A style without any settings.

@@ -3,14 +3,15 @@
 //! | what | where |
 //! |---|---|
 //! | the window's events, and when a frame is drawn | `app`, `pace` |
-//! | all that is known of what is shown, and steps back | `session`, `history`, `look`, `value`, `scenery`, `reel`, `easel` |
-//! | work beside the window | `worker`, `desk`, `idle`, `document`, `export` |
+//! | all that is known of what is shown, and steps back | `session`, `history`, `look`, `chain`, `value`, `scenery`, `reel`, `easel` |
+//! | work beside the window | `worker`, `desk`, `watch`, `idle`, `document`, `export` |
 //! | what lives on the device | `stage`, `source`, `pictures`, `lane`, `canvas`, `probe`, `panel` |
 //! | the controls | `ui` |
 
 mod app;
 mod canvas;
-mod command;
+pub mod chain;
+pub mod command;
 mod demo;
 mod desk;
 pub mod document;
@@ -34,6 +35,7 @@ mod source;
 mod stage;
 pub mod ui;
 pub mod value;
+mod watch;
 mod worker;
 
 use winit::error::EventLoopError;

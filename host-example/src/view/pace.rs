@@ -48,7 +48,7 @@ impl Pace {
         }
         let scenery = session.scenery.as_ref();
         let face = Some(Face {
-            look: session.look().clone(),
+            look: session.seen().into_owned(),
             view: scenery.map(Scenery::view),
             light: scenery.map(|scenery| *scenery.light()),
             shown: session.shown(),

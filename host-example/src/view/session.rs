@@ -1,8 +1,10 @@
 //! What the window shows and what was done to it. All of it outlives a lost device.
 
+use std::borrow::Cow;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
+use super::chain::{self, Chain, Watched};
 use super::easel::{Compare, Easel, Overlay};
 use super::history::History;
 use super::look::{Knob, Look};
@@ -15,6 +17,7 @@ use super::value::Value;
 use crate::apply::exr::Guide;
 use crate::error::Result;
 use crate::loader::Library;
+use crate::loader::catalogue::Node;
 use crate::stylize::lengths::Lengths;
 use crate::stylize::style::Setting;
 
@@ -74,6 +77,14 @@ pub struct Session {
     pub looks: Vec<Look>,
     /// Parameters of the present look.
     pub knobs: Vec<Knob>,
+    /// The list of nodes that the present look is, if it is one.
+    pub chain: Option<Chain>,
+    /// The part of it that is looked at, if not the whole.
+    pub watched: Option<Watched>,
+    /// The node whose parameters are shown, if not those of all.
+    pub selected: Option<String>,
+    /// Nodes that can be put into a list.
+    pub fitting: Vec<Node>,
     /// Names of those that have no effect at the moment.
     pub idle: HashSet<String>,
     /// What the look is compared with, if not with the original.
@@ -119,10 +130,15 @@ impl Session {
     /// As [`Look::knobs`].
     pub fn new(library: Library, looks: Vec<Look>, settings: Settings) -> Result<Self> {
         let knobs = looks.first().map_or_else(|| Ok(Vec::new()), |look| look.knobs(&library))?;
+        let chain = looks.first().map_or(Ok(None), |look| look.chain(&library))?;
         Ok(Self {
+            fitting: chain::fitting(&library),
             library,
             looks,
             knobs,
+            chain,
+            watched: None,
+            selected: None,
             idle: HashSet::new(),
             compared: None,
             scenery: None,
@@ -148,6 +164,15 @@ impl Session {
     /// The look that is shown and edited.
     pub fn look(&self) -> &Look {
         &self.looks[self.current]
+    }
+
+    /// The look as far as it is looked at.
+    pub fn seen(&self) -> Cow<'_, Look> {
+        let (Some(chain), Some(watched)) = (&self.chain, &self.watched) else {
+            return Cow::Borrowed(self.look());
+        };
+        let part = self.look().watched(&self.library, chain, watched);
+        part.map_or_else(|_| Cow::Borrowed(self.look()), Cow::Owned)
     }
 
     /// Its place among the looks.
@@ -252,8 +277,13 @@ impl Session {
     fn turn_to(&mut self, index: usize) {
         if index != self.current {
             self.record.begin();
+            (self.watched, self.selected) = (None, None);
         }
         self.current = index;
+        self.chain = self.look().chain(&self.library).unwrap_or_default();
+        let is_there = |name: &str| self.chain.as_ref().is_some_and(|chain| chain.has(name));
+        self.selected = self.selected.take().filter(|name| is_there(name));
+        self.watched = self.watched.take().filter(|watched| is_there(watched.node()));
         match self.look().knobs(&self.library) {
             Ok(knobs) => self.knobs = knobs,
             Err(error) => self.notes.complain(&error),
@@ -268,6 +298,21 @@ impl Session {
         change(&mut self.looks[current]);
         if *self.look() != before.look {
             self.edits.record(what, &before);
+        }
+    }
+
+    /// Changes the list of nodes.
+    pub fn relink(&mut self, change: impl FnOnce(&mut Chain, &Library) -> Result<()>) {
+        let Some(mut chain) = self.chain.clone() else { return };
+        let changed = change(&mut chain, &self.library);
+        match changed.and_then(|()| self.look().with_chain(&self.library, &chain)) {
+            Ok(look) => {
+                self.let_go();
+                self.edit("nodes", |old| *old = look);
+                self.let_go();
+                self.turn_to(self.current);
+            }
+            Err(error) => self.notes.complain(&error),
         }
     }
 
@@ -322,6 +367,28 @@ impl Session {
             None => self.looks.push(look),
         }
         self.choose(index);
+    }
+
+    /// The files of the look that is shown may say something else now: this is what can be read of them.
+    pub fn reload(&mut self, source: &Path, read: Result<Look>) {
+        if self.look().source != source {
+            return;
+        }
+        let name = source.file_name().unwrap_or_default().to_string_lossy();
+        match read {
+            // What the window has written itself is known.
+            Ok(look) if look.has_origin_of(self.look()) => {}
+            Ok(look) => {
+                let lost = self.look().is_changed();
+                self.let_go();
+                self.edit("file", |old| *old = look);
+                self.let_go();
+                self.turn_to(self.current);
+                let rest = if lost { "; undo brings your changes back" } else { "" };
+                self.notes.say(format!("{name} has changed and was read again{rest}"));
+            }
+            Err(error) => self.notes.complain(&error),
+        }
     }
 
     /// Settings of the command line, for all looks that have such parameters, and what lengths mean.

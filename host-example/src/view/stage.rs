@@ -157,10 +157,11 @@ impl Stage {
         let Some(source) = &mut self.source else { return Ok(Vec::new()) };
         let overlay = session.easel.overlay.node().map(|node| Look::open(&session.library, node.as_ref()));
         let overlay = overlay.transpose()?.unwrap_or_else(Look::plain);
+        let seen = session.seen();
         let compared = session.compared.clone().unwrap_or_else(Look::plain);
         let asked = source.asked();
         let mut problems = Vec::new();
-        for (lane, look) in self.lanes.iter_mut().zip([session.look(), &compared, &overlay]) {
+        for (lane, look) in self.lanes.iter_mut().zip([&*seen, &compared, &overlay]) {
             problems.extend(lane.follow(&session.library, look, asked).err());
             if let Source::Scene(source) = source
                 && lane.wants_rest_positions()?

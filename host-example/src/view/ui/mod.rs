@@ -2,6 +2,7 @@
 //! for the rest by wishes; nothing here knows a device.
 
 mod canvas;
+mod chain;
 mod control;
 mod help;
 pub mod keys;

@@ -2,7 +2,7 @@
 
 use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
-use super::{control, lighting, theme};
+use super::{chain, control, lighting, theme};
 use crate::looks;
 use crate::view::look::Knob;
 use crate::view::session::{Session, Wish};
@@ -22,7 +22,9 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
                 RichText::new("The picture as it is. Choose a look above, or press Tab.").color(theme::FAINT),
             );
         }
-        for (heading, id, knobs) in sections(&knobs) {
+        chain::show(ui, session);
+        let shown = selected(session, &knobs);
+        for (heading, id, knobs) in sections(&shown) {
             section(ui, session, &heading, id, &knobs);
         }
         if session.scenery.is_some() {
@@ -72,7 +74,7 @@ fn shipped(ui: &mut Ui, session: &mut Session) {
         let mut styles: Vec<&str> = looks.iter().map(|look| look.preset.style.as_str()).collect();
         styles.dedup();
         for style in styles {
-            ui.menu_button(capital(&style.replace('_', " ")), |ui| {
+            ui.menu_button(theme::capital(&style.replace('_', " ")), |ui| {
                 for look in looks.iter().filter(|look| look.preset.style == style) {
                     let title = &look.preset.title;
                     let name = title.name.as_deref().unwrap_or(look.id);
@@ -88,6 +90,13 @@ fn shipped(ui: &mut Ui, session: &mut Session) {
     menu.response.on_hover_text("Looks that ship with the program");
 }
 
+/// Parameters of the node that is selected, or of all.
+fn selected(session: &Session, knobs: &[Knob]) -> Vec<Knob> {
+    let Some(node) = &session.selected else { return knobs.to_vec() };
+    let own = |knob: &&Knob| knob.name.rsplit_once('.').is_none_or(|(of, _)| of == node);
+    knobs.iter().filter(own).cloned().collect()
+}
+
 /// Parameters by their headings, in the order of the declarations; nodes of a graph one after the other.
 fn sections(knobs: &[Knob]) -> Vec<(String, String, Vec<Knob>)> {
     let several = knobs.iter().any(|knob| knob.node != knobs[0].node);
@@ -100,7 +109,7 @@ fn sections(knobs: &[Knob]) -> Vec<(String, String, Vec<Knob>)> {
             None => {
                 let heading = match (several, group) {
                     (false, "") => "Look".to_owned(),
-                    (false, group) => capital(group),
+                    (false, group) => theme::capital(group),
                     (true, "") => knob.of.to_owned(),
                     (true, group) => format!("{}: {group}", knob.of),
                 };
@@ -109,11 +118,6 @@ fn sections(knobs: &[Knob]) -> Vec<(String, String, Vec<Knob>)> {
         }
     }
     sections
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 fn section(ui: &mut Ui, session: &mut Session, heading: &str, id: String, knobs: &[Knob]) {

@@ -75,3 +75,9 @@ fn visuals() -> Visuals {
     }
     visuals
 }
+
+/// A heading of a word.
+pub fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
