@@ -75,7 +75,7 @@ fn row(ui: &mut Ui, session: &Session, index: usize, count: usize, asked: &mut O
             act = Some(Act::Select);
         }
         let hint = "Let the picture pass this node by, or not";
-        if button(ui, if link.bypassed { "–" } else { "●" }, "Bypass", hint, !link.bypassed, true) {
+        if button(ui, if link.bypassed { "-" } else { "•" }, "Bypass", hint, !link.bypassed, true) {
             act = Some(Act::Toggle);
         }
         if button(ui, "👁", "Look after", "Look at the picture as it leaves this node", is_after, true) {
