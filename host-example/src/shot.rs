@@ -33,6 +33,8 @@ pub struct Options {
     pub camera: Option<usize>,
     /// Where the sun is, seen from the camera, if not where it usually is.
     pub light: Option<Direction>,
+    /// Brightness in stops.
+    pub exposure: f32,
     /// What is behind the scene.
     pub background: Background,
     /// Whether the scene casts its shadow on an invisible ground.
@@ -90,8 +92,10 @@ impl Shot {
         let pose = Pose::at_rest(&scene);
         let camera = Camera::choose(&options, &scene);
         let view = camera.view(&scene, &pose, 0.0);
+        let mut look = Look::for_scene(&scene, &pose, &view, options.light, options.background.environment());
+        look.exposure *= options.exposure.exp2();
         let mut shot = Self {
-            look: Look::for_scene(&scene, &pose, &view, options.light, options.background.environment()),
+            look,
             camera,
             readback: Readback::default(),
             drawn: None,

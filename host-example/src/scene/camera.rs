@@ -136,11 +136,13 @@ pub struct Framing {
     pub distance: f32,
     /// Vertical field of view in radians.
     pub vertical_fov: f32,
+    /// What is in the middle of the picture instead of the scene.
+    pub target: Option<Vec3>,
 }
 
 impl Default for Framing {
     fn default() -> Self {
-        Self { direction: Direction::default(), distance: 1.0, vertical_fov: 0.6 }
+        Self { direction: Direction::default(), distance: 1.0, vertical_fov: 0.6, target: None }
     }
 }
 
@@ -156,6 +158,7 @@ impl Orbit {
         let mut orbit = Self::towards(scene.bounds.center(), framing);
         orbit.fit(&scene.bounds.extremes, aspect);
         orbit.distance *= framing.distance;
+        orbit.target = framing.target.unwrap_or(orbit.target);
         orbit
     }
 
@@ -176,6 +179,7 @@ impl Orbit {
             })
             .collect();
         orbit.distance = orbit.fit_distance(&swept, aspect) * framing.distance;
+        orbit.target = framing.target.unwrap_or(orbit.target);
         orbit
     }
 

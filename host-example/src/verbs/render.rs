@@ -236,6 +236,7 @@ impl RenderArgs {
             framing: self.staging.framing(),
             camera: self.staging.camera(scene)?,
             light: self.staging.light(),
+            exposure: self.staging.exposure(),
             background: self.staging.background()?,
             ground: self.staging.ground(scene),
             animation: choose_animation(self, scene)?,

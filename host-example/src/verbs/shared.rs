@@ -52,6 +52,14 @@ impl SceneArgs {
 }
 
 impl ReadingArgs {
+    /// The options as they are written.
+    pub fn words(&self) -> Vec<String> {
+        let texture =
+            self.texture.iter().flat_map(|file| ["--texture".to_owned(), file.display().to_string()]);
+        let up = (self.up == Up::Z).then(|| ["--up", "z"].map(str::to_owned));
+        texture.chain(up.into_iter().flatten()).collect()
+    }
+
     /// Loads a scene and prints its warnings.
     ///
     /// # Errors

@@ -19,7 +19,7 @@ use crate::scene::{Scene, floor};
 pub struct StagingArgs {
     /// Camera of the file to look through, by the name of its node, by its own or by number from 0 [default: the first,
     /// unless one of the options of the default camera is given].
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["azimuth", "elevation", "distance", "fov"])]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["azimuth", "elevation", "distance", "target", "fov"])]
     camera: Option<String>,
     /// Degrees by which the default camera and turntables are turned to the right around the scene [default: 0].
     #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true)]
@@ -31,6 +31,9 @@ pub struct StagingArgs {
     /// picture, from 0.1 to 100 [default: 1].
     #[arg(long, value_name = "FACTOR", value_parser = factor)]
     distance: Option<f32>,
+    /// What the default camera and turntables look at, in the scene's units [default: the middle of the scene].
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    target: Option<Vec3>,
     /// Vertical field of view of the default camera and turntables in degrees, from 1 to 150 [default: 34.4].
     #[arg(long, value_name = "DEGREES", value_parser = field_of_view)]
     fov: Option<f32>,
@@ -38,6 +41,9 @@ pub struct StagingArgs {
     /// behind it), and above the horizon, from -90 to 90 [default: the sun of the file, or -60,40].
     #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = light, allow_hyphen_values = true)]
     light: Option<Direction>,
+    /// Brightness of the scene in stops, from -16 to 16. What EXR files hold of the scene is as bright as it is.
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = stops, allow_negative_numbers = true)]
+    exposure: f32,
     /// What is behind the scene: sky, transparent, a colour #rrggbb that is shown as it is, or an equirectangular picture
     /// of the surroundings (Radiance HDR or EXR), which lights the scene, too.
     #[arg(long, value_name = "sky|transparent|#rrggbb|FILE", default_value = "sky")]
@@ -97,6 +103,7 @@ impl StagingArgs {
             },
             distance: self.distance.unwrap_or(usual.distance),
             vertical_fov: or(self.fov, usual.vertical_fov),
+            target: self.target,
         }
     }
 
@@ -114,7 +121,7 @@ impl StagingArgs {
                 };
                 Error::input("--camera", format!("'{name}' is not a camera of the scene"), fix)
             }),
-            None if framed.iter().any(Option::is_some) => Ok(None),
+            None if framed.iter().any(Option::is_some) || self.target.is_some() => Ok(None),
             None => Ok(camera::file_camera(scene)),
         }
     }
@@ -149,6 +156,11 @@ impl StagingArgs {
     pub fn light(&self) -> Option<Direction> {
         self.light
     }
+
+    /// Brightness of the scene in stops.
+    pub fn exposure(&self) -> f32 {
+        self.exposure
+    }
 }
 
 type Parsed<T> = std::result::Result<T, String>;
@@ -171,6 +183,16 @@ fn field_of_view(text: &str) -> Parsed<f32> {
     number(text, 1.0..=150.0, "degrees")
 }
 
+fn stops(text: &str) -> Parsed<f32> {
+    number(text, -16.0..=16.0, "stops")
+}
+
+fn point(text: &str) -> Parsed<Vec3> {
+    let parts: Vec<f32> =
+        text.split(',').map(|part| number(part, -1e9..=1e9, "a coordinate")).collect::<Parsed<_>>()?;
+    <[f32; 3]>::try_from(parts).map(Vec3::from).map_err(|_| "write three coordinates such as 0,1.5,0".into())
+}
+
 fn light(text: &str) -> Parsed<Direction> {
     let (azimuth, elevation) = text.split_once(',').ok_or("write azimuth and elevation such as -60,40")?;
     Ok(Direction {
@@ -190,6 +212,12 @@ mod tests {
         for bad in ["", "30", "a,b", "30,91", "361,0", "nan,0", "0,inf", "1,2,3"] {
             assert!(light(bad).is_err(), "{bad}");
         }
+        assert_eq!(point("1,-2, 3.5"), Ok(Vec3::new(1.0, -2.0, 3.5)));
+        for bad in ["", "1,2", "1,2,3,4", "a,b,c", "nan,0,0", "inf,0,0"] {
+            assert!(point(bad).is_err(), "{bad}");
+        }
+        assert_eq!(stops("-1.5"), Ok(-1.5));
+        assert!(stops("17").is_err());
         assert_eq!(factor("2"), Ok(2.0));
         assert_eq!(factor("0"), Err("write a factor from 0.1 to 100".into()));
         assert_eq!(field_of_view("179"), Err("write degrees from 1 to 150".into()));

@@ -87,11 +87,12 @@ fn open(session: &mut Session, path: &Path, args: &ViewArgs) -> Result<()> {
         camera: args.staging.camera(&scene)?,
         lighting: Lighting {
             sun: args.staging.light(),
+            exposure: args.staging.exposure(),
             background: args.staging.background()?,
             surroundings: args.staging.surroundings(),
-            ..Lighting::default()
         },
         ground: args.staging.ground(&scene),
+        reading: args.reading.words(),
     };
     let (width, height) = args.size.or(session.settings.window).unwrap_or((16, 10));
     let scenery = Scenery::new(scene, staging, width as f32 / height as f32);

@@ -245,6 +245,7 @@ impl App {
             match event.logical_key.as_ref() {
                 Key::Character("z") if !self.modifiers.shift_key() => session.undo(),
                 Key::Character("z" | "Z" | "y") => session.redo(),
+                Key::Character("e") => session.plan_export(),
                 Key::Character("o") => session.wishes.push(Wish::ChooseFile),
                 Key::Character("s") => session.wishes.push(Wish::SaveLook(self.modifiers.shift_key())),
                 Key::Character("S") => session.wishes.push(Wish::SaveLook(true)),

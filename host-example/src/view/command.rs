@@ -6,6 +6,7 @@ use super::reel::Reel;
 use super::session::Session;
 use crate::apply::space::srgb_encode;
 use crate::render::background::Background;
+use crate::scene::floor;
 use crate::stylize::lengths::Lengths;
 
 /// The command line, quoted for a shell.
@@ -18,10 +19,13 @@ pub fn line(session: &Session) -> String {
         Some(reel) => {
             words.extend(["apply".to_owned(), style, input]);
             words.push(quoted_path(&output(reel)));
+            words.extend(selection(reel).iter().map(|word| quoted(word)));
         }
         None => {
             words.extend(["render".to_owned(), input, "picture.png".to_owned()]);
-            words.extend(staging(session).iter().map(|word| quoted(word)));
+            let (width, height) = session.nominal_size();
+            words.extend(["--size".to_owned(), format!("{width}x{height}")]);
+            words.extend(staging(session).iter().chain(&moment(session)).map(|word| quoted(word)));
             if !look.is_plain() {
                 words.push(format!("--style {style}"));
             }
@@ -50,11 +54,38 @@ pub fn output(reel: &Reel) -> PathBuf {
     path.with_file_name(format!("{name}.{}", if is_kept { &extension } else { "png" }))
 }
 
-/// Options of `render` for size, camera and light, where they are not as they are without being asked for.
+/// Options of `apply` for the layer and the view that were chosen.
+pub fn selection(reel: &Reel) -> Vec<String> {
+    let selection = reel.document.selection();
+    let mut words = Vec::new();
+    for (option, value) in [("--layer", &selection.layer), ("--view", &selection.view)] {
+        words.extend(value.iter().flat_map(|value| [option.to_owned(), value.clone()]));
+    }
+    words.extend(selection.force.then(|| "--force-layer".to_owned()));
+    words
+}
+
+/// Options of `render` for the time of an animated scene.
+pub fn moment(session: &Session) -> Vec<String> {
+    let Some(scenery) = session.scenery.as_ref().filter(|scenery| !scenery.scene.animations.is_empty())
+    else {
+        return Vec::new();
+    };
+    let words = ["--animate".into(), "--start".into(), format!("{:.4}", scenery.time().0)];
+    words.into_iter().chain(animation(session)).collect()
+}
+
+/// The option of `render` for an animation that is not the first.
+pub fn animation(session: &Session) -> Vec<String> {
+    let index = session.scenery.as_ref().map_or(0, |scenery| scenery.animation);
+    if index == 0 { Vec::new() } else { vec!["--animation".into(), index.to_string()] }
+}
+
+/// Options of `render` for camera and light, where they are not as they are without being asked for.
 pub fn staging(session: &Session) -> Vec<String> {
     let [_, area] = session.easel.halves();
-    let mut words = vec!["--size".to_owned(), format!("{}x{}", area.width as u32, area.height as u32)];
-    let Some(scenery) = &session.scenery else { return words };
+    let Some(scenery) = &session.scenery else { return Vec::new() };
+    let mut words = scenery.reading.clone();
     let mut add = |option: &str, value: String| words.extend([option.to_owned(), value]);
     match scenery.camera() {
         Some(node) => {
@@ -64,14 +95,23 @@ pub fn staging(session: &Session) -> Vec<String> {
             }
         }
         None => {
-            let [azimuth, elevation, distance] = scenery.framed(area.width / area.height);
-            add("--azimuth", format!("{azimuth:.2}"));
-            add("--elevation", format!("{elevation:.2}"));
-            add("--distance", format!("{distance:.4}"));
+            let framed = scenery.framed(area.width / area.height);
+            add("--azimuth", format!("{:.3}", framed.azimuth));
+            add("--elevation", format!("{:.3}", framed.elevation));
+            add("--distance", format!("{:.4}", framed.distance));
+            if let Some([x, y, z]) = framed.target.map(|target| target.to_array()) {
+                add("--target", format!("{x},{y},{z}"));
+            }
+            if let Some(fov) = framed.fov {
+                add("--fov", fov.to_string());
+            }
         }
     }
-    if let Some(sun) = scenery.lighting.sun {
-        add("--light", format!("{:.1},{:.1}", sun.azimuth.to_degrees(), sun.elevation.to_degrees()));
+    if let Some(sun) = scenery.sun_from_here() {
+        add("--light", format!("{:.2},{:.2}", sun.azimuth.to_degrees(), sun.elevation.to_degrees()));
+    }
+    if scenery.lighting.exposure != 0.0 {
+        add("--exposure", format!("{:.3}", scenery.lighting.exposure));
     }
     match &scenery.lighting.background {
         Background::Transparent => add("--background", "transparent".into()),
@@ -85,6 +125,9 @@ pub fn staging(session: &Session) -> Vec<String> {
             }
         }
         Background::Sky => {}
+    }
+    if scenery.ground != floor::lacks_floor(&scenery.scene) {
+        words.push(if scenery.ground { "--ground".into() } else { "--no-ground".into() });
     }
     words
 }

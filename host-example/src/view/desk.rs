@@ -11,13 +11,17 @@ use super::document::{Document, Options};
 use super::export::{self, Export, Progress, State};
 use super::idle::{self, Question};
 use super::look::Look;
+use super::pictures;
+use super::plan::What;
 use super::reel::Reel;
 use super::scenery::{Scenery, Staging};
 use super::session::{Session, Wish};
 use super::watch::Watch;
 use super::worker::{Wake, Worker};
+use crate::apply::exr::Selection;
 use crate::error::{Error, Result};
 use crate::loader::Library;
+use crate::loader::contract::IsophoteRequest;
 use crate::render::background::Background;
 use crate::scene::environment::Environment;
 use crate::scene::{Scene, camera, floor};
@@ -25,7 +29,10 @@ use crate::scene::{Scene, camera, floor};
 /// What is to be opened.
 enum Job {
     Demo,
-    File(PathBuf),
+    /// The first of them that can be opened.
+    Files(Library, Vec<PathBuf>),
+    /// The file that is open, read in another way.
+    Again(PathBuf, Selection),
     Look(Library, PathBuf),
     Surroundings(PathBuf),
 }
@@ -34,6 +41,9 @@ enum Job {
 enum Opened {
     Scene(Box<Scene>, Option<PathBuf>),
     Pictures(Box<Reel>),
+    Again(Box<Reel>),
+    /// One of several, with what is wrong with others and how many were left.
+    Among(Box<Opened>, Vec<Error>, usize),
     Look(Box<Look>),
     Surroundings(Background, PathBuf),
 }
@@ -56,7 +66,7 @@ pub struct Desk {
     reader: Worker<(Library, PathBuf), (PathBuf, Result<Look>)>,
     watch: Watch,
     /// What the critic was asked last.
-    asked: Option<Look>,
+    asked: Option<(Look, Option<IsophoteRequest>)>,
     chosen: Receiver<(Dialog, Option<PathBuf>)>,
     choose: Sender<(Dialog, Option<PathBuf>)>,
     export: Option<Export>,
@@ -107,14 +117,18 @@ impl Desk {
             self.choosing = false;
             let Some(path) = path else { continue };
             match dialog {
-                Dialog::File => self.opener.ask(Job::File(path)),
+                Dialog::File => self.opener.ask(Job::Files(session.library.clone(), vec![path])),
                 Dialog::Look => {
                     session.settings.look_folder = path.parent().map(Path::to_owned);
                     self.opener.ask(Job::Look(session.library.clone(), path));
                 }
                 Dialog::Surroundings => self.opener.ask(Job::Surroundings(path)),
                 Dialog::Save => save(session, &path),
-                Dialog::Export => self.export(session, &path),
+                Dialog::Export => {
+                    if let Some(plan) = &mut session.plan {
+                        plan.path = path.display().to_string();
+                    }
+                }
             }
         }
         self.follow_export(session);
@@ -133,24 +147,39 @@ impl Desk {
         }
         if let Some(answer) = self.critic.answer()
             && answer.look == *session.look()
+            && answer.asked == asked(session)
         {
             session.idle = answer.idle;
         }
-        if self.asked.as_ref() != Some(session.look()) && session.has_picture() {
-            self.asked = Some(session.look().clone());
-            self.critic.ask(Question { library: session.library.clone(), look: session.look().clone() });
+        let asked = asked(session);
+        let is_known = self.asked.as_ref().is_some_and(|(look, of)| look == session.look() && *of == asked);
+        if !is_known && session.has_picture() {
+            self.asked = Some((session.look().clone(), asked));
+            let (library, look) = (session.library.clone(), session.look().clone());
+            self.critic.ask(Question { library, look, asked });
         }
     }
 
     /// Does what the controls have asked for, and returns what is to be put on the clipboard.
     pub fn grant(&mut self, session: &mut Session) -> Option<String> {
         let mut copied = None;
+        let mut files = Vec::new();
         for wish in std::mem::take(&mut session.wishes) {
             match wish {
-                Wish::Open(path) if is_look(&path) => {
-                    self.opener.ask(Job::Look(session.library.clone(), path));
+                Wish::Open(path) => files.push(path),
+                Wish::ChooseLayer(layer, view) => {
+                    if let Some(file) = &session.file {
+                        let name = Some(layer.name).filter(|name| !name.is_empty());
+                        let selection = Selection {
+                            force: layer.is_data && name.is_some(),
+                            layer: name,
+                            view,
+                            ..Selection::default()
+                        };
+                        self.opener.ask(Job::Again(file.clone(), selection));
+                    }
                 }
-                Wish::Open(path) => self.opener.ask(Job::File(path)),
+                Wish::ChooseOutput => self.choose(Dialog::Export, session),
                 Wish::OpenDemo => self.opener.ask(Job::Demo),
                 Wish::ChooseFile => self.choose(Dialog::File, session),
                 Wish::ChooseLook => self.choose(Dialog::Look, session),
@@ -164,7 +193,7 @@ impl Desk {
                     }
                 }
                 Wish::TakeLook(path) => self.opener.ask(Job::Look(session.library.clone(), path)),
-                Wish::Export => self.choose(Dialog::Export, session),
+                Wish::Export => self.export(session),
                 Wish::CancelExport => {
                     if let Some(export) = &mut self.export {
                         export.cancel();
@@ -177,23 +206,48 @@ impl Desk {
                 Wish::Quit => self.over = true,
             }
         }
+        if !files.is_empty() {
+            self.opener.ask(Job::Files(session.library.clone(), files));
+        }
         copied
     }
 
     /// Writes what is shown, by another process.
-    fn export(&mut self, session: &mut Session, path: &Path) {
+    fn export(&mut self, session: &mut Session) {
+        let Some(plan) = session.plan.take() else { return };
         let Some(file) = &session.file else { return };
         let look = session.look();
         let preset =
             if look.is_plain() { Ok(None) } else { look.whole().map(|preset| Some(preset.to_json())) };
-        let kind = session.reel.as_ref().map_or(Kind::Scene, |reel| reel.document.kind());
         let started = preset.and_then(|preset| {
-            let mut job = export::Job::new(kind, file, path, preset);
-            if let Some(reel) = &session.reel {
-                job.rate = reel.rate;
-            } else {
-                job.arguments = command::staging(session).into_iter().map(Into::into).collect();
+            let mut job = export::Job::new(plan.kind, file, Path::new(&plan.path), preset);
+            (job.frames, job.turntable) = (plan.frames(), plan.what == What::Turntable);
+            let mut words = match &session.reel {
+                Some(reel) => {
+                    job.rate = reel.rate;
+                    command::selection(reel)
+                }
+                None => {
+                    let [width, height] = plan.size;
+                    let size = ["--size".to_owned(), format!("{width}x{height}")];
+                    size.into_iter().chain(command::staging(session)).collect()
+                }
+            };
+            match plan.what {
+                // It goes around by itself, wherever the file's camera stands.
+                What::Turntable => {
+                    if let Some(at) = words.iter().position(|word| word == "--camera") {
+                        words.drain(at..at + 2);
+                    }
+                }
+                What::Animation => {
+                    words.push("--animate".into());
+                    words.extend(command::animation(session));
+                }
+                What::Picture if session.reel.is_none() => words.extend(command::moment(session)),
+                What::Picture | What::Frames => {}
             }
+            job.arguments = words.into_iter().map(Into::into).collect();
             Export::start(job)
         });
         match started {
@@ -227,11 +281,10 @@ impl Desk {
             Dialog::Look | Dialog::Save => session.settings.look_folder.clone(),
             Dialog::File | Dialog::Surroundings | Dialog::Export => session.settings.folder.clone(),
         };
-        let name = match (dialog, &session.reel) {
-            (Dialog::Export, Some(reel)) => {
-                command::output(reel).file_name().unwrap_or_default().to_string_lossy().into_owned()
+        let name = match (dialog, &session.plan) {
+            (Dialog::Export, Some(plan)) => {
+                Path::new(&plan.path).file_name().unwrap_or_default().to_string_lossy().into_owned()
             }
-            (Dialog::Export, None) => "picture.png".to_owned(),
             _ => format!("{}.json", session.look().name.to_lowercase().replace(' ', "-")),
         };
         let (choose, wake) = (self.choose.clone(), Arc::clone(&self.wake));
@@ -280,12 +333,10 @@ fn is_look(path: &Path) -> bool {
 fn open(job: Job) -> Result<Opened> {
     Ok(match job {
         Job::Demo => Opened::Scene(Box::new(demo::scene()?), None),
-        Job::File(path) => {
-            let document = Document::open(&path, &Options::default())?;
-            match document.kind() {
-                Kind::Scene => Opened::Scene(Box::new(Scene::load(&path, None)?), Some(path)),
-                _ => Opened::Pictures(Box::new(Reel::new(document)?)),
-            }
+        Job::Files(library, files) => first_of(&library, files)?,
+        Job::Again(path, selection) => {
+            let options = Options { selection, ..Options::default() };
+            Opened::Again(Box::new(Reel::new(Document::open(&path, &options)?)?))
         }
         Job::Look(library, path) => Opened::Look(Box::new(Look::open(&library, &path)?)),
         Job::Surroundings(path) => {
@@ -295,8 +346,55 @@ fn open(job: Job) -> Result<Opened> {
     })
 }
 
+/// Opens the first file that can be opened.
+fn first_of(library: &Library, files: Vec<PathBuf>) -> Result<Opened> {
+    let mut problems = Vec::new();
+    let mut files = files.into_iter();
+    while let Some(path) = files.next() {
+        match file(library, path) {
+            Ok(opened) if problems.is_empty() && files.len() == 0 => return Ok(opened),
+            Ok(opened) => return Ok(Opened::Among(Box::new(opened), problems, files.len())),
+            Err(problem) => problems.push(problem),
+        }
+    }
+    Err(problems.swap_remove(0))
+}
+
+/// Opens a scene, a picture, a sequence, a video or a look.
+fn file(library: &Library, path: PathBuf) -> Result<Opened> {
+    if is_look(&path) {
+        return Ok(Opened::Look(Box::new(Look::open(library, &path)?)));
+    }
+    let document = Document::open(&path, &Options::default())?;
+    Ok(match document.kind() {
+        Kind::Scene => Opened::Scene(Box::new(Scene::load(&path, None)?), Some(path)),
+        _ => Opened::Pictures(Box::new(Reel::new(document)?)),
+    })
+}
+
+/// What looks on the picture that is open are asked for.
+fn asked(session: &Session) -> Option<IsophoteRequest> {
+    let (frame, _) = session.reel.as_ref()?.frame(false)?;
+    session.library.request((1, 1)).ok().map(|usual| pictures::request(frame, 1.0, usual))
+}
+
 fn take(session: &mut Session, opened: Opened) {
     match opened {
+        Opened::Among(opened, problems, left) => {
+            problems.iter().for_each(|problem| session.notes.complain(problem));
+            take(session, *opened);
+            if left > 0 {
+                let files = if left == 1 { "One file more was" } else { "More files were" };
+                session
+                    .notes
+                    .say(format!("{files} dropped; the first that opens is shown, {}", session.name));
+            }
+        }
+        Opened::Again(reel) => {
+            if session.file.as_deref() == Some(reel.document.path()) {
+                session.show_again(*reel);
+            }
+        }
         Opened::Scene(scene, file) => {
             let area = session.easel.area;
             let name = file.as_ref().and_then(|file| file.file_name());

@@ -7,6 +7,7 @@ use super::value::Value;
 use crate::error::Result;
 use crate::loader::Library;
 use crate::loader::Plan;
+use crate::loader::contract::IsophoteRequest;
 use crate::stylize::frame_request;
 
 /// Side of the picture that plans are compared for.
@@ -18,12 +19,16 @@ pub struct Question {
     pub library: Library,
     /// The look.
     pub look: Look,
+    /// What looks on the picture are asked for; that of scenes without.
+    pub asked: Option<IsophoteRequest>,
 }
 
 /// What is known.
 pub struct Answer {
     /// The look.
     pub look: Look,
+    /// What it was asked for.
+    pub asked: Option<IsophoteRequest>,
     /// Names of the parameters without effect.
     pub idle: HashSet<String>,
 }
@@ -31,13 +36,22 @@ pub struct Answer {
 /// Tries all controls. What cannot be tried has an effect.
 pub fn answer(question: Question) -> Answer {
     let idle = find(&question).unwrap_or_default();
-    Answer { look: question.look, idle }
+    Answer { look: question.look, asked: question.asked, idle }
 }
 
-fn find(Question { library, look }: &Question) -> Result<HashSet<String>> {
+fn find(Question { library, look, asked }: &Question) -> Result<HashSet<String>> {
     let mut idle = HashSet::new();
     let Some(style) = look.style(library)? else { return Ok(idle) };
-    let request = frame_request(library, &style, (SIDE, SIDE))?;
+    let usual = frame_request(library, &style, (SIDE, SIDE))?;
+    let IsophoteRequest { width, height, scale, reference_height, canonical_height, .. } = usual;
+    let request = asked.map_or(usual, |asked| IsophoteRequest {
+        width,
+        height,
+        scale,
+        reference_height,
+        canonical_height,
+        ..asked
+    });
     // One frame before shows what all show.
     let known = style.past(library, &request)?.frames.min(1);
     let now = Work::of(&style.plan(library, &request, known)?);

@@ -25,6 +25,7 @@ mod notes;
 mod pace;
 mod panel;
 mod pictures;
+pub mod plan;
 mod probe;
 pub mod record;
 pub mod reel;

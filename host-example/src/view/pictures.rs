@@ -142,7 +142,7 @@ fn inputs(frame: &Frame) -> impl Iterator<Item = (&'static str, u32, &[f32])> {
 }
 
 /// What `apply` asks for, of a picture of so much of the size.
-fn request(frame: &Frame, scale: f32, usual: IsophoteRequest) -> IsophoteRequest {
+pub fn request(frame: &Frame, scale: f32, usual: IsophoteRequest) -> IsophoteRequest {
     let guides = frame.guides.iter().map(|image| match image.guide {
         Guide::Normal => ISOPHOTE_GUIDE_NORMAL,
         Guide::Depth => ISOPHOTE_GUIDE_DEPTH,

@@ -24,6 +24,23 @@ pub struct Staging {
     pub lighting: Lighting,
     /// Whether the scene casts its shadow on an invisible ground.
     pub ground: bool,
+    /// Options that the file was read with.
+    pub reading: Vec<String>,
+}
+
+/// Where a camera stands, as the options of `render` say it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Framed {
+    /// By how many degrees it is turned to the right of where cameras are by default.
+    pub azimuth: f32,
+    /// Its height above the horizon in degrees.
+    pub elevation: f32,
+    /// Its distance over that from which the scene fills the picture.
+    pub distance: f32,
+    /// What it looks at, if that is not the middle of the scene.
+    pub target: Option<Vec3>,
+    /// Its vertical field of view in degrees, if it is not the usual one.
+    pub fov: Option<f32>,
 }
 
 /// What an artist changes of the light.
@@ -66,6 +83,8 @@ pub struct Scenery {
     pub lighting: Lighting,
     /// Whether the scene casts its shadow on an invisible ground.
     pub ground: bool,
+    /// Options that the file was read with.
+    pub reading: Vec<String>,
     /// Whether time passes.
     pub playing: bool,
     /// Which animation plays.
@@ -86,7 +105,7 @@ pub struct Scenery {
 impl Scenery {
     /// `scene` at rest, in a picture of this aspect.
     pub fn new(scene: Scene, staging: Staging, aspect: f32) -> Self {
-        let Staging { framing, camera, lighting, ground } = staging;
+        let Staging { framing, camera, lighting, ground, reading } = staging;
         let pose = Pose::at_rest(&scene);
         let orbit = Orbit::framing(&scene, aspect, framing);
         let from_file = camera.and_then(|node| View::from_node(&scene, &pose, node));
@@ -103,6 +122,7 @@ impl Scenery {
             pose,
             lighting,
             ground,
+            reading,
             time: 0.0,
             ticked: Instant::now(),
             scene: Arc::new(scene),
@@ -127,8 +147,13 @@ impl Scenery {
 
     /// Where the sun is, seen from the camera as it stood at first.
     pub fn sun(&self) -> Direction {
+        self.sun_by(&self.first_view)
+    }
+
+    /// Where the sun is, seen from a camera.
+    fn sun_by(&self, view: &View) -> Direction {
         let to_sun: Vec3 = self.light.sun_direction;
-        let azimuth = to_sun.x.atan2(to_sun.z) - self.first_view.azimuth();
+        let azimuth = to_sun.x.atan2(to_sun.z) - view.azimuth();
         let turns = (azimuth / std::f32::consts::TAU).round();
         Direction {
             azimuth: azimuth - turns * std::f32::consts::TAU,
@@ -208,19 +233,40 @@ impl Scenery {
         &mut self.orbit
     }
 
-    /// By how many degrees the camera is turned to the right of where cameras are by default, its height above the horizon in
-    /// degrees, and its distance over that from which the scene fills the picture.
-    pub fn framed(&self, aspect: f32) -> [f32; 3] {
+    /// Where the camera that the mouse turns stands in a picture of this aspect.
+    pub fn framed(&self, aspect: f32) -> Framed {
         let usual = Framing::default();
         let framing = Framing {
             direction: Direction { azimuth: self.orbit.azimuth, elevation: self.orbit.elevation },
             distance: 1.0,
+            target: None,
             ..self.framing
         };
-        let fitting = Orbit::framing(&self.scene, aspect, framing).distance;
+        let fitting = Orbit::framing(&self.scene, aspect, framing);
         let azimuth = self.orbit.azimuth - usual.direction.azimuth;
-        let distance = (self.orbit.distance / fitting).clamp(0.1, 100.0);
-        [azimuth.to_degrees(), self.orbit.elevation.to_degrees(), distance]
+        let aside = (fitting.target - self.orbit.target).length();
+        Framed {
+            azimuth: azimuth.to_degrees(),
+            elevation: self.orbit.elevation.to_degrees(),
+            distance: (self.orbit.distance / fitting.distance).clamp(0.1, 100.0),
+            target: (aside > 1e-4 * self.orbit.distance).then_some(self.orbit.target),
+            fov: (self.framing.vertical_fov != usual.vertical_fov)
+                .then(|| self.framing.vertical_fov.to_degrees()),
+        }
+    }
+
+    /// Where the sun is, seen from the camera as it stands now, where a picture taken from there would have it elsewhere by
+    /// itself.
+    pub fn sun_from_here(&self) -> Option<Direction> {
+        let rest = Pose::at_rest(&self.scene);
+        let through = self.through.and_then(|node| View::from_node(&self.scene, &rest, node));
+        let view = through.unwrap_or_else(|| self.orbit.view());
+        let environment = self.lighting.background.environment();
+        let usual = Light::for_scene(&self.scene, &rest, &view, None, environment).sun_direction;
+        if usual.abs_diff_eq(self.light.sun_direction, 1e-3) {
+            return None;
+        }
+        Some(self.sun_by(&view))
     }
 
     /// How far away the middle of the picture is.

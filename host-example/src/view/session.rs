@@ -5,16 +5,18 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use super::chain::{self, Chain, Watched};
+use super::document::kind::Kind;
 use super::easel::{Compare, Easel, Overlay};
 use super::history::History;
 use super::look::{Knob, Look};
 use super::notes::Notes;
+use super::plan::Plan;
 use super::record::Record;
 use super::reel::Reel;
 use super::scenery::{Lighting, Scenery};
 use super::settings::Settings;
 use super::value::Value;
-use crate::apply::exr::Guide;
+use crate::apply::exr::{Guide, Layer};
 use crate::error::Result;
 use crate::loader::Library;
 use crate::loader::catalogue::Node;
@@ -38,7 +40,11 @@ pub enum Wish {
     SaveLook(bool),
     /// Show a dialog and take the picture that is chosen as what is around the scene.
     ChooseSurroundings,
-    /// Show a dialog and write the picture, or all frames, there.
+    /// Show this layer of the file, and a view of it.
+    ChooseLayer(Layer, Option<String>),
+    /// Show a dialog and export to what is chosen.
+    ChooseOutput,
+    /// Make what is planned.
     Export,
     /// End the export.
     CancelExport,
@@ -111,6 +117,8 @@ pub struct Session {
     pub shows_help: bool,
     /// What is being done beside the window.
     pub busy: Option<&'static str>,
+    /// What is to be exported, while that is asked.
+    pub plan: Option<Plan>,
     /// The share of an export that is done.
     pub exported: Option<f32>,
     /// Where the pointer is on the picture, in pixels of the window.
@@ -152,6 +160,7 @@ impl Session {
             wishes: Vec::new(),
             shows_help: false,
             busy: None,
+            plan: None,
             exported: None,
             pointer: None,
             probed: None,
@@ -472,11 +481,37 @@ impl Session {
         self.begin(Some(file), name);
     }
 
+    /// Shows the same file, read in another way.
+    pub fn show_again(&mut self, mut reel: Reel) {
+        if let Some(old) = &self.reel {
+            reel.rate = old.rate;
+            reel.seek(old.number());
+        }
+        self.reel = Some(reel);
+        if !self.has_overlay(self.easel.overlay) {
+            self.easel.overlay = Overlay::None;
+        }
+    }
+
+    /// Asks what is to be exported, if anything can be.
+    pub fn plan_export(&mut self) {
+        let Some(file) = self.file.as_deref().filter(|_| !self.look().is_plain() || self.reel.is_none())
+        else {
+            return;
+        };
+        let kind = self.reel.as_ref().map_or(Kind::Scene, |reel| reel.document.kind());
+        let length = self.scenery.as_ref().map_or(0.0, |scenery| scenery.time().1);
+        let frames = self.reel.as_ref().and_then(Reel::frames);
+        let animated = (length * 24.0).ceil() as u32;
+        self.plan = Some(Plan::new(kind, file, frames, self.nominal_size(), animated));
+    }
+
     fn begin(&mut self, file: Option<PathBuf>, name: String) {
         if let Some(file) = &file {
             self.settings.remember(file);
         }
         (self.file, self.name) = (file, name);
+        self.plan = None;
         self.easel.fit();
         self.easel.overlay = Overlay::None;
         self.record.begin();

@@ -83,6 +83,8 @@ pub struct Document {
     kind: Kind,
     path: PathBuf,
     offers: Offers,
+    /// What was asked for.
+    selection: Selection,
     content: Content,
 }
 
@@ -124,7 +126,7 @@ impl Document {
             Kind::Sequence => sequence(&path, reading, options.cache)?,
             Kind::Video => video(&path, reading, options.cache)?,
         };
-        Ok(Self { kind, path, offers, content })
+        Ok(Self { kind, path, offers, selection: options.selection.clone(), content })
     }
 
     /// What it is.
@@ -140,6 +142,11 @@ impl Document {
     /// What can be chosen in an EXR file, and what is.
     pub fn offers(&self) -> &Offers {
         &self.offers
+    }
+
+    /// What was asked for of an EXR file.
+    pub fn selection(&self) -> &Selection {
+        &self.selection
     }
 
     /// The frames; none of scenes and pictures.

@@ -4,8 +4,10 @@
 mod canvas;
 mod chain;
 mod control;
+mod export;
 mod help;
 pub mod keys;
+mod layers;
 mod lighting;
 mod notes;
 mod panel;
@@ -56,6 +58,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         start::show(ui, session, has_room);
     }
     notes::show(ui.ctx(), rect, session);
+    export::show(ui.ctx(), session);
     help::show(ui.ctx(), session);
 }
 

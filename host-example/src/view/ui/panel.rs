@@ -2,7 +2,7 @@
 
 use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
-use super::{chain, control, lighting, theme};
+use super::{chain, control, layers, lighting, theme};
 use crate::looks;
 use crate::view::look::Knob;
 use crate::view::session::{Session, Wish};
@@ -30,6 +30,11 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         if session.scenery.is_some() {
             CollapsingHeader::new("Scene and light").default_open(false).show_unindented(ui, |ui| {
                 lighting::show(ui, session);
+            });
+        }
+        if layers::has_any(session) {
+            CollapsingHeader::new("Layers and guides").default_open(true).show_unindented(ui, |ui| {
+                layers::show(ui, session);
             });
         }
         ui.add_space(16.0);

@@ -43,10 +43,12 @@ fn file_menu(ui: &mut Ui, session: &mut Session) {
         item(ui, session, "Save the look", "Ctrl+S", Wish::SaveLook(false), has_look);
         item(ui, session, "Save the look as…", "Ctrl+Shift+S", Wish::SaveLook(true), has_look);
         ui.separator();
-        let has_picture = session.has_picture();
         let can_export = session.file.is_some() && (has_look || session.scenery.is_some());
-        item(ui, session, "Copy the command line", "", Wish::CopyCommand, has_picture);
-        item(ui, session, "Export…", "", Wish::Export, can_export);
+        item(ui, session, "Copy the command line", "", Wish::CopyCommand, session.file.is_some());
+        if ui.add_enabled(can_export, Button::new("Export…").shortcut_text("Ctrl+E")).clicked() {
+            session.plan_export();
+            ui.close();
+        }
         ui.separator();
         let recent = session.settings.recent.clone();
         if !recent.is_empty() {
@@ -145,7 +147,8 @@ fn right(ui: &mut Ui, session: &mut Session) {
         if !session.has_picture() || is_narrow {
             return;
         }
-        if ui.button("Copy command").on_hover_text("The command line that gives this picture").clicked() {
+        let copy = ui.add_enabled(session.file.is_some(), Button::new("Copy command"));
+        if copy.on_hover_text("The command line that gives this picture").clicked() {
             session.wishes.push(Wish::CopyCommand);
         }
         let has_look = !session.look().is_plain();
