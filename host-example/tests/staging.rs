@@ -342,3 +342,28 @@ fn pictures_that_show_no_surroundings_are_refused() {
         assert!(!at("out.png").exists());
     }
 }
+
+#[test]
+fn exposure_and_target_are_those_of_the_window() {
+    let folder = folder();
+    let scene = ball(folder.path());
+    let all = |picture: &RgbaImage| mean(picture, |_, _| true);
+    let plain = picture(&scene, &["--background", "transparent"]);
+    let bright = picture(&scene, &["--background", "transparent", "--exposure", "1"]);
+    let dark = picture(&scene, &["--background", "transparent", "--exposure", "-1.5"]);
+    assert!(all(&dark) + 5.0 < all(&plain) && all(&plain) + 5.0 < all(&bright));
+    let covered = |picture: &RgbaImage| {
+        let columns = picture.enumerate_pixels().filter(|(_, _, p)| p[3] == 255).map(|(x, ..)| f64::from(x));
+        let columns: Vec<f64> = columns.collect();
+        columns.iter().sum::<f64>() / columns.len() as f64
+    };
+    let aside = ["--background", "transparent", "--no-ground", "--azimuth", "0", "--distance", "3"];
+    let middle = covered(&picture(&scene, &aside));
+    let moved = covered(&picture(&scene, &[&aside[..], &["--target", "1,0,1"]].concat()));
+    assert!((middle - 47.5).abs() < 1.5 && (moved - middle).abs() > 2.0, "{middle} and {moved}");
+    fails(
+        isophote().arg("render").arg(&scene).args(["out.png", "--target", "1,2"]),
+        2,
+        &["three coordinates"],
+    );
+}

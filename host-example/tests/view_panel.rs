@@ -8,10 +8,13 @@ use std::collections::HashMap;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use isophote_host::loader::Library;
+use isophote_host::output::{self, Layer, Picture, Precision};
 use isophote_host::scene::Scene;
+use isophote_host::view::document::{Document, Options};
 use isophote_host::view::look::Look;
+use isophote_host::view::reel::Reel;
 use isophote_host::view::scenery::{Scenery, Staging};
-use isophote_host::view::session::Session;
+use isophote_host::view::session::{Session, Wish};
 use isophote_host::view::settings::Settings;
 use isophote_host::view::ui;
 use isophote_host::view::value::Value;
@@ -144,4 +147,51 @@ fn a_saved_look_is_the_same_look_and_its_command_is_short() {
     std::fs::write(&file, r#"{"style": "cartoon", "parameters": {"later": 1}}"#).unwrap();
     let error = Look::open(&session.library, &file).unwrap_err().to_string();
     assert!(error.contains("later"), "{error}");
+}
+
+#[test]
+fn an_export_is_asked_for_in_a_window_of_its_own() {
+    let folder = support::folder();
+    let mut session = session();
+    session.file = Some(folder.path().join("cube.gltf"));
+    session.plan_export();
+    let mut harness = harness(session);
+    harness.get_by_label("A turntable").click();
+    harness.run_ok();
+    let plan = harness.state().plan.clone().expect("a plan");
+    assert!(plan.path.ends_with("cube-look.####.png"), "{}", plan.path);
+    assert_eq!(plan.frames().as_deref(), Some("96"));
+    harness.get_by_label("Start the export").click();
+    harness.run_ok();
+    assert_eq!(harness.state().wishes, [Wish::Export]);
+}
+
+#[test]
+fn layers_are_chosen_from_a_list() {
+    let folder = support::folder();
+    let file = folder.path().join("layers.exr");
+    write_layers(&file);
+    let mut session = session();
+    let document = Document::open(&file, &Options::default()).unwrap();
+    session.show_reel(Reel::new(document).unwrap());
+    let mut harness = harness(session);
+    harness.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Layer").click();
+    harness.run_ok();
+    harness.get_by_label("beauty").click();
+    harness.run_ok();
+    let wishes = &harness.state().wishes;
+    assert!(matches!(&wishes[..], [Wish::ChooseLayer(layer, None)] if layer.name == "beauty"), "{wishes:?}");
+}
+
+/// Writes a picture with a layer beside the main one.
+fn write_layers(file: &std::path::Path) {
+    let data: Vec<f32> = (0..8 * 4 * 6).map(|n| n as f32 / 192.0).collect();
+    let picture = |at: usize| Picture { width: 8, height: 4, channels: 3, data: data[at..at + 96].to_vec() };
+    let (main, beauty) = (picture(0), picture(96));
+    let precision = Precision::Half;
+    let layers = [
+        Layer { picture: &main, names: &["R", "G", "B"], precision },
+        Layer { picture: &beauty, names: &["beauty.R", "beauty.G", "beauty.B"], precision },
+    ];
+    output::save_layers(file, &layers, None).unwrap();
 }

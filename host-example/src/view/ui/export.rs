@@ -37,11 +37,11 @@ pub fn show(context: &egui::Context, session: &mut Session) {
 /// What is made, and of which format.
 fn kind(ui: &mut Ui, plan: &mut Plan) {
     if plan.choices().len() > 1 {
-        let label = ui.label("What");
+        ui.label("What");
         let mut what = plan.what;
         ui.horizontal(|ui| {
             for choice in plan.choices() {
-                ui.selectable_value(&mut what, *choice, choice.name()).labelled_by(label.id);
+                ui.selectable_value(&mut what, *choice, choice.name());
             }
         });
         if what != plan.what {
