@@ -6,7 +6,7 @@ use crate::view::easel::Compare;
 use crate::view::session::{Session, Wish};
 
 /// Keys and what they do, for the help of the program and of the window.
-pub const KEYS: [(&str, &str); 23] = [
+pub const KEYS: [(&str, &str); 24] = [
     ("drag", "turns the scene; moves a picture"),
     ("Shift+drag", "pans, as other buttons do"),
     ("wheel", "zooms"),
@@ -26,6 +26,7 @@ pub const KEYS: [(&str, &str); 23] = [
     ("p", "hides and shows the panel"),
     ("Ctrl+Z, Ctrl+Y", "takes the last step back, and takes it again"),
     ("Ctrl+O", "opens a file"),
+    ("Ctrl+E", "asks what is to be exported"),
     ("Ctrl+S", "saves the look; with Shift under another name"),
     ("r", "sets everything back to the style's defaults"),
     ("?", "shows and hides the help"),
