@@ -32,7 +32,7 @@ enum Job {
     /// The first of them that can be opened.
     Files(Library, Vec<PathBuf>),
     /// The file that is open, read in another way.
-    Again(PathBuf, Selection),
+    Again(PathBuf, Box<Selection>),
     Look(Library, PathBuf),
     Surroundings(PathBuf),
 }
@@ -176,7 +176,7 @@ impl Desk {
                             view,
                             ..Selection::default()
                         };
-                        self.opener.ask(Job::Again(file.clone(), selection));
+                        self.opener.ask(Job::Again(file.clone(), Box::new(selection)));
                     }
                 }
                 Wish::ChooseOutput => self.choose(Dialog::Export, session),
@@ -335,7 +335,7 @@ fn open(job: Job) -> Result<Opened> {
         Job::Demo => Opened::Scene(Box::new(demo::scene()?), None),
         Job::Files(library, files) => first_of(&library, files)?,
         Job::Again(path, selection) => {
-            let options = Options { selection, ..Options::default() };
+            let options = Options { selection: *selection, ..Options::default() };
             Opened::Again(Box::new(Reel::new(Document::open(&path, &options)?)?))
         }
         Job::Look(library, path) => Opened::Look(Box::new(Look::open(&library, &path)?)),
