@@ -73,7 +73,7 @@ impl Plan {
             format: "",
             first: numbers.first().copied().unwrap_or(1),
             last: numbers.last().copied().unwrap_or(1),
-            numbers,
+            numbers: numbers.to_vec(),
             counts: [TURN, frames],
             size: [size.0, size.1],
             path: input.with_file_name(format!("{stem}-look")).display().to_string(),
@@ -206,7 +206,7 @@ mod tests {
 
     #[test]
     fn some_frames_are_named_and_all_are_not() {
-        let frames = Frames { numbers: vec![7, 8, 10, 11], cached: Vec::new(), rate: 24.0 };
+        let frames = Frames { numbers: vec![7, 8, 10, 11].into(), cached: Vec::new(), rate: 24.0 };
         let mut plan = Plan::new(Kind::Sequence, Path::new("shot.####.exr"), Some(frames), (1, 1), 0);
         assert_eq!((plan.path.as_str(), plan.frames()), ("shot-look.####.exr", None));
         (plan.first, plan.last) = (8, 10);

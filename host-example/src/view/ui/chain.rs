@@ -68,7 +68,7 @@ fn row(ui: &mut Ui, session: &Session, index: usize, count: usize, asked: &mut O
         if link.bypassed {
             text = text.color(theme::FAINT).strikethrough();
         }
-        let width = ui.available_width() - 4.0 * 25.0;
+        let width = ui.available_width() - 4.0 * 29.0;
         let name = Button::selectable(is_selected, text).truncate().min_size(vec2(width, 20.0));
         let hint = format!("Show the parameters of {} alone, or those of all nodes again", link.name);
         if ui.add_sized([width, 20.0], name).on_hover_text(hint).clicked() {
