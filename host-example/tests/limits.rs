@@ -30,6 +30,13 @@ fn within(mebibytes: u64, command: &Command) -> Output {
         .expect("the shell can be started")
 }
 
+/// Whether the system can load the program at all where it may have so many MiB of addresses.
+fn loads(mebibytes: u64, command: &Command) -> bool {
+    let mut version = Command::new(command.get_program());
+    version.arg("--version").current_dir(command.get_current_dir().expect("a folder"));
+    within(mebibytes, &version).status.success()
+}
+
 /// Runs the command with more and more memory. It ends well or with a sentence; returns how often it did which.
 fn sweep(limits: impl Iterator<Item = u64>, command: &Command) -> [usize; 2] {
     let mut counts = [0; 2];
@@ -38,7 +45,8 @@ fn sweep(limits: impl Iterator<Item = u64>, command: &Command) -> [usize; 2] {
         let text = errors(&output);
         // Where the system cannot load the program, and where it cannot make room for variables of threads, it ends
         // the process itself.
-        if output.status.code() == Some(127) {
+        let is_loaded = output.status.code().is_some() || loads(limit, command);
+        if output.status.code() == Some(127) || !is_loaded {
             continue;
         }
         let is_said = text.starts_with("error: ") || text.starts_with("memory allocation of ");

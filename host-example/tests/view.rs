@@ -158,7 +158,7 @@ const CANVAS: [usize; 4] = [0, 60, 350, 300];
 /// Its left half, without the line of the wipe.
 const LEFT: [usize; 4] = [0, 80, 160, 300];
 /// Far along the first slider of its panel.
-const SLIDER: [&str; 2] = ["590", "119"];
+const SLIDER: [&str; 2] = ["590", "146"];
 /// Where the pointer shows nothing.
 const ASIDE: [&str; 2] = ["320", "408"];
 

@@ -210,7 +210,7 @@ mod tests {
         let mut plan = Plan::new(Kind::Sequence, Path::new("shot.####.exr"), Some(frames), (1, 1), 0);
         assert_eq!((plan.path.as_str(), plan.frames()), ("shot-look.####.exr", None));
         (plan.first, plan.last) = (8, 10);
-        assert_eq!(plan.frames().as_deref(), Some("8-10:2"));
+        assert_eq!(plan.frames().as_deref(), Some("8,10"));
         plan.last = 7;
         assert!(plan.problem().is_some());
     }
