@@ -50,7 +50,8 @@ fn main() {
     let target = out.join("kernels.rs");
     let _ = fs::remove_file(&target);
     assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
-    fs::write(&target, generated(&kernels, &rust)).expect("OUT_DIR is writable");
+    let text = imports(&shaders, &kernels) + &generated(&kernels, &rust);
+    fs::write(&target, text).expect("OUT_DIR is writable");
 }
 
 /// The files `DIR/<group>/<stem>.<ext>`, but for those of one group.
@@ -87,23 +88,57 @@ fn without_twin(wgsl: &BTreeMap<Name, PathBuf>, rust: &BTreeMap<Name, PathBuf>) 
     faults
 }
 
-/// The text of `kernels.rs`.
+/// The texts that shaders share, as constants.
+fn imports(shaders: &Path, kernels: &BTreeMap<Name, Shader>) -> String {
+    let names: BTreeSet<&String> = kernels.values().flat_map(|shader| &shader.imports).collect();
+    let mut text = String::from("/// What shaders import.\npub mod imports {\n");
+    for name in names {
+        let wgsl = shader::imported(shaders, name).expect("it was read for a shader");
+        let filtered = shader::filtered(shaders, name).expect("it was read for a shader");
+        let _ = write!(
+            text,
+            "/// `shaders/{name}.wgsl`.\npub static {}: isophote_engine::kernel::Import = \
+             isophote_engine::kernel::Import {{ name: {name:?}, text: {wgsl:?}, filtered: {filtered:?} }};\n",
+            constant(name),
+        );
+    }
+    text.push_str("}\n");
+    text
+}
+
+/// The constant that holds what is imported as `folder/name`.
+fn constant(name: &str) -> String {
+    name.replace('/', "_").to_uppercase()
+}
+
+/// The rest of the text of `kernels.rs`.
 fn generated(kernels: &BTreeMap<Name, Shader>, rust: &BTreeMap<Name, PathBuf>) -> String {
     let mut text =
         String::from("/// WGSL text and reflected layout of every shader, by stem.\npub mod shaders {\n");
     for ((group, stem), shader) in kernels {
         let path = format!("shaders/{group}/{stem}.wgsl");
+        let constants =
+            shader.imports.iter().map(|name| format!("&super::super::imports::{}", constant(name)));
+        let imported: Vec<String> = constants.collect();
         let _ = write!(
             text,
             "/// Reflected from `{path}`.\npub mod {stem} {{\n\
              /// Complete WGSL module.\npub const SOURCE: &str = {:?};\n\
              /// Number of sampled textures.\npub const INPUTS: usize = {};\n\
              /// Channels of the storage textures.\npub const OUTPUTS: &[u32] = &{:?};\n\
-             /// Bytes of the uniform block; 0 for none.\npub const PARAMS_SIZE: usize = {};\n{}}}\n",
+             /// Bytes of the uniform block; 0 for none.\npub const PARAMS_SIZE: usize = {};\n\
+             /// What the module is put together from.\n\
+             pub const PARTS: isophote_engine::kernel::Parts = isophote_engine::kernel::Parts {{\n\
+             imports: &[{}],\nown: {:?},\nis_per_pixel: {},\nfiltered: &{:?},\ncan_lead: {} }};\n{}}}\n",
             shader.source,
             shader.inputs,
             shader.outputs,
             shader.params.as_ref().map_or(0, |block| block.size),
+            imported.join(", "),
+            shader.own,
+            shader.is_per_pixel,
+            shader.filtered,
+            shader.can_lead,
             shader.params.as_ref().map_or_else(String::new, |block| block.rust(&path)),
         );
     }

@@ -38,15 +38,11 @@ fn ruled(x: vec2f, spacing: f32, width: f32) -> f32 {
     return max(covered.x, covered.y);
 }
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
+fn of_pixel(id: vec3u, lightness: vec4f, edges: vec4f) -> vec4f {
     let x = centre(id) + params.origin;
     let q = x * params.inverse_scale;
     let grain = 0.45 * value_noise(q * 0.4, 0u) + 0.3 * value_noise(q * 0.13, 1013u) + 0.25 * value_noise(q * 0.037, 2027u);
-    let v = fetch(lightness, 0u, pixel(id)).xy;
+    let v = lightness.xy;
     let tone = clamp(v.x / max(v.y, 1e-6) * 0.01, 0.0, 1.0);
     let fill = params.fill * clamp(v.y, 0.0, 1.0);
     let shade = (1.0 + params.texture_amount * (grain - 0.5)) * (1.0 - 0.5 * fill * (1.0 - tone));
@@ -57,7 +53,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let strong = 0.32 * ruled(x, 5.0 * params.spacing, 1.5 * params.scale);
         sheet += max(fine, strong) * params.line.a * (params.line.rgb - sheet);
     }
-    let ink = (1.0 - clamp(fetch(edges, 1u, pixel(id)).x, 0.0, 1.0)) * params.line.a;
+    let ink = (1.0 - clamp(edges.x, 0.0, 1.0)) * params.line.a;
     let alpha = select(v.y, 1.0, params.cover != 0u);
-    textureStore(target_image, vec2i(id.xy), vec4f(sheet + ink * (params.line.rgb - sheet), alpha));
+    return vec4f(sheet + ink * (params.line.rgb - sheet), alpha);
 }

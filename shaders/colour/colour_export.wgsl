@@ -14,12 +14,8 @@ struct Params {
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    var v = fetch(source, 0u, pixel(id));
+fn of_pixel(id: vec3u, source: vec4f) -> vec4f {
+    var v = source;
     if params.space != 0u {
         v = vec4f(srgb_decode(v.rgb), v.a);
     }
@@ -29,5 +25,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if params.premultiplied != 0u {
         v = vec4f(v.rgb * v.a, v.a);
     }
-    textureStore(target_image, vec2i(id.xy), v);
+    return v;
 }

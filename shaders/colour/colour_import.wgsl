@@ -15,17 +15,13 @@ struct Params {
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    var v = plain(fetch(source, 0u, pixel(id)), params.premultiplied);
+fn of_pixel(id: vec3u, source: vec4f) -> vec4f {
+    var v = plain(source, params.premultiplied);
     if params.space == 2u {
         v = vec4f(acescg_to_linear(v.rgb), v.a);
     }
     if params.space != 0u {
         v = vec4f(srgb_encode(v.rgb), v.a);
     }
-    textureStore(target_image, vec2i(id.xy), v);
+    return v;
 }

@@ -6,10 +6,6 @@
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    textureStore(target_image, vec2i(id.xy), vec4f(beyond_coverage(finite(fetch(source, 0u, pixel(id)))), 1.0));
+fn of_pixel(id: vec3u, source: vec4f) -> vec4f {
+    return vec4f(beyond_coverage(finite(source)), 1.0);
 }

@@ -49,22 +49,17 @@ fn catches(d: f32, h: f32, depth: f32) -> f32 {
     return clamp(d + depth * 4.0 * d * (1.0 - d) * (0.5 - h), 0.0, 1.0);
 }
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
+fn of_pixel(id: vec3u, lines: vec4f, v: vec4f, strokes: vec4f, marks: vec4f) -> vec4f {
     let q = (centre(id) + params.origin) * params.inverse_scale;
     let g = q * params.grain_frequency;
     let tooth = even(0.45 * value_noise(g, 11u) + 0.25 * value_noise(g * 2.13, 1013u)
         + 0.3 * value_noise(g * 0.31, 2027u));
-    let v = fetch(source, 1u, pixel(id));
     let alpha = clamp(v.a, 0.0, 1.0);
-    let stroke = clamp(fetch(strokes, 2u, pixel(id)).x, 0.0, 1.0);
+    let stroke = clamp(strokes.x, 0.0, 1.0);
     let height = mix(tooth, stroke, params.follow);
 
-    let line = 1.0 - clamp(fetch(lines, 0u, pixel(id)).x, 0.0, 1.0);
-    let mark = fetch(marks, 3u, pixel(id)).xy;
+    let line = 1.0 - clamp(lines.x, 0.0, 1.0);
+    let mark = marks.xy;
     // A dry tool leaves out the valleys of the paper even where it presses hard; in light tones nothing breaks.
     let dry = params.dryness * max(height - 0.55, 0.0);
     let pressed = catches(line, height, params.dryness * params.grain) * (1.0 - dry);
@@ -77,5 +72,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let paper = params.paper.rgb * (1.0 + params.texture_amount * (tooth - 0.5));
     let laid = mix(paper, own * 0.94 + 0.06, chalk);
     let colour = mix(params.line.rgb, own * 0.3, params.colour);
-    textureStore(target_image, vec2i(id.xy), vec4f(mix(laid, colour, ink), select(v.a, 1.0, params.cover != 0u)));
+    return vec4f(mix(laid, colour, ink), select(v.a, 1.0, params.cover != 0u));
 }

@@ -18,12 +18,8 @@ struct Params {
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rg32float, write>;
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    var v = fetch(source, 0u, pixel(id));
+fn of_pixel(id: vec3u, source: vec4f) -> vec4f {
+    var v = source;
     if params.source_space != 1u {
         let host = params.source_space == 2u;
         if host {
@@ -38,5 +34,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let y = dot(linear, vec3f(0.2126729, 0.7151522, 0.0721750));
         v.x = 116.0 * lab_curve(vec3f(y)).x - 16.0;
     }
-    textureStore(target_image, vec2i(id.xy), vec4f(v.x * v.a, v.a, 0.0, 0.0));
+    return vec4f(v.x * v.a, v.a, 0.0, 0.0);
 }

@@ -12,14 +12,8 @@ struct Params {
 @group(0) @binding(3) var second: texture_2d<f32>;
 @group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let a = fetch(first, 0u, pixel(id));
-    let b = fetch(second, 1u, pixel(id));
+fn of_pixel(id: vec3u, a: vec4f, b: vec4f) -> vec4f {
     let weights = vec2f((1.0 - params.amount) * a.a, params.amount * b.a);
     let mixed = vec4f(weights.x * a.rgb + weights.y * b.rgb, weights.x + weights.y);
-    textureStore(target_image, vec2i(id.xy), unpremultiply(mixed));
+    return unpremultiply(mixed);
 }

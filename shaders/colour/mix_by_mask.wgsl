@@ -14,18 +14,12 @@ struct Params {
 @group(0) @binding(4) var mask: texture_2d<f32>;
 @group(0) @binding(5) var target_image: texture_storage_2d<rgba32float, write>;
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let a = fetch(first, 0u, pixel(id));
-    let b = fetch(second, 1u, pixel(id));
+fn of_pixel(id: vec3u, a: vec4f, b: vec4f, mask: vec4f) -> vec4f {
     // As coverage comes in: cut to 0..=1, and 0 for what is not a number.
-    let amount = params.amount * finite(vec4f(0.0, 0.0, 0.0, fetch(mask, 2u, pixel(id)).x)).a;
+    let amount = params.amount * finite(vec4f(0.0, 0.0, 0.0, mask.x)).a;
     let weights = vec2f((1.0 - amount) * a.a, amount * b.a);
     let mixed = unpremultiply(vec4f(weights.x * a.rgb + weights.y * b.rgb, weights.x + weights.y));
     // Where only one counts it passes to the bit.
     let one = select(mixed, a, amount == 0.0);
-    textureStore(target_image, vec2i(id.xy), select(one, b, amount == 1.0));
+    return select(one, b, amount == 1.0);
 }

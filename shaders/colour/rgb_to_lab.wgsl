@@ -12,13 +12,7 @@ struct Params {
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    var v = fetch(source, 0u, pixel(id));
+fn of_pixel(id: vec3u, v: vec4f) -> vec4f {
     let lab = linear_to_lab(srgb_decode(v.rgb));
-    v = vec4f(lab * vec3f(1.0, params.chroma, params.chroma), v.a);
-    textureStore(target_image, vec2i(id.xy), v);
+    return vec4f(lab * vec3f(1.0, params.chroma, params.chroma), v.a);
 }

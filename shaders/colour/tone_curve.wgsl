@@ -14,15 +14,10 @@ struct Params {
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let v = fetch(source, 0u, pixel(id));
+fn of_pixel(id: vec3u, v: vec4f) -> vec4f {
     let t = clamp(v.x * 0.01, 0.0, 1.0);
     let hump = t * (1.0 - t);
     // The factor keeps every slope at 0.1 or more, so that tones never change order.
     let lift = 90.0 * hump * (params.darks * (1.0 - t) + params.lights * t);
-    textureStore(target_image, vec2i(id.xy), vec4f(v.x + lift, v.yzw));
+    return vec4f(v.x + lift, v.yzw);
 }

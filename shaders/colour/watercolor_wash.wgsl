@@ -35,24 +35,19 @@ fn luma(c: vec3f) -> f32 {
     return clamp(dot(c, vec3f(0.2126, 0.7152, 0.0722)), 0.0, 1.0);
 }
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let v = fetch(source, 0u, pixel(id));
+fn of_pixel(id: vec3u, v: vec4f, blurred: vec4f, given_clouds: vec4f) -> vec4f {
     let q = (centre(id) + params.origin) * params.inverse_scale;
-    var cloud = fetch(given_clouds, 2u, pixel(id)).x;
+    var cloud = given_clouds.x;
     if params.given == 0u {
         cloud = 0.6 * value_noise(q * 0.017, 11u) + 0.4 * value_noise(q * 0.043, 503u);
     }
     let g = q * params.grain_frequency;
     let grain = 0.6 * value_noise(g, 1013u) + 0.4 * value_noise(g * 2.3, 2027u);
-    let excess = luma(fetch(blurred, 1u, pixel(id)).rgb) - luma(v.rgb);
+    let excess = luma(blurred.rgb) - luma(v.rgb);
     let gathered = params.edges * (max(excess, 0.0) + 0.25 * max(-excess, 0.0));
     let density = gathered + params.clouds * (2.0 * cloud - 1.0) + params.grain * (2.0 * grain - 1.0);
     let thin = 1.0 - params.pigment * (1.0 - v.rgb);
     // Neither paper nor the darkest pigment changes, nor what is brighter than paper.
     let color = thin - density * max(thin - thin * thin, vec3f(0.0));
-    textureStore(target_image, vec2i(id.xy), vec4f(color, v.a));
+    return vec4f(color, v.a);
 }

@@ -6,11 +6,6 @@
 @group(0) @binding(2) var tensor: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rg32float, write>;
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let t = fetch(tensor, 0u, pixel(id));
-    textureStore(target_image, vec2i(id.xy), vec4f(t.x - t.z, t.y, 0.0, 0.0));
+fn of_pixel(id: vec3u, t: vec4f) -> vec4f {
+    return vec4f(t.x - t.z, t.y, 0.0, 0.0);
 }

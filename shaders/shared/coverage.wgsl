@@ -21,6 +21,13 @@ fn fetch_covered(image: texture_2d<f32>, slot: u32, p: vec2i) -> vec4f {
     return premultiply(fetch(image, slot, p));
 }
 
+// Between the pixel at absolute position p and that at p + next, so much of the way, colours multiplied by their alpha.
+fn covered_between(image: texture_2d<f32>, slot: u32, p: vec2i, next: vec2i, share: f32) -> vec4f {
+    let a = fetch_covered(image, slot, p);
+    let b = fetch_covered(image, slot, p + next);
+    return a + (b - a) * share;
+}
+
 // `sample_linear` of colours multiplied by their alpha.
 fn sample_covered(image: texture_2d<f32>, slot: u32, p: vec2f) -> vec4f {
     let last = vec2f(grid.inputs[slot].zw);

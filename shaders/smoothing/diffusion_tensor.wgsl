@@ -17,12 +17,8 @@ struct Params {
 
 const COHERENCE_ENHANCING = 1u;
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let eigen = tensor_eigen(fetch(tensors, 0u, pixel(id)));
+fn of_pixel(id: vec3u, tensors: vec4f) -> vec4f {
+    let eigen = tensor_eigen(tensors);
     var across = 1.0;
     var along = 1.0;
     if params.scheme == COHERENCE_ENHANCING {
@@ -41,5 +37,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let c = across * n.y * n.y + along * n.x * n.x;
     let size = abs(b);
     let weights = vec4f(max(a - size, 0.0), max(c - size, 0.0), 0.5 * (size + b), 0.5 * (size - b));
-    textureStore(target_image, vec2i(id.xy), weights);
+    return weights;
 }

@@ -74,9 +74,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 let wb = share.y * b.a * weight(b.rgb, origin.rgb, domain * distance * distance, range);
                 sum += wa * vec4f(a.rgb, 1.0) + wb * vec4f(b.rgb, 1.0);
             } else {
-                let a = fetch_covered(source, 0u, q);
-                let b = fetch_covered(source, 0u, q + next);
-                let tap = a + (b - a) * f;
+                let tap = covered_between(source, 0u, q, next, f);
                 let color = tap.rgb / max(tap.a, LEAST_COVERAGE);
                 sum += weight(color, origin.rgb, domain * distance * distance, range) * tap;
             }

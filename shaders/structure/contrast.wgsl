@@ -10,12 +10,7 @@ struct Params {
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let v = fetch(source, 0u, pixel(id));
+fn of_pixel(id: vec3u, v: vec4f) -> vec4f {
     let rgb = clamp((v.rgb - 0.5) * params.gain + 0.5, vec3f(0.0), vec3f(1.0));
-    textureStore(target_image, vec2i(id.xy), vec4f(rgb, v.a));
+    return vec4f(rgb, v.a);
 }

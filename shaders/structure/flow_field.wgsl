@@ -14,12 +14,8 @@ struct Params {
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let v = clamp(finite(fetch(source, 0u, pixel(id))), vec4f(0.0), vec4f(1.0));
+fn of_pixel(id: vec3u, source: vec4f) -> vec4f {
+    let v = clamp(finite(source), vec4f(0.0), vec4f(1.0));
     var d = 2.0 * v.rg - 1.0;
     if params.invert_y != 0u {
         d.y = -d.y;
@@ -29,7 +25,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     // Eight bits have no exact half: less than one and a half of their steps is no direction.
     let weight = select(0.0, clamp(params.strength * v.a * min(length, 1.0), 0.0, 1.0), length > FLOW_LEAST);
     let scale = weight / max(square, 1e-12);
-    textureStore(target_image, vec2i(id.xy), vec4f(scale * d.y * d.y, -scale * d.x * d.y, scale * d.x * d.x, weight));
+    return vec4f(scale * d.y * d.y, -scale * d.x * d.y, scale * d.x * d.x, weight);
 }
 
 // Length up to which a painted vector stands for none.

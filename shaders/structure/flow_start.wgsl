@@ -9,12 +9,7 @@ const LEAST: f32 = 1e-6;
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let t = fetch(source, 0u, pixel(id));
+fn of_pixel(id: vec3u, t: vec4f) -> vec4f {
     let axis = tensor_axis((t.x - t.z) * 0.5, t.y);
     let magnitude = sqrt(max((t.x + t.z) * 0.5 + axis.radius, 0.0));
     let n = axis.major;
@@ -22,5 +17,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if magnitude < LEAST {
         start = vec4f(0.0);
     }
-    textureStore(target_image, vec2i(id.xy), start);
+    return start;
 }

@@ -75,12 +75,7 @@ fn strength(unbounded: vec4f) -> f32 {
     }
 }
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let t = fetch(source, 0u, pixel(id));
+fn of_pixel(id: vec3u, t: vec4f) -> vec4f {
     var color = vec3f(0.0);
     if params.show == 0u {
         // Anisotropy times (cos 2 phi, sin 2 phi), phi the angle of the tangent.
@@ -96,5 +91,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     } else {
         color = vec3f(strength(t));
     }
-    textureStore(target_image, vec2i(id.xy), vec4f(color, 1.0));
+    return vec4f(color, 1.0);
 }

@@ -22,12 +22,7 @@ fn composed(a: f32, b: f32, v: vec2f) -> vec3f {
     return vec3f(a * square.x + b * square.y, (a - b) * v.x * v.y, a * square.y + b * square.x);
 }
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let t = fetch(source, 0u, pixel(id));
+fn of_pixel(id: vec3u, t: vec4f) -> vec4f {
     var result: vec3f;
     if params.inverse != 0u {
         let mean = (t.x + t.z) * 0.5;
@@ -39,5 +34,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let smaller = max(max(eigen.lambda2, params.least), larger * params.share);
         result = composed(log(larger), log(smaller), eigen.major);
     }
-    textureStore(target_image, vec2i(id.xy), vec4f(result, t.w));
+    return vec4f(result, t.w);
 }

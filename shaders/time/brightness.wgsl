@@ -7,12 +7,7 @@
 // Highlights beyond it would outweigh all else that moves.
 const BRIGHTEST = 4.0;
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let color = fetch(source, 0u, pixel(id));
+fn of_pixel(id: vec3u, color: vec4f) -> vec4f {
     let luma = dot(color.rgb, vec3f(0.2126, 0.7152, 0.0722)) * color.a;
-    textureStore(target_image, vec2i(id.xy), vec4f(clamp(luma, 0.0, BRIGHTEST)));
+    return vec4f(clamp(luma, 0.0, BRIGHTEST));
 }

@@ -11,6 +11,9 @@ pub const MAX_INPUTS: usize = 6;
 /// Side of the square workgroups of every kernel.
 pub const WORKGROUP: u32 = 8;
 
+/// Binding of the sampler of shaders that interpolate by one.
+pub const SAMPLER_BINDING: u32 = 15;
+
 /// One kernel: the shader, its CPU twin and what both need to be run.
 #[derive(Debug)]
 pub struct Kernel {
@@ -24,12 +27,52 @@ pub struct Kernel {
     pub outputs: &'static [u32],
     /// Size of the uniform block at binding 1, in bytes; 0 for none.
     pub params_size: usize,
+    /// What the shader is put together from, for passes that do the work of several kernels.
+    pub parts: Parts,
     /// The CPU twin: fills one band of the outputs.
     pub cpu: fn(&CpuPass<'_>, &mut Band<'_>),
     /// Fused multiply-adds (or operations of like cost) per output pixel, for benchmarks.
     pub cost: fn(&[u8]) -> f64,
     /// How far the two twins may differ.
     pub tolerance: Tolerance,
+    /// How far they may differ where the shader reads and writes 16-bit floats, and interpolates by samplers if it can.
+    pub fast: Tolerance,
+}
+
+/// What a shader is put together from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parts {
+    /// Texts that it shares with other shaders, in an order in which each stands after what it uses.
+    pub imports: &'static [&'static Import],
+    /// Its own text, where every binding is a line that begins with `@group(0)`. Kernels of single pixels have no entry
+    /// point in it, but a function `of_pixel(id: vec3u, ...) -> vec4f` of the pixels of all textures read.
+    pub own: &'static str,
+    /// Whether each pixel of the output depends on the same pixel of the inputs alone, so that the kernel can follow
+    /// another one in the same pass.
+    pub is_per_pixel: bool,
+    /// Inputs that are interpolated by [`Import::filtered`] alone, if the kernel imports any text that has one.
+    pub filtered: &'static [usize],
+    /// Whether kernels of single pixels can follow in the same pass: there is one output, stored in one place by
+    /// `textureStore(target_image, vec2i(id.xy), VALUE);`, or the kernel is of single pixels itself.
+    pub can_lead: bool,
+}
+
+/// A text that shaders share.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Import {
+    /// Folder and stem of its file.
+    pub name: &'static str,
+    /// WGSL.
+    pub text: &'static str,
+    /// The same functions with the sampler at [`SAMPLER_BINDING`] in place of loads and arithmetic, for textures that a
+    /// device filters; none where nothing is interpolated.
+    pub filtered: Option<&'static str>,
+}
+
+impl Parts {
+    /// Of a kernel that always has passes of its own.
+    pub const NONE: Self =
+        Self { imports: &[], own: "", is_per_pixel: false, filtered: &[], can_lead: false };
 }
 
 impl PartialEq for &'static Kernel {
@@ -53,6 +96,14 @@ pub struct Tolerance {
     pub outliers: f32,
     /// Why these numbers.
     pub reason: &'static str,
+}
+
+impl Tolerance {
+    /// That of results which are rounded to 16-bit floats, and are computed as exactly as before.
+    pub const fn rounded_to_half(self) -> Self {
+        let (relative, absolute) = (self.relative + 1.0 / 2048.0, self.absolute + 1e-7);
+        Self { relative, absolute, reason: "as exact, and rounded to eleven bits", ..self }
+    }
 }
 
 /// What a CPU twin is given: the uniform block, the inputs and the instruction set to use.

@@ -19,13 +19,14 @@ pub mod simd;
 include!(concat!(env!("OUT_DIR"), "/kernels.rs"));
 
 /// Declares `pub static KERNEL` from the CPU twin, the cost for given parameters and the tolerance; the rest comes from
-/// the shader of the same stem.
+/// the shader of the same stem. Where 16-bit floats cost more than the rounding of the result, or a sampler interpolates,
+/// `fast` is the tolerance of that.
 #[macro_export]
 macro_rules! kernel {
-    ($kernel:ident { cpu: $cpu:expr, cost: |_| $cost:expr, tolerance: $tolerance:expr $(,)? }) => {
-        $crate::kernel!(@ $kernel, $cpu, |_| $cost, $tolerance);
+    ($kernel:ident { cpu: $cpu:expr, cost: |_| $cost:expr, tolerance: $tolerance:expr $(, fast: $fast:expr)? $(,)? }) => {
+        $crate::kernel!(@ $kernel, $cpu, |_| $cost, $tolerance, $crate::kernel!(@ fast $tolerance $(, $fast)?));
     };
-    ($kernel:ident { cpu: $cpu:expr, cost: |$params:ident| $cost:expr, tolerance: $tolerance:expr $(,)? }) => {
+    ($kernel:ident { cpu: $cpu:expr, cost: |$params:ident| $cost:expr, tolerance: $tolerance:expr $(, fast: $fast:expr)? $(,)? }) => {
         $crate::kernel!(
             @ $kernel,
             $cpu,
@@ -33,10 +34,17 @@ macro_rules! kernel {
                 let $params: Params = bytemuck::pod_read_unaligned(params);
                 $cost
             },
-            $tolerance
+            $tolerance,
+            $crate::kernel!(@ fast $tolerance $(, $fast)?)
         );
     };
-    (@ $kernel:ident, $cpu:expr, $cost:expr, $tolerance:expr) => {
+    (@ fast $tolerance:expr) => {
+        $tolerance.rounded_to_half()
+    };
+    (@ fast $tolerance:expr, $fast:expr) => {
+        $fast
+    };
+    (@ $kernel:ident, $cpu:expr, $cost:expr, $tolerance:expr, $fast:expr) => {
         /// The kernel, for plans.
         pub static KERNEL: isophote_engine::Kernel = isophote_engine::Kernel {
             name: stringify!($kernel),
@@ -44,9 +52,11 @@ macro_rules! kernel {
             inputs: $crate::kernels::shaders::$kernel::INPUTS,
             outputs: $crate::kernels::shaders::$kernel::OUTPUTS,
             params_size: $crate::kernels::shaders::$kernel::PARAMS_SIZE,
+            parts: $crate::kernels::shaders::$kernel::PARTS,
             cpu: $cpu,
             cost: $cost,
             tolerance: $tolerance,
+            fast: $fast,
         };
     };
 }

@@ -6,7 +6,7 @@ use crate::memory;
 use crate::program::Shader;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
 /// Environment variable that chooses the adapter where [`Options::adapter`] does not: `gpu`,
@@ -80,6 +80,7 @@ pub struct Device {
     pub(super) queue: wgpu::Queue,
     pub(super) counters: Counters,
     pipelines: Pipelines,
+    sampler: OnceLock<wgpu::Sampler>,
     shared_windows: bool,
     info: wgpu::AdapterInfo,
     owned: bool,
@@ -185,6 +186,7 @@ impl Device {
             queue,
             counters: Counters::default(),
             pipelines: Pipelines::default(),
+            sampler: OnceLock::new(),
             shared_windows: info.device_type != wgpu::DeviceType::Cpu,
             info,
             owned,
@@ -293,6 +295,18 @@ impl Device {
             let made = self.guarded(&format!("kernel '{}'", shader.name), create)?;
             count(&self.counters.pipelines);
             Ok(made)
+        })
+    }
+
+    /// The sampler of shaders that interpolate by one: linear, and clamped to the edge as all of wgpu's are by default.
+    pub(super) fn sampler(&self) -> &wgpu::Sampler {
+        self.sampler.get_or_init(|| {
+            self.raw.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("isophote"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..Default::default()
+            })
         })
     }
 

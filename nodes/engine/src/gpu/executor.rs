@@ -4,7 +4,7 @@ use super::device::Device;
 use super::prepared::Prepared;
 use super::texture::Pool;
 use crate::error::{Error, Result};
-use crate::program::Program;
+use crate::program::{Precision, Program};
 use std::sync::Arc;
 
 /// Runs programs on a device. Each user has one of its own; they share the device and its pipelines.
@@ -13,9 +13,11 @@ pub struct Executor {
     pub(super) device: Arc<Device>,
     pool: Arc<Pool>,
     pub(super) warm: Vec<Warm>,
-    pub(super) padded: Vec<f32>,
+    /// Pixels on their way to a texture.
+    pub(super) staged: Vec<u8>,
     pub(super) max_side: u32,
     pub(super) budget: u64,
+    pub(super) precision: Precision,
 }
 
 impl Executor {
@@ -30,9 +32,10 @@ impl Executor {
             device,
             pool: Arc::default(),
             warm: Vec::new(),
-            padded: Vec::new(),
+            staged: Vec::new(),
             max_side,
             budget: Self::DEFAULT_BUDGET,
+            precision: Precision::default(),
         }
     }
 
@@ -46,6 +49,11 @@ impl Executor {
     pub fn set_limits(&mut self, max_side: u32, budget: u64) {
         self.max_side = max_side.clamp(1, self.device.max_side());
         self.budget = budget;
+    }
+
+    /// Sets how precisely [`Executor::run_images`] computes; exactly, unless set otherwise.
+    pub fn set_precision(&mut self, precision: Precision) {
+        self.precision = precision;
     }
 
     /// Compiles what `program` needs and allocates its scratch textures and uniforms. Inputs and
@@ -69,7 +77,7 @@ impl Executor {
     pub fn purge(&mut self) {
         self.warm.clear();
         self.pool.clear();
-        self.padded = Vec::new();
+        self.staged = Vec::new();
     }
 }
 

@@ -15,6 +15,7 @@ mod prepared;
 mod texture;
 mod tiles;
 mod timing;
+mod transfer;
 
 pub use device::{Counts, Device, Options};
 pub use executor::Executor;

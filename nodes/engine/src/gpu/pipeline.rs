@@ -1,17 +1,18 @@
 //! Compute pipelines, made once per shader and shared by everything that runs on a device.
 
 use crate::error::Result;
-use crate::program::{Grid, Shader};
+use crate::program::{Format, Grid, SAMPLER_BINDING, Shader};
 use std::collections::HashMap;
 use std::num::NonZeroU64;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Format of a texture with so many stored channels (1, 2 or 4; three are stored as four).
-pub fn texture_format(channels: u32) -> wgpu::TextureFormat {
-    match channels {
-        1 => wgpu::TextureFormat::R32Float,
-        2 => wgpu::TextureFormat::Rg32Float,
-        _ => wgpu::TextureFormat::Rgba32Float,
+/// A format of a program in the words of wgpu.
+pub fn texture_format(format: Format) -> wgpu::TextureFormat {
+    match format {
+        Format::R32 => wgpu::TextureFormat::R32Float,
+        Format::Rg32 => wgpu::TextureFormat::Rg32Float,
+        Format::Rgba32 => wgpu::TextureFormat::Rgba32Float,
+        Format::Rgba16 => wgpu::TextureFormat::Rgba16Float,
     }
 }
 
@@ -90,8 +91,8 @@ fn entries(shader: &Shader) -> Vec<wgpu::BindGroupLayoutEntry> {
         has_dynamic_offset: false,
         min_binding_size: NonZeroU64::new(size),
     };
-    let sampled = wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable: false },
+    let sampled = |filterable| wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable },
         view_dimension: wgpu::TextureViewDimension::D2,
         multisampled: false,
     };
@@ -100,15 +101,19 @@ fn entries(shader: &Shader) -> Vec<wgpu::BindGroupLayoutEntry> {
         types.push((1, uniform(bound_size(shader.params_size))));
     }
     let first_output = 2 + shader.inputs as u32;
-    types.extend((2..first_output).map(|binding| (binding, sampled)));
-    types.extend((first_output..).zip(shader.outputs.iter()).map(|(binding, channels)| {
+    let inputs = (0..shader.inputs).map(|input| sampled(shader.filtered.contains(&input)));
+    types.extend((2..first_output).zip(inputs));
+    types.extend((first_output..).zip(shader.outputs.iter()).map(|(binding, format)| {
         let storage = wgpu::BindingType::StorageTexture {
             access: wgpu::StorageTextureAccess::WriteOnly,
-            format: texture_format(*channels),
+            format: texture_format(*format),
             view_dimension: wgpu::TextureViewDimension::D2,
         };
         (binding, storage)
     }));
+    if !shader.filtered.is_empty() {
+        types.push((SAMPLER_BINDING, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)));
+    }
     let entry = |(binding, ty)| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,

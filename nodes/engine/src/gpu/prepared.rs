@@ -6,7 +6,7 @@ use super::texture::{Pool, create_texture, texture_bytes};
 use super::timing::Timer;
 use crate::cpu::PassTime;
 use crate::error::{Error, Result};
-use crate::program::{Grid, Program, Role, Shader};
+use crate::program::{Format, Grid, Program, Role, SAMPLER_BINDING, Shader};
 use std::num::NonZeroU64;
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use std::sync::Arc;
 #[derive(Debug)]
 struct Slot {
     role: Role,
-    channels: u32,
+    format: Format,
     /// Texels that the program uses.
     size: [u32; 2],
     view: Option<wgpu::TextureView>,
@@ -89,7 +89,7 @@ impl Prepared {
         count(&device.counters.buffers);
         let slots = program.textures.iter().map(|t| Slot {
             role: t.role.clone(),
-            channels: t.channels,
+            format: t.format,
             size: [t.window.width(), t.window.height()],
             view: None,
             owned: false,
@@ -106,7 +106,7 @@ impl Prepared {
         };
         for slot in &mut prepared.slots {
             if slot.role == Role::Transient {
-                slot.view = Some(pool.take(device, slot.size, slot.channels)?);
+                slot.view = Some(pool.take(device, slot.size, slot.format)?);
                 slot.owned = true;
             }
         }
@@ -120,7 +120,7 @@ impl Prepared {
     ///
     /// A texture's texel (0, 0) is the first pixel of the window that the program names for it, and
     /// it may be larger. Inputs may have any format that reads as unfiltered float, without their own
-    /// gamma where the plan expects encoded colour; outputs need [`texture_format`](super::texture_format) of their channels
+    /// gamma where the plan expects encoded colour; outputs need [`texture_format`](super::texture_format) of their format
     /// and the usages `STORAGE_BINDING` and `TEXTURE_BINDING`. Binding the same views again costs
     /// nothing; a changed one makes the bind groups anew that hold it.
     ///
@@ -171,7 +171,7 @@ impl Prepared {
             return Ok(view.clone());
         }
         let slot = &self.slots[index];
-        let view = create_texture(&self.device, slot.size, slot.channels)?;
+        let view = create_texture(&self.device, slot.size, slot.format)?;
         self.set(index, &view, true);
         self.make_groups()?;
         Ok(view)
@@ -218,6 +218,10 @@ impl Prepared {
                 binding,
                 resource: wgpu::BindingResource::TextureView(view),
             }));
+            if !pass.shader.filtered.is_empty() {
+                let resource = wgpu::BindingResource::Sampler(self.device.sampler());
+                entries.push(wgpu::BindGroupEntry { binding: SAMPLER_BINDING, resource });
+            }
             let what = format!("textures of kernel '{}'", pass.shader.name);
             let group = self.device.guarded(&what, |raw| {
                 raw.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -260,7 +264,7 @@ impl Prepared {
             let (width, height) = (texture.window.width(), texture.window.height());
             let room = slot.view.as_ref().map_or(slot.size, |v| [v.texture().width(), v.texture().height()]);
             slot.role == texture.role
-                && slot.channels == texture.channels
+                && slot.format == texture.format
                 && width <= room[0]
                 && height <= room[1]
         };

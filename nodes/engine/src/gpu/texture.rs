@@ -3,6 +3,7 @@
 use super::device::{Device, count};
 use super::pipeline::texture_format;
 use crate::error::Result;
+use crate::program::Format;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 pub(super) fn texture_bytes(texture: &wgpu::Texture) -> u64 {
@@ -11,8 +12,8 @@ pub(super) fn texture_bytes(texture: &wgpu::Texture) -> u64 {
 }
 
 /// A texture that can be read, written and copied, with its view.
-pub(super) fn create_texture(device: &Device, size: [u32; 2], channels: u32) -> Result<wgpu::TextureView> {
-    let what = format!("a texture of {}x{} texels and {channels} channels", size[0], size[1]);
+pub(super) fn create_texture(device: &Device, size: [u32; 2], format: Format) -> Result<wgpu::TextureView> {
+    let what = format!("a texture of {}x{} texels ({})", size[0], size[1], format.wgsl());
     let view = device.guarded(&what, |raw| {
         let texture = raw.create_texture(&wgpu::TextureDescriptor {
             label: Some("isophote"),
@@ -20,7 +21,7 @@ pub(super) fn create_texture(device: &Device, size: [u32; 2], channels: u32) -> 
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: texture_format(channels),
+            format: texture_format(format),
             usage: wgpu::TextureUsages::TEXTURE_BINDING
                 | wgpu::TextureUsages::STORAGE_BINDING
                 | wgpu::TextureUsages::COPY_SRC
@@ -42,7 +43,7 @@ impl Pool {
     const KEPT: u64 = 512 << 20;
 
     /// A texture of at least `size` that wastes at most half of itself, or a new one of `size`.
-    pub fn take(&self, device: &Device, size: [u32; 2], channels: u32) -> Result<wgpu::TextureView> {
+    pub fn take(&self, device: &Device, size: [u32; 2], format: Format) -> Result<wgpu::TextureView> {
         let wanted = u64::from(size[0]) * u64::from(size[1]);
         let area = |t: &wgpu::Texture| u64::from(t.width()) * u64::from(t.height());
         let mut kept = self.lock();
@@ -51,7 +52,7 @@ impl Pool {
             .enumerate()
             .filter(|(_, view)| {
                 let t = view.texture();
-                t.format() == texture_format(channels)
+                t.format() == texture_format(format)
                     && t.width() >= size[0]
                     && t.height() >= size[1]
                     && area(t) <= 2 * wanted
@@ -62,7 +63,7 @@ impl Pool {
             return Ok(kept.remove(index));
         }
         drop(kept);
-        create_texture(device, size, channels)
+        create_texture(device, size, format)
     }
 
     pub fn put(&self, view: wgpu::TextureView) {

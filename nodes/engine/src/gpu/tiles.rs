@@ -4,12 +4,13 @@ use super::device::count;
 use super::executor::{Executor, Warm};
 use super::prepared::Prepared;
 use super::timing::read_buffer;
+use super::transfer::{self, Part, extent, parts};
 use crate::cpu::{Control, bind_inputs};
 use crate::error::{Error, Result};
 use crate::image::{Image, Rect};
 use crate::kernel::WORKGROUP;
 use crate::plan::{Plan, Support};
-use crate::program::{Program, Role, Texture};
+use crate::program::{Format, Program, Role, Texture};
 
 /// The smallest tile side worth computing; below it the halo would be nearly everything.
 const LEAST_TILE: u32 = 32;
@@ -68,7 +69,7 @@ impl Executor {
 
     /// The tiles of `region`: one if it fits, else as few as the limits allow.
     fn cut(&self, plan: &Plan, region: Rect) -> Result<Vec<Tile>> {
-        let whole = Program::lower(plan, region)?;
+        let whole = Program::lower_as(plan, region, self.precision)?;
         let side = whole.textures.iter().map(|t| t.window.width().max(t.window.height())).max().unwrap_or(0);
         let global = plan.support() == Support::Global;
         if global && side > self.max_side {
@@ -109,7 +110,7 @@ impl Executor {
             for x0 in (region.x0..region.x1).step_by(size[0] as usize) {
                 let (x1, y1) = (x0 + size[0] as i32, y0 + size[1] as i32);
                 let tile = Rect { x0, y0, x1: x1.min(region.x1), y1: y1.min(region.y1) };
-                let program = Program::lower(plan, tile)?;
+                let program = Program::lower_as(plan, tile, self.precision)?;
                 if !self.allows(plan, &program, tile) {
                     return Ok(None);
                 }
@@ -123,13 +124,10 @@ impl Executor {
     }
 
     fn allows(&self, plan: &Plan, program: &Program, region: Rect) -> bool {
-        let bytes = |t: &Texture| {
-            u64::from(t.window.width()) * u64::from(t.window.height()) * u64::from(t.channels) * 4
-        };
         let fits_side = |t: &Texture| t.window.width() <= self.max_side && t.window.height() <= self.max_side;
-        let textures: u64 = program.textures.iter().map(bytes).sum();
+        let textures: u64 = program.textures.iter().map(Texture::bytes).sum();
         let is_input = |t: &&Texture| matches!(t.role, Role::Input(_));
-        let staged: u64 = program.textures.iter().filter(is_input).map(bytes).sum();
+        let staged: u64 = program.textures.iter().filter(is_input).map(Texture::bytes).sum();
         let readback: u64 = parts(plan, program, region).iter().map(|p| p.bytes()).sum();
         let largest = self.device.raw().limits().max_buffer_size;
         program.textures.iter().all(fits_side)
@@ -223,13 +221,14 @@ impl Executor {
             };
             let view = prepared.own_input(name)?;
             let window = texture.window;
-            let (bytes, offset, stride): (&[u8], usize, usize) = if image.channels() == texture.channels {
+            let is_as_stored = Format::exact(image.channels()) == texture.format && image.channels() != 3;
+            let (bytes, offset, stride): (&[u8], usize, usize) = if is_as_stored {
                 let first = (window.y0 - image.window().y0) as usize * image.stride()
                     + (window.x0 - image.window().x0) as usize * image.channels() as usize;
                 (bytemuck::cast_slice(image.data()), first * 4, image.stride() * 4)
             } else {
-                pad(image, window, &mut self.padded);
-                (bytemuck::cast_slice(&self.padded), 0, window.width() as usize * 16)
+                transfer::fill(image, window, texture.format, &mut self.staged);
+                (&self.staged, 0, (window.width() * texture.format.texel()) as usize)
             };
             self.device.guarded("uploading an image", |_| {
                 let layout = wgpu::TexelCopyBufferLayout {
@@ -246,100 +245,5 @@ impl Executor {
             })?;
         }
         Ok(())
-    }
-}
-
-/// The pixels of `window` of a three-channel image with a fourth channel of 0.
-fn pad(image: &Image, window: Rect, padded: &mut Vec<f32>) {
-    padded.clear();
-    let first = (window.x0 - image.window().x0) as usize * 3;
-    let len = window.width() as usize * 3;
-    for y in window.y0..window.y1 {
-        let row = &image.row(y)[first..first + len];
-        padded.extend(row.chunks_exact(3).flat_map(|p| [p[0], p[1], p[2], 0.0]));
-    }
-}
-
-fn extent(window: Rect) -> wgpu::Extent3d {
-    wgpu::Extent3d { width: window.width(), height: window.height(), depth_or_array_layers: 1 }
-}
-
-/// One output on its way back: which texels of the texture, and where they lie in the buffer.
-struct Part {
-    name: String,
-    /// The pixels wanted, at the output's level.
-    wanted: Rect,
-    /// Position of the first of them in the texture.
-    at: [u32; 2],
-    channels: u32,
-    offset: u64,
-}
-
-fn parts(plan: &Plan, program: &Program, region: Rect) -> Vec<Part> {
-    let mut offset = 0;
-    let mut parts = Vec::with_capacity(plan.outputs().len());
-    for port in plan.outputs() {
-        // Every output has a texture: lowering made it.
-        let Some(index) = program.output(&port.name) else { continue };
-        let texture = &program.textures[index];
-        let wanted = plan.region_at(region, plan.desc(port.image).level);
-        let part = Part {
-            name: port.name.clone(),
-            wanted,
-            at: [(wanted.x0 - texture.window.x0) as u32, (wanted.y0 - texture.window.y0) as u32],
-            channels: texture.channels,
-            offset,
-        };
-        offset += part.bytes();
-        parts.push(part);
-    }
-    parts
-}
-
-impl Part {
-    /// Bytes from one row to the next: copies want a multiple of 256.
-    fn row(&self) -> u64 {
-        let row = u64::from(self.wanted.width()) * u64::from(self.channels) * 4;
-        row.next_multiple_of(u64::from(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT))
-    }
-
-    fn bytes(&self) -> u64 {
-        self.row() * u64::from(self.wanted.height())
-    }
-
-    fn copy(&self, texture: &wgpu::Texture, buffer: &wgpu::Buffer, encoder: &mut wgpu::CommandEncoder) {
-        let source = wgpu::TexelCopyTextureInfo {
-            origin: wgpu::Origin3d { x: self.at[0], y: self.at[1], z: 0 },
-            ..texture.as_image_copy()
-        };
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: self.offset,
-            bytes_per_row: Some(self.row() as u32),
-            rows_per_image: None,
-        };
-        encoder.copy_texture_to_buffer(
-            source,
-            wgpu::TexelCopyBufferInfo { buffer, layout },
-            extent(self.wanted),
-        );
-    }
-
-    /// Copies the values read back into their place in the result.
-    fn store(&self, bytes: &[u8], image: &mut Image) {
-        let (stored, kept) = (self.channels as usize, image.channels() as usize);
-        let first = (self.wanted.x0 - image.window().x0) as usize * kept;
-        let len = self.wanted.width() as usize;
-        for (index, y) in (self.wanted.y0..self.wanted.y1).enumerate() {
-            let start = self.offset as usize + index * self.row() as usize;
-            let row = &bytes[start..start + len * stored * 4];
-            let target = &mut image.row_mut(y)[first..first + len * kept];
-            if stored == kept {
-                bytemuck::cast_slice_mut(target).copy_from_slice(row);
-                continue;
-            }
-            for (pixel, texel) in target.chunks_exact_mut(kept).zip(row.chunks_exact(stored * 4)) {
-                bytemuck::cast_slice_mut(pixel).copy_from_slice(&texel[..kept * 4]);
-            }
-        }
     }
 }

@@ -1,6 +1,7 @@
 //! Small kernels, each as WGSL and as a CPU function, and plans of them.
 #![allow(dead_code, missing_docs)]
 
+use isophote_engine::kernel::Parts;
 use isophote_engine::{Band, Class, CpuPass, Image, ImageId, Kernel, Plan, PlanBuilder, Support, Tolerance};
 use std::sync::LazyLock;
 
@@ -39,9 +40,11 @@ pub static BOX: Kernel = Kernel {
     inputs: 1,
     outputs: &[4],
     params_size: size_of::<BoxParams>(),
+    parts: Parts::NONE,
     cpu: box_cpu,
     cost: |_| 1.0,
     tolerance: EXACT,
+    fast: EXACT.rounded_to_half(),
 };
 
 fn box_cpu(pass: &CpuPass<'_>, band: &mut Band<'_>) {
@@ -83,9 +86,11 @@ pub static SPLIT: Kernel = Kernel {
     inputs: 1,
     outputs: &[1, 2],
     params_size: 0,
+    parts: Parts::NONE,
     cpu: split_cpu,
     cost: |_| 1.0,
     tolerance: EXACT,
+    fast: EXACT.rounded_to_half(),
 };
 
 fn split_cpu(pass: &CpuPass<'_>, band: &mut Band<'_>) {
@@ -129,9 +134,11 @@ pub static JOIN: Kernel = Kernel {
     inputs: 2,
     outputs: &[3],
     params_size: size_of::<JoinParams>(),
+    parts: Parts::NONE,
     cpu: join_cpu,
     cost: |_| 1.0,
     tolerance: EXACT,
+    fast: EXACT.rounded_to_half(),
 };
 
 fn join_cpu(pass: &CpuPass<'_>, band: &mut Band<'_>) {
@@ -182,9 +189,11 @@ pub static SHIFT: LazyLock<Kernel> = LazyLock::new(|| {
         inputs: 1,
         outputs: &[4],
         params_size: size_of::<ShiftParams>(),
+        parts: Parts::NONE,
         cpu: shift_cpu,
         cost: |_| 1.0,
         tolerance: EXACT,
+        fast: EXACT.rounded_to_half(),
     }
 });
 

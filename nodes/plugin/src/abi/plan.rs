@@ -9,7 +9,7 @@ use super::objects::GraphObject;
 use super::request;
 use super::shader;
 use isophote::engine::kernel::WORKGROUP;
-use isophote::engine::program::{Dispatch, Program, Role, Texture};
+use isophote::engine::program::{Dispatch, Format, Program, Role, Texture};
 use isophote::engine::{Class, Rect};
 use isophote::request::Change;
 use isophote::{Graph, Planned, Request};
@@ -137,10 +137,11 @@ fn texture(texture: &Texture, name: &mut impl FnMut(&str) -> *const c_char) -> I
     IsophoteTexture {
         name,
         role,
-        format: match texture.channels {
-            1 => ISOPHOTE_FORMAT_R32F,
-            2 => ISOPHOTE_FORMAT_RG32F,
-            _ => ISOPHOTE_FORMAT_RGBA32F,
+        format: match texture.format {
+            Format::R32 => ISOPHOTE_FORMAT_R32F,
+            Format::Rg32 => ISOPHOTE_FORMAT_RG32F,
+            Format::Rgba32 => ISOPHOTE_FORMAT_RGBA32F,
+            Format::Rgba16 => ISOPHOTE_FORMAT_RGBA16F,
         },
         width: w.width(),
         height: w.height(),

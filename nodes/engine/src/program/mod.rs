@@ -5,13 +5,27 @@
 //!
 //! Bindings of every pass, all in group 0: 0 is the `Grid` uniform (below), 1 the kernel's own
 //! uniform block if it has parameters, from 2 on the sampled textures in order, then the storage
-//! textures in order. Textures are read by integer loads only and never filtered.
+//! textures in order. Textures are read by integer loads only and never filtered, but for those that a shader of
+//! [`Precision::Fast`] names, which it reads through a sampler at binding 15 ([`SAMPLER_BINDING`]): linear in both
+//! directions, clamped to the edge.
+//!
+//! A pass that computes each pixel from the same pixel of what another pass has computed runs in the dispatch of that
+//! one, so that what lies between them takes neither memory nor time to write and read.
+
+mod chains;
+mod format;
+mod shader;
+
+pub use format::{Format, Precision};
+pub use shader::Shader;
 
 use crate::error::{Error, Result};
 use crate::image::Rect;
-use crate::kernel::{Kernel, MAX_INPUTS, WORKGROUP};
+pub use crate::kernel::SAMPLER_BINDING;
+use crate::kernel::{MAX_INPUTS, WORKGROUP};
 use crate::plan::{Class, ImageId, Pass, Plan, Port, Support};
-use std::borrow::Cow;
+use chains::{chains, external};
+use shader::{Link, padded};
 use std::sync::Arc;
 
 /// What a texture of a program is for.
@@ -30,9 +44,9 @@ pub enum Role {
 pub struct Texture {
     /// What it is for.
     pub role: Role,
-    /// 1, 2 or 4 stored channels: r32float, rg32float, rgba32float. (Three are stored as four.)
-    pub channels: u32,
-    /// Precision needed.
+    /// Format of its texels. Inputs may have any other of as many channels that is read as floats.
+    pub format: Format,
+    /// What it holds.
     pub class: Class,
     /// Part of the picture (at its pyramid level) that the texture holds, in pixels. That of a transient one begins
     /// at (0, 0) and is as large as the largest image in each direction; where an image lies is in the passes' grids.
@@ -53,34 +67,6 @@ pub struct Grid {
     pub reserved: [i32; 2],
     /// Per input: absolute position of texel (0, 0), and the whole picture's size at its level.
     pub inputs: [[i32; 4]; MAX_INPUTS],
-}
-
-/// The shader of a kernel, as data: it may come from this library's kernels or, through the C ABI,
-/// from another's.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct Shader {
-    /// The kernel's name.
-    pub name: Cow<'static, str>,
-    /// Complete WGSL module, entry point `main`.
-    pub source: Cow<'static, str>,
-    /// Number of sampled textures.
-    pub inputs: usize,
-    /// Channels of the storage textures.
-    pub outputs: Cow<'static, [u32]>,
-    /// Size of the uniform block at binding 1, in bytes; 0 for none.
-    pub params_size: usize,
-}
-
-impl From<&'static Kernel> for Shader {
-    fn from(kernel: &'static Kernel) -> Self {
-        Self {
-            name: Cow::Borrowed(kernel.name),
-            source: Cow::Borrowed(kernel.shader),
-            inputs: kernel.inputs,
-            outputs: Cow::Borrowed(kernel.outputs),
-            params_size: kernel.params_size,
-        }
-    }
 }
 
 /// One dispatch.
@@ -108,35 +94,62 @@ pub struct Program {
     /// All dispatches in order. Between two there must be a barrier wherever one reads what the
     /// other wrote (wgpu and WebGPU place it by themselves).
     pub dispatches: Vec<Dispatch>,
-    /// Which pass of the plan each dispatch came from, and its supports where windows depend on them.
-    passes: Vec<(usize, Option<Vec<Support>>)>,
+    /// What of the plan each dispatch does.
+    origins: Vec<Origin>,
+}
+
+/// What of a plan a dispatch does.
+#[derive(Clone, Debug)]
+struct Origin {
+    /// The passes.
+    passes: Vec<usize>,
+    /// Their kernels.
+    kernels: Vec<&'static str>,
+    /// Their supports where windows depend on them.
+    supports: Option<Vec<Vec<Support>>>,
 }
 
 impl Program {
+    /// Lowers `plan` for `region` (level 0), exactly.
+    ///
+    /// # Errors
+    /// As [`Program::lower_as`].
+    pub fn lower(plan: &Plan, region: Rect) -> Result<Self> {
+        Self::lower_as(plan, region, Precision::Exact)
+    }
+
     /// Lowers `plan` for `region` (level 0). Transient images with disjoint lives share a texture.
     ///
     /// # Errors
     /// [`Error::Geometry`] for a region outside the picture, [`Error::Input`] for a plan whose output
     /// is one of its inputs.
-    pub fn lower(plan: &Plan, region: Rect) -> Result<Self> {
+    pub fn lower_as(plan: &Plan, region: Rect, precision: Precision) -> Result<Self> {
         plan.check_region(region)?;
         // The windows of the whole picture are whole, however far the passes read.
         let [width, height] = plan.size();
         let is_whole = region == Rect::of_size(width, height);
-        let mut lowering = Lowering::new(plan, plan.windows(region));
+        let chains = chains(plan);
+        let mut lowering = Lowering::new(plan, plan.windows(region), precision);
         lowering.add_ports()?;
-        let mut passes = Vec::new();
-        let mut dispatches = Vec::new();
-        for (index, pass) in plan.passes().iter().enumerate() {
-            if lowering.windows[pass.outputs[0].index()].is_empty() {
+        let ending = last_uses(plan, &chains);
+        let mut program = Self::default();
+        for (chain, ending) in chains.into_iter().zip(ending) {
+            let passes: Vec<&Pass> = chain.iter().map(|index| &plan.passes()[*index]).collect();
+            let Some(last) = passes.last() else { continue };
+            if lowering.windows[last.outputs[0].index()].is_empty() {
                 continue;
             }
-            lowering.make_room(pass);
-            dispatches.push(lowering.dispatch(pass));
-            passes.push((index, (!is_whole).then(|| pass.supports.clone())));
-            lowering.release(index);
+            lowering.make_room(last);
+            program.dispatches.push(lowering.dispatch(&passes));
+            lowering.release(&ending);
+            program.origins.push(Origin {
+                kernels: passes.iter().map(|pass| pass.kernel.shader).collect(),
+                supports: (!is_whole).then(|| passes.iter().map(|pass| pass.supports.clone()).collect()),
+                passes: chain,
+            });
         }
-        Ok(Self { textures: lowering.textures, dispatches, passes })
+        program.textures = lowering.textures;
+        Ok(program)
     }
 
     /// Takes over the uniform bytes of a plan that was edited in place, without allocating.
@@ -144,20 +157,29 @@ impl Program {
     /// Returns false, with nothing changed, when the plan must be lowered again: its passes are
     /// others, or the program is for a part of the picture and a pass now reads less or farther.
     pub fn repack(&mut self, plan: &Plan) -> bool {
-        let fits = |dispatch: &Dispatch, (index, supports): &(usize, Option<Vec<Support>>)| {
-            plan.passes().get(*index).is_some_and(|pass| {
-                dispatch.shader.source == pass.kernel.shader
-                    && pass.inputs.len() == dispatch.inputs.len()
-                    && supports.as_ref().is_none_or(|s| *s == pass.supports)
-            })
-        };
-        if !self.dispatches.iter().zip(&self.passes).all(|(d, p)| fits(d, p)) {
+        if !self.origins.iter().all(|origin| origin.is_of(plan)) {
             return false;
         }
-        for (dispatch, (index, _)) in self.dispatches.iter_mut().zip(&self.passes) {
-            dispatch.params.copy_from_slice(&plan.passes()[*index].params);
+        for (dispatch, origin) in self.dispatches.iter_mut().zip(&self.origins) {
+            let mut at = 0;
+            for index in &origin.passes {
+                let params = &plan.passes()[*index].params;
+                dispatch.params[at..at + params.len()].copy_from_slice(params);
+                at += padded(params.len());
+            }
         }
         true
+    }
+
+    /// Bytes that all dispatches read from and write to textures, each texel of an input once.
+    pub fn bytes_moved(&self) -> u64 {
+        let bytes = |dispatch: &Dispatch| {
+            let texels = dispatch.grid.size.map(|side| side.max(0) as u64).iter().product::<u64>();
+            let read = dispatch.inputs.iter().map(|at| self.textures[*at as usize].bytes());
+            let written = dispatch.outputs.iter().map(|at| self.textures[*at as usize].format.texel());
+            read.sum::<u64>() + written.map(|texel| u64::from(texel) * texels).sum::<u64>()
+        };
+        self.dispatches.iter().map(bytes).sum()
     }
 
     /// Index of the input texture of this name.
@@ -171,10 +193,44 @@ impl Program {
     }
 }
 
+impl Texture {
+    /// Bytes of all its texels.
+    pub fn bytes(&self) -> u64 {
+        u64::from(self.window.width()) * u64::from(self.window.height()) * u64::from(self.format.texel())
+    }
+}
+
+impl Origin {
+    /// Whether a plan still has these passes, which read as far as they did.
+    fn is_of(&self, plan: &Plan) -> bool {
+        let supports = |at: usize| self.supports.as_ref().map(|supports| &supports[at]);
+        self.passes.iter().enumerate().all(|(at, index)| {
+            plan.passes().get(*index).is_some_and(|pass| {
+                pass.kernel.shader == self.kernels[at] && supports(at).is_none_or(|s| *s == pass.supports)
+            })
+        })
+    }
+}
+
+/// By dispatch: the images that it or a pass in it reads or writes for the last time.
+fn last_uses(plan: &Plan, chains: &[Vec<usize>]) -> Vec<Vec<ImageId>> {
+    let mut living: Vec<bool> = vec![false; plan.images().len()];
+    plan.outputs().iter().for_each(|port| living[port.image.index()] = true);
+    let mut ending: Vec<Vec<ImageId>> = Vec::with_capacity(chains.len());
+    for chain in chains.iter().rev() {
+        let images = chain.iter().map(|index| &plan.passes()[*index]);
+        let images = images.flat_map(|pass| pass.inputs.iter().chain(&pass.outputs).copied());
+        ending.push(images.filter(|image| !std::mem::replace(&mut living[image.index()], true)).collect());
+    }
+    ending.reverse();
+    ending
+}
+
 /// A plan on its way to a program.
 struct Lowering<'p> {
     plan: &'p Plan,
     windows: Vec<Rect>,
+    precision: Precision,
     textures: Vec<Texture>,
     /// By texture: the level of its images.
     levels: Vec<i8>,
@@ -185,10 +241,11 @@ struct Lowering<'p> {
 }
 
 impl<'p> Lowering<'p> {
-    fn new(plan: &'p Plan, windows: Vec<Rect>) -> Self {
+    fn new(plan: &'p Plan, windows: Vec<Rect>, precision: Precision) -> Self {
         Self {
             plan,
             windows,
+            precision,
             textures: Vec::new(),
             levels: Vec::new(),
             places: vec![None; plan.images().len()],
@@ -222,8 +279,7 @@ impl<'p> Lowering<'p> {
 
     fn texture(&self, image: ImageId, role: Role, window: Rect) -> Texture {
         let desc = self.plan.desc(image);
-        let channels = if desc.channels == 3 { 4 } else { desc.channels };
-        Texture { role, channels, class: desc.class, window }
+        Texture { role, format: Format::of(desc, self.precision), class: desc.class, window }
     }
 
     fn push(&mut self, image: ImageId, texture: Texture) -> u32 {
@@ -244,7 +300,7 @@ impl<'p> Lowering<'p> {
             let wanted = self.texture(*output, Role::Transient, Rect::of_size(held.width(), held.height()));
             let fits = |free: &u32| {
                 let texture = &self.textures[*free as usize];
-                (texture.channels, texture.class) == (wanted.channels, wanted.class)
+                (texture.format, texture.class) == (wanted.format, wanted.class)
                     && self.levels[*free as usize] == self.plan.desc(*output).level
             };
             let place = match self.free.iter().position(fits) {
@@ -261,18 +317,21 @@ impl<'p> Lowering<'p> {
         }
     }
 
-    /// Frees the transient textures whose images are needed for the last time by pass `index`.
-    fn release(&mut self, index: usize) {
-        let ended = self.plan.lifetimes().ending_with(index).iter().filter_map(|id| self.places[id.index()]);
+    /// Frees the transient textures of images that are needed no longer.
+    fn release(&mut self, ending: &[ImageId]) {
+        let ended = ending.iter().filter_map(|id| self.places[id.index()]);
         self.free.extend(ended.filter(|place| self.textures[*place as usize].role == Role::Transient));
     }
 
-    fn dispatch(&self, pass: &Pass) -> Dispatch {
-        let out = pass.outputs[0];
+    /// The dispatch of passes of which each computes on what the one before has computed; mostly of one.
+    fn dispatch(&self, passes: &[&Pass]) -> Dispatch {
+        let last = passes[passes.len() - 1];
+        let out = last.outputs[0];
         let window = self.windows[out.index()];
         let full = self.plan.level_size(self.plan.desc(out).level);
+        let read: Vec<ImageId> = external(passes.iter().copied()).collect();
         let mut inputs = [[0; 4]; MAX_INPUTS];
-        for (place, image) in inputs.iter_mut().zip(&pass.inputs) {
+        for (place, image) in inputs.iter_mut().zip(&read) {
             let w = self.windows[image.index()];
             let [fw, fh] = self.plan.level_size(self.plan.desc(*image).level);
             *place = [w.x0, w.y0, fw, fh];
@@ -281,12 +340,43 @@ impl<'p> Lowering<'p> {
         // Every image of a pass got its texture before the pass, or in an earlier one.
         let textures = |ids: &[ImageId]| ids.iter().filter_map(|id| self.places[id.index()]).collect();
         Dispatch {
-            shader: Arc::new(Shader::from(pass.kernel)),
+            shader: Arc::new(self.shader(passes)),
             grid: Grid { origin: [window.x0, window.y0], size, full, reserved: [0; 2], inputs },
-            params: pass.params.clone(),
-            inputs: textures(&pass.inputs),
-            outputs: textures(&pass.outputs),
+            params: params(passes),
+            inputs: textures(&read),
+            outputs: textures(&last.outputs),
             workgroups: [window.width().div_ceil(WORKGROUP), window.height().div_ceil(WORKGROUP), 1],
         }
     }
+
+    fn shader(&self, passes: &[&Pass]) -> Shader {
+        let format = |image: &ImageId| Format::of(self.plan.desc(*image), self.precision);
+        let (first, last) = (passes[0], passes[passes.len() - 1]);
+        let filtered = first.kernel.parts.filtered;
+        let is_filtered = self.precision == Precision::Fast
+            && !filtered.is_empty()
+            && filtered.iter().all(|input| format(&first.inputs[*input]) == Format::Rgba16);
+        if let [pass] = passes {
+            let outputs: Vec<Format> = pass.outputs.iter().map(format).collect();
+            return Shader::of(pass.kernel, &outputs, is_filtered);
+        }
+        let before = std::iter::once(None).chain(passes.iter().map(|pass| Some(pass.outputs[0])));
+        let links = passes.iter().zip(before).map(|(pass, before)| Link {
+            kernel: pass.kernel,
+            taken: pass.inputs.iter().position(|image| Some(*image) == before).unwrap_or_default(),
+        });
+        Shader::of_chain(&links.collect::<Vec<_>>(), format(&last.outputs[0]), is_filtered)
+    }
+}
+
+/// The uniform bytes of passes in one dispatch.
+fn params(passes: &[&Pass]) -> Vec<u8> {
+    let mut params = Vec::new();
+    for pass in passes {
+        params.extend_from_slice(&pass.params);
+        if passes.len() > 1 {
+            params.resize(padded(params.len()), 0);
+        }
+    }
+    params
 }

@@ -1,0 +1,78 @@
+//! Texel formats of a program's textures, and which image has which.
+
+use crate::plan::{Class, ImageDesc};
+
+/// How precisely a program computes on a graphics device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Precision {
+    /// Every image holds 32-bit floats, as those of the CPU executor do.
+    #[default]
+    Exact,
+    /// Images of class [`Class::Colour`] with three or four channels hold 16-bit floats, those that enter and leave
+    /// included: half the bytes, and eleven bits for each value up to 65504.
+    Half,
+    /// As `Half`; besides, samplers interpolate them, whose weights have eight bits on common hardware. Textures that enter
+    /// must then have a format that the device filters.
+    Fast,
+}
+
+/// Format of a texture's texels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// One 32-bit float.
+    R32,
+    /// Two 32-bit floats.
+    Rg32,
+    /// Four 32-bit floats.
+    Rgba32,
+    /// Four 16-bit floats.
+    Rgba16,
+}
+
+impl Format {
+    /// That of 32-bit floats with so many channels; three are stored as four.
+    pub const fn exact(channels: u32) -> Self {
+        match channels {
+            1 => Self::R32,
+            2 => Self::Rg32,
+            _ => Self::Rgba32,
+        }
+    }
+
+    /// That of a virtual image.
+    pub fn of(desc: ImageDesc, precision: Precision) -> Self {
+        match Self::exact(desc.channels) {
+            Self::Rgba32 if precision != Precision::Exact && desc.class == Class::Colour => Self::Rgba16,
+            exact => exact,
+        }
+    }
+
+    /// Values of a texel.
+    pub const fn channels(self) -> u32 {
+        match self {
+            Self::R32 => 1,
+            Self::Rg32 => 2,
+            Self::Rgba32 | Self::Rgba16 => 4,
+        }
+    }
+
+    /// Bytes of a value.
+    pub const fn sample(self) -> u32 {
+        if matches!(self, Self::Rgba16) { 2 } else { 4 }
+    }
+
+    /// Bytes of a texel.
+    pub const fn texel(self) -> u32 {
+        self.channels() * self.sample()
+    }
+
+    /// What WGSL calls it.
+    pub const fn wgsl(self) -> &'static str {
+        match self {
+            Self::R32 => "r32float",
+            Self::Rg32 => "rg32float",
+            Self::Rgba32 => "rgba32float",
+            Self::Rgba16 => "rgba16float",
+        }
+    }
+}
