@@ -22,6 +22,10 @@
  *
  *   const struct IsophoteSequenceApi *sequences = api->extension("isophote.sequence/1");
  *
+ * Half the bytes on graphics devices, where eleven bits of colour suffice, are asked for by
+ *
+ *   const struct IsophotePrecisionApi *precision = api->extension("isophote.precision/1");
+ *
  * A host that renders runs the plan instead:
  *
  *   api->plan_create(graph, &request, NULL, &error, &plan);
@@ -254,6 +258,10 @@ extern "C" {
 // Four 32-bit floats: `rgba32float`.
 #define ISOPHOTE_FORMAT_RGBA32F 2
 
+// Four 16-bit floats: `rgba16float`, `DXGI_FORMAT_R16G16B16A16_FLOAT`, `VK_FORMAT_R16G16B16A16_SFLOAT`. Only in plans of
+// graphs whose precision says so.
+#define ISOPHOTE_FORMAT_RGBA16F 3
+
 // Uniform bytes were rewritten in place; every pointer handed out before stays valid.
 #define ISOPHOTE_CHANGE_UNIFORMS 0
 
@@ -285,6 +293,21 @@ extern "C" {
 
 // A texture that is written.
 #define ISOPHOTE_BINDING_STORAGE 2
+
+// A sampler: linear in both directions, clamped to the edge, without mip levels. Only in plans of graphs whose precision
+// is `ISOPHOTE_PRECISION_FAST`.
+#define ISOPHOTE_BINDING_SAMPLER 3
+
+// Every texture holds 32-bit floats, as the CPU does.
+#define ISOPHOTE_PRECISION_EXACT 0
+
+// Colours are kept in 16-bit floats, those of outputs too: half the bytes, and eleven bits for each value up to 65504.
+#define ISOPHOTE_PRECISION_HALF 1
+
+// As half; besides, shaders interpolate colours by a sampler. Its textures are those of the plan with the format
+// `ISOPHOTE_FORMAT_RGBA16F`; what a host binds in the place of such an input must have a format that its device filters.
+// Shaders in WGSL and SPIR-V only.
+#define ISOPHOTE_PRECISION_FAST 2
 
 // What a call came to: `ISOPHOTE_OK`, which is 0, or what went wrong. The message of the last failure is asked of the object that
 // the call was made on (`graph_error`, `plan_error`, `device_error`); calls that make an object

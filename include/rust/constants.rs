@@ -156,6 +156,9 @@ pub const ISOPHOTE_FORMAT_R32F: u32 = 0;
 pub const ISOPHOTE_FORMAT_RG32F: u32 = 1;
 /// Four 32-bit floats: `rgba32float`.
 pub const ISOPHOTE_FORMAT_RGBA32F: u32 = 2;
+/// Four 16-bit floats: `rgba16float`, `DXGI_FORMAT_R16G16B16A16_FLOAT`, `VK_FORMAT_R16G16B16A16_SFLOAT`. Only in plans of
+/// graphs whose precision says so.
+pub const ISOPHOTE_FORMAT_RGBA16F: u32 = 3;
 
 /// What an update of a plan came to. One of `ISOPHOTE_CHANGE_...`.
 pub type IsophoteChange = u32;
@@ -187,3 +190,6 @@ pub const ISOPHOTE_BINDING_UNIFORM: u32 = 0;
 pub const ISOPHOTE_BINDING_SAMPLED: u32 = 1;
 /// A texture that is written.
 pub const ISOPHOTE_BINDING_STORAGE: u32 = 2;
+/// A sampler: linear in both directions, clamped to the edge, without mip levels. Only in plans of graphs whose precision
+/// is `ISOPHOTE_PRECISION_FAST`.
+pub const ISOPHOTE_BINDING_SAMPLER: u32 = 3;

@@ -8,11 +8,13 @@
 //! or `bool`, so that a wrong value is an error and not undefined behaviour.
 
 pub mod constants;
+pub mod precision;
 pub mod sequences;
 pub mod table;
 pub mod types;
 
 pub use constants::*;
+pub use precision::*;
 pub use sequences::*;
 pub use table::*;
 pub use types::*;

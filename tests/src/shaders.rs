@@ -17,33 +17,11 @@ pub fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../shaders")
 }
 
-/// The kernel's own file, without what it imports.
-///
-/// # Panics
-/// When no group has a file of the kernel's name, or the file's imports do not all stand above its code.
-pub fn own_text(kernel: &Kernel) -> String {
-    let groups = std::fs::read_dir(folder()).into_iter().flatten().flatten();
-    let text = groups
-        .filter_map(|g| std::fs::read_to_string(g.path().join(format!("{}.wgsl", kernel.name))).ok())
-        .next();
-    let Some(text) = text else { panic!("{} has no shader file", kernel.name) };
-    let lines: Vec<&str> = text.lines().collect();
-    let first = lines.iter().rposition(|l| l.starts_with("#import ")).map_or(0, |i| i + 1);
-    let mut own = lines[first..].join("\n");
-    own.push('\n');
-    assert!(
-        kernel.shader.ends_with(&own),
-        "{}: the module does not end with the kernel's own text",
-        kernel.name
-    );
-    own
-}
-
 /// The shader with one number of its own text changed, for each number that carries meaning; those
 /// with a fraction first. A shader without any gets one operator exchanged.
 pub fn spoil(kernel: &Kernel) -> Vec<Spoiled> {
-    let own = own_text(kernel);
-    let shared = &kernel.shader[..kernel.shader.len() - own.len()];
+    let own = kernel.parts.own;
+    let (shared, after) = kernel.shader.split_once(own).unwrap_or_default();
     let mut spoiled: Vec<(bool, Spoiled)> = Vec::new();
     for (line_number, line) in own.lines().enumerate() {
         for (start, end) in numbers(line) {
@@ -51,20 +29,20 @@ pub fn spoil(kernel: &Kernel) -> Vec<Spoiled> {
             let Some(changed) = other_number(literal) else { continue };
             let line_start: usize = own.lines().take(line_number).map(|l| l.len() + 1).sum();
             let source =
-                format!("{shared}{}{changed}{}", &own[..line_start + start], &own[line_start + end..]);
+                format!("{shared}{}{changed}{}{after}", &own[..line_start + start], &own[line_start + end..]);
             let change = format!("{literal} -> {changed} in `{}`", line.trim());
             spoiled.push((literal.contains('.'), Spoiled { source, change }));
         }
     }
     spoiled.sort_by_key(|(has_fraction, _)| !has_fraction);
     let mut spoiled: Vec<Spoiled> = spoiled.into_iter().map(|(_, s)| s).collect();
-    if let Some(body) = own.find("fn main")
+    if let Some(body) = own.find("fn main").or_else(|| own.find("fn of_pixel"))
         && let Some(plus) = own[body..].find(" + ").or_else(|| own[body..].find(" - "))
     {
         let at = body + plus + 1;
         let exchanged = if &own[at..=at] == "+" { "-" } else { "+" };
-        let source = format!("{shared}{}{exchanged}{}", &own[..at], &own[at + 1..]);
-        spoiled.push(Spoiled { source, change: format!("{} -> {exchanged} in main", &own[at..=at]) });
+        let source = format!("{shared}{}{exchanged}{}{after}", &own[..at], &own[at + 1..]);
+        spoiled.push(Spoiled { source, change: format!("{} -> {exchanged} in the entry", &own[at..=at]) });
     }
     spoiled
 }

@@ -4,9 +4,12 @@
 use crate::pictures::{self, Kind};
 use crate::plans::{self, Case};
 use crate::run;
+use half::f16;
 use isophote::graph::GraphInput;
 use isophote_engine::cpu::{Control, CpuExecutor};
 use isophote_engine::fearless_simd::Level;
+use isophote_engine::plan::Port;
+use isophote_engine::program::{Format, Precision};
 use isophote_engine::{Image, Kernel, Plan, Rect};
 use std::collections::{BTreeSet, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -45,6 +48,33 @@ impl Step {
         NAMES.into_iter().zip(self.inputs.iter().map(Arc::as_ref)).collect()
     }
 
+    /// The same with those rounded to 16-bit floats that such programs keep so, and what the CPU twin makes of them.
+    ///
+    /// # Panics
+    /// When the executor refuses.
+    pub fn in_half(&self) -> (Vec<Image>, Vec<Image>) {
+        let plan = self.plan_with(self.kernel);
+        let is_half = |port: &Port| Format::of(plan.desc(port.image), Precision::Half) == Format::Rgba16;
+        let inputs = plan.inputs().iter().zip(&self.inputs).map(|(port, image)| match is_half(port) {
+            true => rounded(image),
+            false => Image::clone(image),
+        });
+        let inputs: Vec<Image> = inputs.collect();
+        let named: Vec<(&str, &Image)> = plan.inputs().iter().map(|p| p.name.as_str()).zip(&inputs).collect();
+        let control = Control::default();
+        match CpuExecutor::new().run(&plan, &named, self.region(), &run::CALLING, control) {
+            Ok(outputs) => {
+                let outputs = plan.outputs().iter().zip(outputs).map(|(port, image)| match is_half(port) {
+                    true => within_half(image),
+                    false => image,
+                });
+                let outputs = outputs.collect();
+                (inputs, outputs)
+            }
+            Err(e) => panic!("{}: {e}", self.label),
+        }
+    }
+
     /// The region that a plan of one pass is run for.
     pub fn region(&self) -> Rect {
         let [width, height] = self.case.plan.size();
@@ -63,6 +93,20 @@ impl Step {
             Err(e) => panic!("{}: {e}", self.label),
         }
     }
+}
+
+/// An image with its values rounded to 16-bit floats.
+fn rounded(image: &Image) -> Image {
+    let mut rounded = within_half(image.clone());
+    rounded.data_mut().iter_mut().for_each(|value| *value = f16::from_f32(*value).to_f32());
+    rounded
+}
+
+/// An image with the largest 16-bit float in the place of what is larger.
+fn within_half(mut image: Image) -> Image {
+    let largest = f16::MAX.to_f32();
+    image.data_mut().iter_mut().for_each(|value| *value = value.clamp(-largest, largest));
+    image
 }
 
 /// What one pass gave.

@@ -3,6 +3,10 @@
 #![cfg(unix)]
 
 use isophote::kernels::KERNELS;
+use isophote_engine::Rect;
+use isophote_engine::program::{Precision, Program, Shader};
+use isophote_tests::sweep;
+use std::collections::BTreeMap;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::os::unix::process::CommandExt;
@@ -37,9 +41,24 @@ answer().catch(String).then(body => fetch('/answer', { method: 'POST', body }));
 
 #[test]
 fn a_browser_compiles_every_shader() {
-    let sources: Vec<[&str; 2]> = KERNELS.iter().map(|kernel| [kernel.name, kernel.shader]).collect();
-    let Some(answer) = compiled_by_a_browser(&sources) else { return };
-    assert_eq!(answer, format!("compiled {}", KERNELS.len()), "what the browser says of the shaders");
+    let mut sources: BTreeMap<String, String> =
+        KERNELS.iter().map(|kernel| (kernel.name.to_owned(), kernel.shader.to_owned())).collect();
+    // Those of several kernels, in half precision, and with a sampler.
+    for case in sweep::cases() {
+        let [width, height] = case.plan.size();
+        for precision in [Precision::Exact, Precision::Half, Precision::Fast] {
+            let program = Program::lower_as(&case.plan, Rect::of_size(width, height), precision).unwrap();
+            for dispatch in &program.dispatches {
+                let Shader { name, source, .. } = &*dispatch.shader;
+                let known = sources.entry(name.to_string()).or_insert_with(|| source.to_string());
+                assert_eq!(known, source, "two shaders are named {name}");
+            }
+        }
+    }
+    println!("{} shaders, {} of them of one kernel as it is", sources.len(), KERNELS.len());
+    let modules: Vec<[&str; 2]> = sources.iter().map(|(name, source)| [name.as_str(), source]).collect();
+    let Some(answer) = compiled_by_a_browser(&modules) else { return };
+    assert_eq!(answer, format!("compiled {}", modules.len()), "what the browser says of the shaders");
 }
 
 #[test]

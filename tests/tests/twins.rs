@@ -3,11 +3,14 @@
 //!
 //! And that comparison is worth something: a shader with one number changed is noticed.
 
+#[path = "twins/fast.rs"]
+mod fast;
 #[path = "twins/spoiled.rs"]
 mod spoiled;
 
 use isophote::kernels::KERNELS;
 use isophote_engine::Kernel;
+use isophote_engine::Tolerance;
 use isophote_engine::cpu::Control;
 use isophote_engine::gpu::Executor;
 use isophote_tests::compare::Difference;
@@ -24,6 +27,11 @@ fn main() -> ExitCode {
     for (kernel, steps) in kernels.clone() {
         trials
             .add("twins", kernel.name, move || agreement(kernel, steps.get_or_init(|| sweep::steps(kernel))));
+    }
+    for (kernel, steps) in kernels.clone() {
+        trials.add("fast", kernel.name, move || {
+            fast::agreement(kernel, steps.get_or_init(|| sweep::steps(kernel)))
+        });
     }
     for (kernel, steps) in kernels {
         trials.add("spoiled", kernel.name, move || {
@@ -56,7 +64,7 @@ impl Tally {
             for (index, (ours, theirs)) in step.outputs.iter().zip(&results).enumerate() {
                 self.add(
                     &format!("{} output {index}", step.label),
-                    step.kernel,
+                    &step.kernel.tolerance,
                     &Difference::between(ours, theirs, &step.kernel.tolerance),
                 );
             }
@@ -64,13 +72,13 @@ impl Tally {
         Ok(())
     }
 
-    fn add(&mut self, what: &str, kernel: &Kernel, difference: &Difference) {
+    fn add(&mut self, what: &str, tolerance: &Tolerance, difference: &Difference) {
         let Difference { values, outliers, worst, ratio, place, broken } = difference;
         self.values += values;
         self.outliers += outliers;
         self.worst = self.worst.max(*worst);
         self.ratio = self.ratio.max(*ratio);
-        if !difference.is_within(&kernel.tolerance) {
+        if !difference.is_within(tolerance) {
             self.failures.push(format!(
                 "{what}: {outliers} of {values} values differ, {broken} not finite, worst at {place}"
             ));
@@ -78,16 +86,16 @@ impl Tally {
     }
 
     /// One line for the reader, and what is wrong.
-    fn report(&self, kernel: &Kernel) -> Report {
+    fn report(&self, kind: &str, kernel: &str, tolerance: &Tolerance) -> Report {
         let share = self.outliers as f64 / self.values.max(1) as f64;
-        let allowed = kernel.tolerance.outliers;
+        let allowed = tolerance.outliers;
         println!(
-            "twins::{:30} {:5} runs, {:8} values, {share:.5} outliers of {allowed:.5} allowed, worst {:.1e}, \
+            "{kind}::{kernel:30} {:5} runs, {:8} values, {share:.5} outliers of {allowed:.5} allowed, worst {:.1e}, \
              {:.2} of the tolerance",
-            kernel.name, self.runs, self.values, self.worst, self.ratio
+            self.runs, self.values, self.worst, self.ratio
         );
         let mut wrong = Vec::new();
-        if self.runs == 0 {
+        if self.runs == 0 && kind == "twins" {
             wrong.push("no node reaches it".to_owned());
         }
         if share > f64::from(allowed) {
@@ -113,5 +121,5 @@ fn agreement(kernel: &'static Kernel, steps: &[Step]) -> Option<Report> {
             tally.failures.push(failure);
         }
     }
-    Some(tally.report(kernel))
+    Some(tally.report("twins", kernel.name, &kernel.tolerance))
 }

@@ -106,6 +106,7 @@ mod tests {
             size,
             seconds: 2e-3,
             call_seconds: None,
+            bytes: None,
             passes: kernels.map(pass).into(),
         }
     }

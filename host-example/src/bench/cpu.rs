@@ -61,6 +61,7 @@ pub fn run(library: &Library, subject: &Subject, picture: &Pixels, runs: u32) ->
         size,
         seconds: total,
         call_seconds: Some(median(measured.iter().map(|(call, _)| *call).collect())),
+        bytes: None,
         passes: passes
             .iter()
             .enumerate()

@@ -13,6 +13,8 @@ pub struct Entry {
     pub seconds: f64,
     /// The whole call with the conversion of pixels in and out, where there is any.
     pub call_seconds: Option<f64>,
+    /// Bytes that all passes together read from and write to textures, on the GPU.
+    pub bytes: Option<u64>,
     /// The passes; empty where they are not timed apart.
     pub passes: Vec<PassEntry>,
 }

@@ -8,25 +8,27 @@ use super::timer::Timer;
 use super::{Subject, median, motion};
 use crate::error::Result;
 use crate::loader::contract::ISOPHOTE_GUIDE_MOTION;
-use crate::loader::plan::Pass;
+use crate::loader::plan::{Pass, Texture};
 use crate::loader::{Answer, Library, Plan, Refusal};
 use crate::pixels::Pixels;
 use crate::render::gpu::Gpu;
 use crate::stylize::kernels::Kernels;
 use crate::stylize::plan_runner::PlanRunner;
+use crate::stylize::precision::Precision;
 use crate::stylize::style::Style;
 
 /// A device to measure on.
 pub struct Bench {
     gpu: Gpu,
     kernels: Arc<Kernels>,
+    precision: Precision,
 }
 
 impl Bench {
-    /// Measures on `gpu`.
-    pub fn new(gpu: Gpu) -> Self {
+    /// Measures on `gpu`, as precisely as asked for.
+    pub fn new(gpu: Gpu, precision: Precision) -> Self {
         let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
-        Self { gpu, kernels }
+        Self { gpu, kernels, precision }
     }
 
     /// Name of the adapter.
@@ -46,6 +48,7 @@ impl Bench {
         let refused = |e: Refusal| e.at(&subject.node, "leave it out with --node");
         let size = (picture.width(), picture.height());
         let style = Style::any(library, &subject.node, &subject.settings)?;
+        self.precision.apply(&style)?;
         let mut request = library.request(size).map_err(|e| e.at("--size", "choose another size"))?;
         let [frames, _] = library.frames(&style.graph).map_err(refused)?;
         if frames > 0 {
@@ -63,6 +66,7 @@ impl Bench {
         }
         let totals = (0..runs).map(|_| self.once(&mut runner)).collect::<Result<Vec<f64>>>()?;
         let mut passes = passes(&plan).map_err(refused)?;
+        let bytes = bytes(&plan).map_err(refused)?;
         match Timer::new(&self.gpu, passes.len()) {
             Some(timer) => {
                 let times =
@@ -79,6 +83,7 @@ impl Bench {
             size,
             seconds: median(totals),
             call_seconds: None,
+            bytes: Some(bytes),
             passes,
         })
     }
@@ -126,6 +131,13 @@ impl Bench {
         );
         texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
+}
+
+/// Bytes that all passes of a plan read from and write to textures, each texel once a pass.
+fn bytes(plan: &Plan) -> Answer<u64> {
+    let textures = plan.textures()?;
+    let bytes = |at: &u32| textures.get(*at as usize).map_or(0, Texture::bytes);
+    Ok(plan.passes()?.flat_map(|pass| pass.inputs.iter().chain(pass.outputs)).map(bytes).sum())
 }
 
 /// The passes of a plan, not measured yet.

@@ -89,12 +89,15 @@ impl Report {
         let peak = self.machine.peak;
         let rate = entry.megapixels() / entry.seconds;
         let mut text = format!(
-            "\n{} ({}, {}x{}){}{}\n",
+            "\n{} ({}, {}x{}){}{}{}\n",
             entry.node,
             entry.backend,
             entry.size.0,
             entry.size.1,
             columns(entry.seconds, rate, shares(peak, entry.seconds, entry.work())),
+            entry.bytes.map_or_else(String::new, |bytes| {
+                format!("  {:.0} bytes a pixel", bytes as f64 / 1e6 / entry.megapixels())
+            }),
             ratio(whole)
         );
         for (at, pass) in entry.passes.iter().enumerate() {
@@ -223,6 +226,7 @@ fn entry(entry: &Entry, peak: Option<Peak>) -> Value {
         "height": entry.size.1,
         "milliseconds": entry.seconds * 1e3,
         "megapixels_per_second": entry.megapixels() / entry.seconds,
+        "bytes": entry.bytes,
         "passes": entry.passes.iter().map(|p| {
             let mut value = json!({
                 "kernel": p.kernel,

@@ -1,13 +1,20 @@
 //! Graphs of nodes.
 
 use std::cell::Cell;
+use std::ffi::CStr;
 use std::marker::PhantomData;
 
 use super::catalogue::{self, Kind, Node};
-use super::contract::{IsophoteApi, IsophoteGraph, IsophoteStatus, IsophoteText};
+use super::contract::{
+    ISOPHOTE_ERROR_UNSUPPORTED, IsophoteApi, IsophoteGraph, IsophotePrecision, IsophotePrecisionApi,
+    IsophoteStatus, IsophoteText,
+};
 use super::library::Library;
-use super::refusal::{Answer, check};
+use super::refusal::{Answer, Refusal, check};
 use super::text;
+
+/// Name of the extension for precision.
+const PRECISION: &CStr = c"isophote.precision/1";
 
 /// A graph of nodes with their parameters.
 ///
@@ -123,6 +130,22 @@ impl Graph {
         self.check(status)?;
         // SAFETY: success means that `spec` points to a node of the library, which is never unloaded.
         Ok(unsafe { catalogue::node(&*spec) })
+    }
+
+    /// Sets how precisely graphics devices compute it.
+    ///
+    /// # Errors
+    /// [`super::Refusal`] when the library computes exactly alone.
+    pub fn set_precision(&self, precision: IsophotePrecision) -> Answer<()> {
+        // SAFETY: the name ends with a zero.
+        let table = unsafe { (self.api.extension)(PRECISION.as_ptr()) }.cast::<IsophotePrecisionApi>();
+        // SAFETY: an extension's struct is constant as long as the library is loaded, which is until the process ends.
+        let table = unsafe { table.as_ref() }.ok_or_else(|| Refusal {
+            status: ISOPHOTE_ERROR_UNSUPPORTED,
+            message: "this library computes exactly alone".into(),
+        })?;
+        // SAFETY: the handle is this object's.
+        self.check(unsafe { (table.graph_set_precision)(self.handle, precision) })
     }
 
     /// Sets a parameter from text as a person writes it: `2.5`, `true`, `scharr3`, `#12407b`.

@@ -48,6 +48,8 @@ pub enum Format {
     Rg32Float,
     /// Four 32-bit floats.
     Rgba32Float,
+    /// Four 16-bit floats.
+    Rgba16Float,
 }
 
 /// One texture of a plan: two-dimensional, one mip level, one sample.
@@ -87,6 +89,8 @@ pub struct Wgsl {
     pub source: &'static str,
     /// Name of its entry point.
     pub entry_point: &'static str,
+    /// Binding of the sampler that it reads textures of [`Format::Rgba16Float`] by, if it does.
+    pub sampler: Option<u32>,
 }
 
 impl Texture<'_> {
@@ -96,6 +100,7 @@ impl Texture<'_> {
             Format::R32Float => 4,
             Format::Rg32Float => 8,
             Format::Rgba32Float => 16,
+            Format::Rgba16Float => 8,
         };
         u64::from(self.size[0]) * u64::from(self.size[1]) * texel
     }
@@ -179,9 +184,12 @@ impl Plan {
             unsafe { (self.api.plan_shader)(self.handle, pass, c::ISOPHOTE_LANGUAGE_WGSL, &raw mut shader) };
         self.check(status)?;
         // SAFETY: success means that `shader` and its texts live until the process ends.
-        let (source, entry_point) =
-            unsafe { (text::constant((*shader).code.cast()), text::constant((*shader).entry_point)) };
-        Ok(Wgsl { source, entry_point })
+        let (source, entry_point, bindings) = unsafe {
+            let bindings = text::slice((*shader).bindings, (*shader).binding_count);
+            (text::constant((*shader).code.cast()), text::constant((*shader).entry_point), bindings)
+        };
+        let sampler = bindings.iter().find(|bound| bound.kind == c::ISOPHOTE_BINDING_SAMPLER);
+        Ok(Wgsl { source, entry_point, sampler: sampler.map(|bound| bound.binding) })
     }
 
     fn check(&self, status: IsophoteStatus) -> Answer<()> {
@@ -216,6 +224,7 @@ unsafe fn texture<'a>(texture: &IsophoteTexture) -> Answer<Texture<'a>> {
             c::ISOPHOTE_FORMAT_R32F => Format::R32Float,
             c::ISOPHOTE_FORMAT_RG32F => Format::Rg32Float,
             c::ISOPHOTE_FORMAT_RGBA32F => Format::Rgba32Float,
+            c::ISOPHOTE_FORMAT_RGBA16F => Format::Rgba16Float,
             other => return Err(malformed(format!("a texture has the unknown format {other}"))),
         },
         size: [texture.width, texture.height],

@@ -5,7 +5,7 @@ use std::num::NonZeroU64;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::error::{Error, Result};
-use crate::loader::plan::{Format, Pass};
+use crate::loader::plan::{Format, Pass, Texture};
 use crate::loader::{Plan, Refusal};
 
 /// WGSL rounds the size of a uniform block up to its alignment, which is at most this.
@@ -18,6 +18,7 @@ pub struct Kernels {
     queue: wgpu::Queue,
     /// Whether kernels hold windows of neighbours in workgroup memory, which pays on hardware alone.
     shared_windows: bool,
+    sampler: wgpu::Sampler,
     compiled: Mutex<HashMap<String, Kernel>>,
 }
 
@@ -26,18 +27,32 @@ pub struct Kernels {
 pub(super) struct Kernel {
     pub pipeline: wgpu::ComputePipeline,
     pub layout: wgpu::BindGroupLayout,
+    /// Binding of a sampler, for kernels that interpolate by one.
+    pub sampler: Option<u32>,
 }
 
 impl Kernels {
     /// No kernels yet. Errors that come later than the calls here are for the device's own handler.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Arc<Self> {
         let shared_windows = device.adapter_info().device_type != wgpu::DeviceType::Cpu;
-        Arc::new(Self { device, queue, shared_windows, compiled: Mutex::default() })
+        // Clamped to the edge, as samplers are unless they say otherwise.
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("stylize"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        Arc::new(Self { device, queue, shared_windows, sampler, compiled: Mutex::default() })
     }
 
     /// The device that they are for.
     pub(super) fn device(&self) -> &wgpu::Device {
         &self.device
+    }
+
+    /// The sampler of kernels that interpolate by one.
+    pub(super) fn sampler(&self) -> &wgpu::Sampler {
+        &self.sampler
     }
 
     /// The queue of the device.
@@ -49,9 +64,7 @@ impl Kernels {
     pub(super) fn compile(&self, plan: &Plan) -> Result<()> {
         let textures = plan.textures().map_err(refused)?;
         for (index, pass) in (0..).zip(plan.passes().map_err(refused)?) {
-            let written = pass.outputs.iter().filter_map(|at| textures.get(*at as usize));
-            let formats: Vec<Format> = written.map(|texture| texture.format).collect();
-            self.get(plan, index, &pass, &formats)?;
+            self.get(plan, index, &pass, &textures)?;
         }
         Ok(())
     }
@@ -62,7 +75,7 @@ impl Kernels {
         plan: &Plan,
         index: u32,
         pass: &Pass<'_>,
-        formats: &[Format],
+        textures: &[Texture<'_>],
     ) -> Result<(Kernel, bool)> {
         let mut compiled = self.compiled.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(kernel) = compiled.get(pass.kernel) {
@@ -75,7 +88,7 @@ impl Kernels {
                 label,
                 source: wgpu::ShaderSource::Wgsl(shader.source.into()),
             });
-            let entries = layout_entries(pass, formats);
+            let entries = layout_entries(pass, textures, shader.sampler);
             let layout = self
                 .device
                 .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
@@ -99,36 +112,45 @@ impl Kernels {
                 },
                 cache: None,
             });
-            Ok(Kernel { pipeline, layout })
+            Ok(Kernel { pipeline, layout, sampler: shader.sampler })
         })?;
         compiled.insert(pass.kernel.to_owned(), kernel.clone());
         Ok((kernel, true))
     }
 }
 
-/// What a kernel binds, as its first pass shows it; `formats` are those of the textures written.
-fn layout_entries(pass: &Pass<'_>, formats: &[Format]) -> Vec<wgpu::BindGroupLayoutEntry> {
+/// What a kernel binds, as its first pass shows it; `textures` are those of the plan, `sampler` is the binding of one.
+fn layout_entries(
+    pass: &Pass<'_>,
+    textures: &[Texture<'_>],
+    sampler: Option<u32>,
+) -> Vec<wgpu::BindGroupLayoutEntry> {
+    let format = |at: &u32| textures.get(*at as usize).map_or(Format::Rgba32Float, |texture| texture.format);
     let uniform = |block: &[u8]| wgpu::BindingType::Buffer {
         ty: wgpu::BufferBindingType::Uniform,
         has_dynamic_offset: false,
         min_binding_size: NonZeroU64::new(block_size(block)),
     };
-    let sampled = |_| wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable: false },
+    let sampled = |at: &u32| wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float {
+            filterable: sampler.is_some() && format(at) == Format::Rgba16Float,
+        },
         view_dimension: wgpu::TextureViewDimension::D2,
         multisampled: false,
     };
-    let storage = |format: &Format| wgpu::BindingType::StorageTexture {
+    let storage = |at: &u32| wgpu::BindingType::StorageTexture {
         access: wgpu::StorageTextureAccess::WriteOnly,
-        format: texture_format(*format),
+        format: texture_format(format(at)),
         view_dimension: wgpu::TextureViewDimension::D2,
     };
     let params = Some(pass.params).filter(|p| !p.is_empty());
-    let textures = pass.inputs.iter().map(sampled).chain(formats.iter().map(storage));
+    let bound = pass.inputs.iter().map(sampled).chain(pass.outputs.iter().map(storage));
+    let sampler = sampler.map(|at| (at, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)));
     [(0, uniform(pass.grid))]
         .into_iter()
         .chain(params.map(|p| (1, uniform(p))))
-        .chain((2..).zip(textures))
+        .chain((2..).zip(bound))
+        .chain(sampler)
         .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::COMPUTE,
@@ -149,6 +171,7 @@ pub(super) fn texture_format(format: Format) -> wgpu::TextureFormat {
         Format::R32Float => wgpu::TextureFormat::R32Float,
         Format::Rg32Float => wgpu::TextureFormat::Rg32Float,
         Format::Rgba32Float => wgpu::TextureFormat::Rgba32Float,
+        Format::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
     }
 }
 

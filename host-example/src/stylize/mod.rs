@@ -8,6 +8,7 @@ pub mod history;
 pub mod kernels;
 pub mod lengths;
 pub mod plan_runner;
+pub mod precision;
 pub mod preset;
 pub mod source;
 pub mod style;

@@ -13,7 +13,8 @@
 //!    over other passes, as `plan_update` says.
 //!
 //! Everything is bound in group 0: at 0 the grid, which says where textures lie in the picture, at 1 the kernel's
-//! parameters, if it has any, from 2 the textures that are read and then those that are written. wgpu puts the
+//! parameters, if it has any, from 2 the textures that are read and then those that are written, and where the shader says
+//! so a sampler, in plans that are fast rather than exact. wgpu puts the
 //! barriers between passes; `tests/c/vulkan.c` does the same work by hand.
 
 use std::num::NonZeroU64;
@@ -145,11 +146,10 @@ impl PlanRunner {
         let mut passes = Vec::new();
         for (index, pass) in (0..).zip(plan.passes().map_err(refused)?) {
             let named: Vec<u32> = pass.inputs.iter().chain(pass.outputs).copied().collect();
-            let formats: Option<Vec<Format>> =
-                named.iter().map(|i| Some(wanted.get(*i as usize)?.format)).collect();
-            let formats = formats
-                .ok_or_else(|| mistaken(format!("kernel '{}' names an unknown texture", pass.kernel)))?;
-            let (kernel, is_new) = kernels.get(plan, index, &pass, &formats[pass.inputs.len()..])?;
+            if named.iter().any(|at| *at as usize >= wanted.len()) {
+                return Err(mistaken(format!("kernel '{}' names an unknown texture", pass.kernel)));
+            }
+            let (kernel, is_new) = kernels.get(plan, index, &pass, &wanted)?;
             counts.objects += u64::from(is_new);
             passes.push(ReadyPass {
                 kernel,
@@ -245,7 +245,7 @@ impl PlanRunner {
             let turns = slots.map(|slot| slot.views.len()).max().unwrap_or(1);
             for turn in 0..turns {
                 let group = checked(self.kernels.device(), || {
-                    bind_group(self.kernels.device(), pass, &self.uniforms, &self.textures, turn)
+                    bind_group(&self.kernels, pass, &self.uniforms, &self.textures, turn)
                 })?;
                 pass.groups.push(group);
                 self.counts.objects += 1;
@@ -357,7 +357,7 @@ fn create_texture(
 }
 
 fn bind_group(
-    device: &wgpu::Device,
+    kernels: &Kernels,
     pass: &ReadyPass,
     uniforms: &wgpu::Buffer,
     textures: &[Slot],
@@ -378,7 +378,13 @@ fn bind_group(
         let view = slot.views.get(turn).or(slot.views.first()).ok_or_else(unbound)?;
         entries.push(wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) });
     }
-    Ok(device.create_bind_group(&wgpu::BindGroupDescriptor {
+    if let Some(binding) = pass.kernel.sampler {
+        entries.push(wgpu::BindGroupEntry {
+            binding,
+            resource: wgpu::BindingResource::Sampler(kernels.sampler()),
+        });
+    }
+    Ok(kernels.device().create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("pass of a plan"),
         layout: &pass.kernel.layout,
         entries: &entries,

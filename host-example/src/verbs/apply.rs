@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::shared::LengthArgs;
+use super::shared::{LengthArgs, PrecisionArgs};
 use crate::apply::backend::Backend;
 use crate::apply::dry_run::DryRun;
 use crate::apply::exr::{Convention, Guide, GuideChoice, MaskSource, OnUnknown, Selection};
@@ -75,6 +75,9 @@ pub struct ApplyArgs {
     /// What lengths of parameters are.
     #[command(flatten)]
     pub lengths: LengthArgs,
+    /// How precisely it does on graphics devices.
+    #[command(flatten)]
+    pub precision: PrecisionArgs,
     /// Where the filter runs.
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub backend: Backend,
@@ -354,6 +357,7 @@ impl ApplyArgs {
         let mut refused = Vec::new();
         for Look { style, .. } in &mut looks {
             self.lengths.apply(style);
+            self.precision.precision.apply(style)?;
             refused.extend(self.steadiness.and_then(|steadiness| style.steady(steadiness).err()));
             if self.estimates_motion() {
                 style.estimate_motion()?;

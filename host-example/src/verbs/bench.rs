@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use fearless_simd::Level;
 
-use super::shared::parse_size;
+use super::shared::{PrecisionArgs, parse_size};
 use crate::bench::compare::Saved;
 use crate::bench::report::{Machine, Report, Shown};
 use crate::bench::{Subject, cpu, gpu, peak, picture, sequence};
@@ -33,6 +33,8 @@ pub struct BenchArgs {
     /// Where to measure [default: both].
     #[arg(long, value_enum)]
     backend: Option<BenchBackend>,
+    #[command(flatten)]
+    precision: PrecisionArgs,
     /// Size of the picture in pixels [default: 1280x720 and 1920x1080].
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
@@ -88,7 +90,7 @@ pub fn run(args: &BenchArgs) -> Result<()> {
         Some(BenchBackend::Gpu) => Some(Gpu::open()?),
         None => Gpu::open().map_err(|e| output::warn(format_args!("the GPU is left out: {e}"))).ok(),
     };
-    let mut gpu = gpu.map(gpu::Bench::new);
+    let mut gpu = gpu.map(|gpu| gpu::Bench::new(gpu, args.precision.precision));
     let on_cpu = args.backend != Some(BenchBackend::Gpu);
     let pool = rayon::ThreadPoolBuilder::new().build();
     let pool = pool.map_err(|e| Error::failure(e, "close other programs"))?;

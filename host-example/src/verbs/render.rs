@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::shared::{LengthArgs, SceneArgs, parse_size};
+use super::shared::{LengthArgs, PrecisionArgs, SceneArgs, parse_size};
 use super::staging::StagingArgs;
 use crate::apply::read;
 use crate::apply::report::{Outcome, Report};
@@ -75,6 +75,8 @@ pub struct RenderArgs {
     set: Vec<Setting>,
     #[command(flatten)]
     lengths: LengthArgs,
+    #[command(flatten)]
+    precision: PrecisionArgs,
     /// How steady the style is over time, from 0 to 1: frames before are carried along the scene's motion and averaged
     /// before the style decides anything [default: what the style says].
     #[arg(long, value_name = "S")]
@@ -93,6 +95,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         Some(library) => {
             let mut style = Style::load(library, &args.style, &args.set)?;
             args.lengths.apply(&mut style);
+            args.precision.precision.apply(&style)?;
             args.steadiness.map_or(Ok(()), |steadiness| style.steady(steadiness))?;
             Some((library, style))
         }

@@ -9,6 +9,7 @@ use crate::output;
 use crate::pixels::MOST_PIXELS;
 use crate::scene::Scene;
 use crate::stylize::lengths::Lengths;
+use crate::stylize::precision::Precision;
 use crate::stylize::style::Style;
 
 /// The scene of `render`.
@@ -90,6 +91,14 @@ impl LengthArgs {
     pub fn apply(self, style: &mut Style) {
         style.lengths = self.lengths.unwrap_or(style.lengths);
     }
+}
+
+/// How precisely graphics devices compute a style.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct PrecisionArgs {
+    /// How precisely graphics devices compute; the CPU always computes exactly.
+    #[arg(long, value_enum, default_value_t)]
+    pub precision: Precision,
 }
 
 /// Width and height in pixels, such as `1280x720`.

@@ -171,6 +171,9 @@ impl Text {
         let Self { imports, shared, own } = self;
         let is_per_pixel = own.contains(&format!("fn {OF_PIXEL}("));
         let mut source = format!("{shared}{own}");
+        if is_per_pixel && shared.contains("params") {
+            return Err(format!("what a shader with `{OF_PIXEL}` imports must not know of parameters"));
+        }
         if is_per_pixel {
             source.push_str(&entry_point(&own)?);
         }

@@ -4,6 +4,7 @@ use crate::error::{Error, Result, nearest};
 use crate::registry;
 use crate::spec::{ImageKind, NodeSpec, Param, Port};
 use crate::value::Value;
+use isophote_engine::program::Precision;
 
 /// A picture that enters a graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -140,12 +141,23 @@ pub struct Graph {
     nodes: Vec<Node>,
     order: Vec<usize>,
     output: Option<usize>,
+    precision: Precision,
 }
 
 impl Graph {
     /// A graph without nodes.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// How precisely graphics devices compute it; CPUs always compute exactly. It is no part of what is saved.
+    pub fn precision(&self) -> Precision {
+        self.precision
+    }
+
+    /// Sets how precisely graphics devices compute it.
+    pub fn set_precision(&mut self, precision: Precision) {
+        self.precision = precision;
     }
 
     /// A graph of one node, its inputs connected to the graph's inputs of the same name, its output

@@ -17,6 +17,7 @@ pub mod handles;
 pub mod images;
 pub mod objects;
 pub mod plan;
+pub mod precision;
 pub mod process;
 pub mod request;
 pub mod run;
@@ -114,7 +115,13 @@ unsafe extern "C" fn extension(id: *const c_char) -> *const c_void {
     }
     // SAFETY: the host promised text with a closing zero.
     let id = unsafe { CStr::from_ptr(id) };
-    if id == sequence::EXTENSION { (&raw const sequence::API).cast() } else { std::ptr::null() }
+    if id == sequence::EXTENSION {
+        (&raw const sequence::API).cast()
+    } else if id == precision::EXTENSION {
+        (&raw const precision::API).cast()
+    } else {
+        std::ptr::null()
+    }
 }
 
 unsafe extern "C" fn trim() -> IsophoteStatus {

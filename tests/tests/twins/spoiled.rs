@@ -18,7 +18,7 @@ const CHANGES: usize = 6;
 pub fn notice(kernel: &'static Kernel, steps: &[Step]) -> Option<Vec<String>> {
     // Shaders do more where windows are in workgroup memory.
     let mut gpu = device::executor_with_windows(kernel.name, true)?;
-    let steps = sample(steps);
+    let steps = sample(steps, STEPS);
     let changes = spoil(kernel);
     let (mut tried, mut noticed) = (0, 0);
     for change in changes.iter().take(CHANGES) {
@@ -33,9 +33,9 @@ pub fn notice(kernel: &'static Kernel, steps: &[Step]) -> Option<Vec<String>> {
     Some(if enough { Vec::new() } else { vec![format!("only {noticed} of {tried} changes were noticed")] })
 }
 
-/// Some of the steps, evenly from the smallest pictures to the largest.
-fn sample(steps: &[Step]) -> Vec<&Step> {
-    let stride = steps.len().div_ceil(STEPS).max(1);
+/// At most so many of the steps, evenly from the smallest pictures to the largest.
+pub fn sample(steps: &[Step], most: usize) -> Vec<&Step> {
+    let stride = steps.len().div_ceil(most).max(1);
     // The last one, of a large picture, is always there.
     let mut kept: Vec<&Step> = steps.iter().rev().step_by(stride).collect();
     kept.reverse();
@@ -67,6 +67,6 @@ fn difference(
 }
 
 fn copy(kernel: &Kernel) -> Kernel {
-    let Kernel { name, shader, inputs, outputs, params_size, cpu, cost, tolerance } = *kernel;
-    Kernel { name, shader, inputs, outputs, params_size, cpu, cost, tolerance }
+    let Kernel { name, shader, inputs, outputs, params_size, parts, cpu, cost, tolerance, fast } = *kernel;
+    Kernel { name, shader, inputs, outputs, params_size, parts, cpu, cost, tolerance, fast }
 }

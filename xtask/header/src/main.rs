@@ -10,11 +10,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// The files that declare the contract, in the order of the header.
-const SOURCES: [&str; 5] = [
+const SOURCES: [&str; 6] = [
     "include/rust/constants.rs",
     "include/rust/types.rs",
     "include/rust/table.rs",
     "include/rust/sequences.rs",
+    "include/rust/precision.rs",
     "nodes/plugin/src/abi/entry.rs",
 ];
 
@@ -42,6 +43,10 @@ const PREAMBLE: &str = "\
  * Frames of a sequence that are steady over time, in any order, need the extension
  *
  *   const struct IsophoteSequenceApi *sequences = api->extension(\"isophote.sequence/1\");
+ *
+ * Half the bytes on graphics devices, where eleven bits of colour suffice, are asked for by
+ *
+ *   const struct IsophotePrecisionApi *precision = api->extension(\"isophote.precision/1\");
  *
  * A host that renders runs the plan instead:
  *

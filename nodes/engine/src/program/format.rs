@@ -8,11 +8,11 @@ pub enum Precision {
     /// Every image holds 32-bit floats, as those of the CPU executor do.
     #[default]
     Exact,
-    /// Images of class [`Class::Colour`] with three or four channels hold 16-bit floats, those that enter and leave
-    /// included: half the bytes, and eleven bits for each value up to 65504.
+    /// Images of class [`Class::Colour`] with three or four channels hold 16-bit floats, those that leave included: half the
+    /// bytes, and eleven bits for each value up to 65504, where larger ones are cut. What enters is the caller's.
     Half,
-    /// As `Half`; besides, samplers interpolate them, whose weights have eight bits on common hardware. Textures that enter
-    /// must then have a format that the device filters.
+    /// As `Half`; besides, samplers interpolate them, whose weights have eight bits on common hardware. An input whose format
+    /// is [`Format::Rgba16`] is read so, too, and must have a format that the device filters.
     Fast,
 }
 

@@ -149,7 +149,22 @@ impl Program {
             });
         }
         program.textures = lowering.textures;
+        program.keep_inputs();
         Ok(program)
+    }
+
+    /// Asks for inputs as the caller has them, but for those that a sampler reads.
+    fn keep_inputs(&mut self) {
+        let filtered = |dispatch: &Dispatch| {
+            let inputs = dispatch.shader.filtered.iter().filter_map(|at| dispatch.inputs.get(*at).copied());
+            inputs.collect::<Vec<u32>>()
+        };
+        let filtered: Vec<u32> = self.dispatches.iter().flat_map(filtered).collect();
+        for (index, texture) in (0..).zip(&mut self.textures) {
+            if matches!(texture.role, Role::Input(_)) && !filtered.contains(&index) {
+                texture.format = Format::exact(texture.format.channels());
+            }
+        }
     }
 
     /// Takes over the uniform bytes of a plan that was edited in place, without allocating.

@@ -39,6 +39,12 @@ const STORE: &str = "textureStore(target_image, vec2i(id.xy), ";
 /// What takes its place where other kernels follow.
 const FOLLOW: &str = "follow(id, ";
 
+/// What takes its place where 16-bit floats are stored.
+const STORE_HALF: &str = "store_half(id, ";
+
+/// A value that 16-bit floats can hold; what is larger may become infinite where a device stores it.
+const HALF: &str = "clamp(value, vec4f(-65504.0), vec4f(65504.0))";
+
 impl Shader {
     /// That of one kernel, which writes `outputs` and interpolates by a sampler if `is_filtered`.
     pub(super) fn of(kernel: &'static Kernel, outputs: &[Format], is_filtered: bool) -> Self {
@@ -117,17 +123,25 @@ fn stored_as(source: &str, outputs: &[Format]) -> String {
         let format = outputs.next().map_or("", |format| format.wgsl());
         let _ = write!(text, "{TYPE}{format},{rest}");
     }
+    if text.contains(STORE) {
+        text = text.replace(STORE, STORE_HALF);
+        let _ = write!(text, "\nfn store_half(id: vec3u, value: vec4f) {{\n    {STORE}{HALF});\n}}\n");
+    }
     text
 }
 
-/// The module of kernels that follow one another. What each declares gets the number of its place behind its name, so that
-/// two may use the same names.
+/// The module of kernels that follow one another. What those after the first declare gets the number of their place behind
+/// its name, so that two may use the same names.
 fn chained(links: &[Link], inputs: usize, output: Format, is_filtered: bool) -> String {
     let mut text = String::new();
     let mut known: HashSet<&str> = HashSet::new();
     let imports = links.iter().flat_map(|link| link.kernel.parts.imports);
     for Import { text: loaded, filtered, .. } in imports.filter(|import| known.insert(import.name)) {
-        text.push_str(filtered.filter(|_| is_filtered).unwrap_or(loaded));
+        // Only what the first kernel imports may know of its parameters.
+        for line in filtered.filter(|_| is_filtered).unwrap_or(loaded).lines() {
+            rename(line, &mut text, |word| (word == "params").then(|| "uniforms.params_0".to_owned()));
+            text.push('\n');
+        }
     }
     text.push_str(&uniforms(links));
     let mut binding = 2;
@@ -144,7 +158,8 @@ fn chained(links: &[Link], inputs: usize, output: Format, is_filtered: bool) -> 
             let _ = write!(arguments, ", fetch({name}, {}u, pixel(id))", binding - 2);
             binding += 1;
         }
-        let call = format!("of_pixel_{place}(id{arguments})");
+        let name = if place == 0 { "of_pixel".to_owned() } else { format!("of_pixel_{place}") };
+        let call = format!("{name}(id{arguments})");
         if place > 0 {
             let _ = writeln!(following, "    value = {};", stored(&call, link.kernel.outputs[0]));
         } else if link.kernel.parts.is_per_pixel {
@@ -159,9 +174,10 @@ fn chained(links: &[Link], inputs: usize, output: Format, is_filtered: bool) -> 
     let _ = write!(
         text,
         "@group(0) @binding({}) var target_image: texture_storage_2d<{}, write>;\n\n\
-         fn follow(id: vec3u, first: vec4f) {{\n{following}    {STORE}value);\n}}\n",
+         fn follow(id: vec3u, first: vec4f) {{\n{following}    {STORE}{});\n}}\n",
         inputs + 2,
         output.wgsl(),
+        if output == Format::Rgba16 { HALF } else { "value" },
     );
     text
 }
@@ -207,21 +223,25 @@ struct Own {
 
 impl Own {
     fn new(own: &str, place: usize) -> Self {
-        let mut declared: HashSet<&str> = own.lines().filter_map(declared).collect();
+        // The first kernel keeps its names, by which what it imports may call it; only its parameters lie elsewhere.
+        let declared: HashSet<&str> = match place {
+            0 => ["params", "Params"].into(),
+            _ => own.lines().filter_map(declared).filter(|name| *name != "target_image").collect(),
+        };
         let bindings = || own.lines().filter(|line| line.starts_with("@group"));
         let read = bindings().filter(|line| line.ends_with("texture_2d<f32>;")).filter_map(declared_name);
-        let textures = read.map(|name| format!("{name}_{place}")).collect();
-        // What the first kernel is entered by and specialized by stays, and what all store into.
-        declared.remove("main");
-        declared.remove("target_image");
-        if place == 0 {
-            let overrides = own.lines().filter(|line| line.starts_with("override "));
-            for name in overrides.filter_map(declared_name) {
-                declared.remove(name);
-            }
-        }
+        let renamed = |name: &str| if place == 0 { name.to_owned() } else { format!("{name}_{place}") };
+        let textures = read.map(renamed).collect();
         let mut text = String::with_capacity(own.len() * 2);
+        let mut is_struct = false;
         for line in own.lines().filter(|line| !line.starts_with("@group")) {
+            is_struct = line.starts_with("struct ") || is_struct && line != "}";
+            // The fields of a struct keep their names.
+            let (field, line) = match line.find(':').filter(|_| is_struct && line.starts_with(' ')) {
+                Some(at) => line.split_at(at),
+                None => ("", line),
+            };
+            text.push_str(field);
             rename(line, &mut text, |word| match word {
                 "params" if declared.contains(word) => Some(format!("uniforms.params_{place}")),
                 _ => declared.contains(word).then(|| format!("{word}_{place}")),

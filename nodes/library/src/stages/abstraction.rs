@@ -1,6 +1,7 @@
 //! The bilateral filter of styles (§ 4.6): regions of like colour become flat, borders stay.
 
 use crate::choice::choice;
+use crate::kernels::lines::orientation_field;
 use crate::kernels::smoothing::bilateral::Options;
 use crate::nodes::smoothing::bilateral::Kernel;
 use crate::nodes::smoothing::{bilateral, flow_bilateral, oriented_bilateral};
@@ -92,7 +93,11 @@ impl Abstraction {
         iterations: i32,
     ) -> ImageId {
         (0..iterations).fold(lab, |lab, _| match self {
-            Self::Oriented(passes) => oriented_bilateral::iteration(plan, lab, tensor, passes),
+            Self::Oriented(passes) => {
+                // Nothing is elongated.
+                let field = orientation_field::pass(plan, tensor);
+                oriented_bilateral::iteration(plan, lab, field, passes)
+            }
             Self::Flow(passes) => flow_bilateral::iteration(plan, lab, tensor, passes),
             Self::Isotropic(passes) => bilateral::iteration(plan, lab, passes),
         })

@@ -62,7 +62,7 @@ struct State {
 
 impl State {
     fn new(graph: Graph, planned: Planned, region: Rect) -> Outcome<Self> {
-        let program = Program::lower(planned.plan(), region)?;
+        let program = Program::lower_as(planned.plan(), region, graph.precision())?;
         let shown = Shown::new(&program);
         Ok(Self { graph, planned, region, program, shown })
     }
@@ -81,11 +81,12 @@ impl State {
                 return Err(e.into());
             }
         };
-        if change == Change::Uniforms && self.program.repack(self.planned.plan()) {
+        let is_as_precise = graph.precision() == self.graph.precision();
+        if change == Change::Uniforms && is_as_precise && self.program.repack(self.planned.plan()) {
             self.graph = graph;
             return Ok(ISOPHOTE_CHANGE_UNIFORMS);
         }
-        match Program::lower(self.planned.plan(), self.region) {
+        match Program::lower_as(self.planned.plan(), self.region, graph.precision()) {
             Ok(program) => {
                 self.shown = Shown::new(&program);
                 self.program = program;

@@ -184,8 +184,9 @@ impl Job<'_> {
             self.make_room(warm, device.is_some())?;
         }
         let images: Vec<(&str, &Image)> = images.iter().map(|(name, image)| (*name, image)).collect();
+        let precision = self.object.lock().precision();
         let (plan, cpu, gpu) = warm.parts()?;
-        let run = Run { plan, region: self.region, threads: self.threads, control: self.control };
+        let run = Run { plan, precision, region: self.region, threads: self.threads, control: self.control };
         let results = run.execute(cpu, gpu, device, &images)?;
         let result = results
             .into_iter()

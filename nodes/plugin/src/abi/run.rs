@@ -8,6 +8,7 @@ use super::objects::DeviceObject;
 use super::threads::{CallThreads, User};
 use isophote::engine::cpu::{Control, CpuExecutor, PassTime};
 use isophote::engine::gpu::Executor;
+use isophote::engine::program::Precision;
 use isophote::engine::{Image, ImageId, Plan, Rect, memory};
 use std::ffi::{CString, c_void};
 use std::sync::Arc;
@@ -16,6 +17,8 @@ use std::sync::Arc;
 pub struct Run<'a> {
     /// The passes.
     pub plan: &'a Plan,
+    /// How precisely devices compute.
+    pub precision: Precision,
     /// The part of the picture.
     pub region: Rect,
     /// Where the CPU computes.
@@ -87,7 +90,9 @@ impl Run<'_> {
             Some(executor) if Arc::ptr_eq(executor.device(), &object.device) => executor,
             _ => Executor::new(Arc::clone(&object.device)),
         };
-        let results = gpu.insert(executor).run_images(self.plan, images, self.region, control);
+        let executor = gpu.insert(executor);
+        executor.set_precision(self.precision);
+        let results = executor.run_images(self.plan, images, self.region, control);
         if let Err(e) = &results {
             // A lost device takes all that was made on it with it.
             *gpu = None;

@@ -358,7 +358,13 @@ impl Job<'_> {
             let found = self.pulled.images.iter().find(|(name, _)| *name == (*input, frame));
             images.extend(found.and_then(|(_, image)| image.as_ref()).map(|image| (name.as_str(), image)));
         }
-        let run = Run { plan, region: self.region, threads: self.threads, control: self.control };
+        let run = Run {
+            plan,
+            precision: self.graph.precision(),
+            region: self.region,
+            threads: self.threads,
+            control: self.control,
+        };
         let results = run.execute(cpu, gpu, device, &images)?;
         let (output, gone) = sequence.finish(results, |image| size_of_val(image.data()) as u64);
         if let Some(cpu) = cpu {

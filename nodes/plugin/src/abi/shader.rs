@@ -33,6 +33,13 @@ pub fn translated(kernel: &Shader, language: IsophoteLanguage) -> Outcome<&'stat
     if language > ISOPHOTE_LANGUAGE_GLSL {
         return Err(Failure::argument(format!("{language} is no shader language")));
     }
+    if !kernel.filtered.is_empty() && !matches!(language, ISOPHOTE_LANGUAGE_WGSL | ISOPHOTE_LANGUAGE_SPIRV) {
+        return Err(Failure::new(
+            ISOPHOTE_ERROR_UNSUPPORTED,
+            "shaders that interpolate by a sampler are offered in WGSL and SPIR-V: set ISOPHOTE_PRECISION_HALF for other \
+             languages",
+        ));
+    }
     let key = (kernel.name.to_string(), language);
     if let Some(found) = lock(&SHADERS).get(&key) {
         return Ok(found.0);
@@ -126,6 +133,7 @@ fn bindings(module: &Module) -> Vec<Bound> {
             let kind = match (&variable.space, &module.types[variable.ty].inner) {
                 (AddressSpace::Uniform, _) => ISOPHOTE_BINDING_UNIFORM,
                 (_, TypeInner::Image { class: ImageClass::Storage { .. }, .. }) => ISOPHOTE_BINDING_STORAGE,
+                (_, TypeInner::Sampler { .. }) => ISOPHOTE_BINDING_SAMPLER,
                 _ => ISOPHOTE_BINDING_SAMPLED,
             };
             let name = variable.name.clone().unwrap_or_default();

@@ -23,7 +23,7 @@ crate::kernel!(tone_gradient {
 
 /// The gradient, units of L per pixel; one that is n times as long as `longest` has an nth of that length.
 pub fn pass(plan: &mut PlanBuilder, lab: ImageId, longest: f32) -> ImageId {
-    plan.pass(&KERNEL, &[lab], &Params { longest }, Class::Field, Support::Pixels(1))
+    plan.pass(&KERNEL, &[lab], &Params { longest }, Class::Colour, Support::Pixels(1))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {

@@ -61,6 +61,18 @@ impl Block {
     }
 }
 
+/// Eight tensors (E, F, G) from the start of pixels of four channels, or those with the same eigenvectors whose G is 0 from
+/// pixels (E - G, F) of two.
+#[inline(always)]
+pub fn read_tensors<S: Simd>(simd: S, values: &[f32], channels: usize) -> [f32x8<S>; 3] {
+    if channels == 2 {
+        let [e, f] = read(simd, values);
+        return [e, f, f32x8::splat(simd, 0.0)];
+    }
+    let [e, f, g, _] = read(simd, values);
+    [e, f, g]
+}
+
 /// Eight pixels from the start of `values`, which holds at least one; past its end they repeat the last one.
 #[inline(always)]
 pub fn read<S: Simd, const N: usize>(simd: S, values: &[f32]) -> [f32x8<S>; N] {

@@ -13,7 +13,7 @@ use crate::kernels::shared::stream::{
     FEW_STEPS, FieldView, Integrator, Stream, acos, few_steps, half_length, stretched,
 };
 use crate::kernels::shared::tensor::{anisotropy, tangent};
-use crate::kernels::simd::pixels::{Block, premultiply, unpremultiply};
+use crate::kernels::simd::pixels::{Block, premultiply, read_tensors, unpremultiply};
 use crate::kernels::simd::tile_copy::{FOUR, TileCopy};
 use crate::kernels::simd::trace::{AlongLines, FieldCopy, Inputs, Lines, along_lines, both_sides};
 use colour_taps::{ColourTaps, RUN, Sums};
@@ -84,13 +84,9 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: &
         nearest: options.nearest.into(),
     };
     let field = orientation_field::pass(plan, tensors);
-    plan.pass(
-        &KERNEL,
-        &[color, tensors, field],
-        &params,
-        Class::Colour,
-        Support::Pixels(reach(&params) as u32),
-    )
+    // Anisotropy is all that the field does not say.
+    let here = if options.adapt == Adapt::Anisotropy { tensors } else { field };
+    plan.pass(&KERNEL, &[color, here, field], &params, Class::Colour, Support::Pixels(reach(&params) as u32))
 }
 
 /// Cosine of the greatest turn that a line survives, `max_angle` degrees; 0 for any.
@@ -226,7 +222,9 @@ impl Convolve<'_> {
     /// The lines through a block.
     #[inline(always)]
     fn begin<S: Simd>(&self, simd: S, block: &Block) -> (Arcs<S>, [Stream<S>; 2]) {
-        let [e, f, g, _] = block.read(simd, &self.tensors);
+        let channels = self.tensors.channels();
+        let at = self.tensors.offset(block.x, block.y);
+        let [e, f, g] = read_tensors(simd, &self.tensors.data()[at..at + channels * block.len], channels);
         (Arcs::new(&self.params, e, f, g), both_sides(simd, block, tangent(e, f, g)))
     }
 

@@ -12,7 +12,7 @@
 pub use crate::kernels::shaders::oriented_bilateral::Params;
 use crate::kernels::shared::tensor::{anisotropy, tangent};
 use crate::kernels::simd::line_taps::{LineTaps, Lines, STEPS, strips};
-use crate::kernels::simd::pixels::{premultiply, read, write};
+use crate::kernels::simd::pixels::{premultiply, read, read_tensors, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance, View};
@@ -66,7 +66,8 @@ pub struct Options {
 /// Lines are cut at ceil(3 sigma_d) pixels (§ 3.4).
 const PRECISION: f32 = 3.0;
 
-/// Filters a colour, usually CIELAB, along one direction of the tensors.
+/// Filters a colour, usually CIELAB, along one direction of the tensors; their orientation field does where nothing is
+/// elongated.
 pub fn pass(
     plan: &mut PlanBuilder,
     color: ImageId,
@@ -112,7 +113,9 @@ fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
             (false, true) => OPAQUE,
             (false, false) => COVERED,
         };
-        let values = |view: &View<'_>, y: i32| view.offset(strip.x0, y)..view.offset(strip.x1 - 1, y) + 4;
+        let values = |view: &View<'_>, y: i32| {
+            view.offset(strip.x0, y)..view.offset(strip.x1 - 1, y) + view.channels()
+        };
         let (colour, tensors) = (&pass.inputs[0], &pass.inputs[1]);
         for y in strip.y0..strip.y1 {
             let row = Row {
@@ -120,6 +123,7 @@ fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                 colours: &colours,
                 origins: &colour.data()[values(colour, y)],
                 tensors: &tensors.data()[values(tensors, y)],
+                channels: tensors.channels(),
                 strip,
                 y,
             };
@@ -149,6 +153,8 @@ struct Row<'a> {
     colours: &'a LineTaps,
     origins: &'a [f32],
     tensors: &'a [f32],
+    /// Of the tensors.
+    channels: usize,
     strip: Rect,
     y: i32,
 }
@@ -174,7 +180,7 @@ impl Row<'_> {
     fn filtered<S: Simd, const MODE: u32>(&self, simd: S, i: usize, block: &mut Block<S>) -> [f32x8<S>; 4] {
         let params = self.params;
         let at = [self.strip.x0 + i as i32, self.y];
-        let [e, f, g, _] = read(simd, &self.tensors[4 * i..]);
+        let [e, f, g] = read_tensors(simd, &self.tensors[self.channels * i..], self.channels);
         let [tx, ty] = tangent(e, f, g);
         let stretch = if params.elongation > 0.0 {
             anisotropy(e, f, g) * params.elongation + 1.0
