@@ -11,8 +11,10 @@ pub mod constants;
 pub mod sequences;
 pub mod table;
 pub mod types;
+pub mod vulkan;
 
 pub use constants::*;
 pub use sequences::*;
 pub use table::*;
 pub use types::*;
+pub use vulkan::*;

@@ -15,6 +15,7 @@ pub mod graph;
 pub mod guard;
 pub mod handles;
 pub mod images;
+pub mod lowered;
 pub mod objects;
 pub mod plan;
 pub mod process;
@@ -23,6 +24,8 @@ pub mod run;
 pub mod sequence;
 pub mod shader;
 pub mod threads;
+#[cfg(not(target_vendor = "apple"))]
+pub mod vulkan;
 pub mod warm;
 
 use contract::{ISOPHOTE_ABI_VERSION, IsophoteApi, IsophoteStatus};
@@ -114,7 +117,12 @@ unsafe extern "C" fn extension(id: *const c_char) -> *const c_void {
     }
     // SAFETY: the host promised text with a closing zero.
     let id = unsafe { CStr::from_ptr(id) };
-    if id == sequence::EXTENSION { (&raw const sequence::API).cast() } else { std::ptr::null() }
+    match id {
+        _ if id == sequence::EXTENSION => (&raw const sequence::API).cast(),
+        #[cfg(not(target_vendor = "apple"))]
+        _ if id == vulkan::EXTENSION => (&raw const vulkan::API).cast(),
+        _ => std::ptr::null(),
+    }
 }
 
 unsafe extern "C" fn trim() -> IsophoteStatus {
