@@ -1089,13 +1089,14 @@ typedef struct IsophoteVulkanImage {
   const char *name;
   // `VkImage`, of two dimensions and one sample.
   uint64_t image;
-  // `VkImageView` of one level and layer of the colour aspect, of the type 2D, without swizzling.
+  // `VkImageView` of one level and layer of the colour aspect, of the type 2D, without swizzling; 0 for an output that
+  // is blitted to.
   uint64_t view;
-  // `VkFormat` of the view and, for the output, of the image.
+  // `VkFormat` of the view, or of the image that is blitted to.
   uint32_t format;
   // `VkImageUsageFlags` that the image was created with.
   uint32_t usage;
-  // Columns of the view: at least those of the picture, whose pixel (0, 0) is texel (0, 0).
+  // Columns of the level: at least those of the picture, whose pixel (0, 0) is texel (0, 0).
   uint32_t width;
   // Rows of the view, likewise.
   uint32_t height;

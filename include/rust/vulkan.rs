@@ -105,13 +105,14 @@ pub struct IsophoteVulkanImage {
     pub name: *const c_char,
     /// `VkImage`, of two dimensions and one sample.
     pub image: u64,
-    /// `VkImageView` of one level and layer of the colour aspect, of the type 2D, without swizzling.
+    /// `VkImageView` of one level and layer of the colour aspect, of the type 2D, without swizzling; 0 for an output that
+    /// is blitted to.
     pub view: u64,
-    /// `VkFormat` of the view and, for the output, of the image.
+    /// `VkFormat` of the view, or of the image that is blitted to.
     pub format: u32,
     /// `VkImageUsageFlags` that the image was created with.
     pub usage: u32,
-    /// Columns of the view: at least those of the picture, whose pixel (0, 0) is texel (0, 0).
+    /// Columns of the level: at least those of the picture, whose pixel (0, 0) is texel (0, 0).
     pub width: u32,
     /// Rows of the view, likewise.
     pub height: u32,

@@ -128,7 +128,7 @@ impl Given {
     /// Whether the last kernel can write it, whose results have the format `result`.
     pub fn is_written_directly(&self, result: vk::Format) -> bool {
         let needed = vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED;
-        self.format == result && self.usage.contains(needed)
+        self.format == result && self.usage.contains(needed) && !self.view.is_null()
     }
 
     /// Fails unless a result can be blitted to it.
@@ -217,7 +217,7 @@ fn given(host: &IsophoteVulkanImage, input: Option<GraphInput>) -> Outcome<Given
         after: vk::ImageLayout::from_raw(host.layout_after.cast_signed()),
     };
     let name = given.name();
-    if given.image.is_null() || given.view.is_null() {
+    if given.image.is_null() || (given.view.is_null() && input.is_some()) {
         return Err(Failure::argument(format!("the image '{name}' or its view is null")));
     }
     if [vk::ImageLayout::UNDEFINED, vk::ImageLayout::PREINITIALIZED].contains(&given.after) {
