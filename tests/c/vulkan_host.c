@@ -9,12 +9,16 @@
  * makes effects, the library is unloaded and loaded again. Now and then a frame is compared with what `process` makes of the
  * same images. The program fails when a sample differs or a validation layer complains.
  */
+/* For nanosleep. */
+#define _POSIX_C_SOURCE 200809L
+
 #include "ppm.h"
 #include "vulkan_scene.h"
 
 #include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
+#include <time.h>
 
 #define IN_FLIGHT 3
 /* Frames from one size to the next, and from one comparison to the next. */
@@ -365,6 +369,7 @@ static void destroy_frames(Host *host)
 static void *work_beside(void *argument)
 {
     Beside *beside = argument;
+    const struct timespec pause = {0, 5000000};
     const Filter *filter = beside->filter;
     Host *host = beside->host;
     char message[512];
@@ -384,6 +389,7 @@ static void *work_beside(void *argument)
             fail("effect_create", message);
         if (filter->vulkans->effect_destroy(effect) != ISOPHOTE_OK)
             fail("effect_destroy", "the effect is not there");
+        nanosleep(&pause, NULL);
     }
     filter->api->graph_destroy(graph);
     return NULL;

@@ -37,7 +37,8 @@ fn corner(@builtin(vertex_index) index: u32, @builtin(instance_index) frame: u32
     let ring = turned(vec3f(1.9, 0.0, 0.0), f32(object) * 1.2566 + f32(frame) * 0.005);
     let at = turned(p, angle) * vec3f(0.9, 1.3, 0.9) + ring + vec3f(0.0, 0.4 * sin(f32(object)), -6.0);
     var out: Corner;
-    out.place = vec4f(at.x * 1.2, at.y * 1.8, -at.z * 0.1, -at.z);
+    // What lies from 1 to 20 before the camera fills the range of depths.
+    out.place = vec4f(at.x * 1.2, at.y * 1.8, (-at.z - 1.0) * 20.0 / 19.0, -at.z);
     out.normal = normalize(turned(signs, angle) * vec3f(1.3, 0.9, 1.3));
     out.distance = -at.z;
     out.object = object + 1u;

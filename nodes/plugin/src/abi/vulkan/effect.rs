@@ -3,7 +3,7 @@
 use super::context::Context;
 use super::images::Given;
 use super::objects::Commands;
-use super::passes::Passes;
+use super::passes::{Passes, Port};
 use super::record::Recorder;
 use crate::abi::contract::*;
 use crate::abi::failure::{Failure, Outcome};
@@ -69,7 +69,8 @@ impl Effect {
     /// Invalid argument for a value that is past; those of the images and of memory. Nothing is then recorded.
     pub fn record(&mut self, commands: vk::CommandBuffer, images: &[Given], value: u64) -> Outcome<()> {
         let reached = self.reached_before(value)?;
-        let bindings = self.record_into(commands, images, reached)?;
+        let (ports, bindings) = self.bind(images, reached)?;
+        self.record_into(commands, &ports, bindings);
         self.passes.recorded(bindings, value);
         Ok(())
     }
@@ -92,8 +93,10 @@ impl Effect {
             Some(commands) => commands,
             None => Commands::new(&context.device)?,
         };
-        let submitted = own.begin(reached).and_then(|buffer| {
-            let bindings = self.record_into(buffer, images, reached)?;
+        // A command buffer that was begun is ended whatever happens, so that what can fail comes first.
+        let submitted = self.bind(images, reached).and_then(|(ports, bindings)| {
+            let buffer = own.begin(reached)?;
+            self.record_into(buffer, &ports, bindings);
             own.end(buffer)?;
             context.device.submit(buffer, waits, signals, value)?;
             own.submitted(buffer, value);
@@ -110,12 +113,15 @@ impl Effect {
         context.retire(passes.last_value(), Box::new((passes, commands)));
     }
 
-    /// Records the passes; says which bindings they use.
-    fn record_into(&mut self, commands: vk::CommandBuffer, images: &[Given], reached: u64) -> Outcome<usize> {
+    /// Checks the images and binds them; says to which bindings.
+    fn bind(&mut self, images: &[Given], reached: u64) -> Outcome<(Vec<Port>, usize)> {
         let ports = self.passes.ports(images)?;
         let bindings = self.passes.bind(&ports, reached)?;
-        Recorder { device: &self.context.device, commands }.record(&self.passes, &ports, bindings);
-        Ok(bindings)
+        Ok((ports, bindings))
+    }
+
+    fn record_into(&self, commands: vk::CommandBuffer, ports: &[Port], bindings: usize) {
+        Recorder { device: &self.context.device, commands }.record(&self.passes, ports, bindings);
     }
 
     /// What the timeline has reached, which is less than `value`.
