@@ -38,6 +38,8 @@ typedef struct Host {
     Gpu gpu;
     Scene scene;
     Frame frames[IN_FLIGHT];
+    /* Results of frames that are recorded. */
+    Buffer copies[IN_FLIGHT];
     /* Timelines: a frame is drawn, a frame is stylized. */
     VkSemaphore drawn, done;
     uint64_t value;
@@ -228,7 +230,24 @@ static void end(Host *host, const Frame *frame, VkSemaphore timeline)
     unlock_queue(&host->queue);
 }
 
-/* Draws and stylizes a frame in one command buffer. */
+/* Records the copy of an image, which is in the layout for it, to memory that the CPU sees. */
+static void copy_image(const Frame *frame, const Image *image, const Buffer *to)
+{
+    VkMemoryBarrier seen = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER};
+    VkBufferImageCopy copy = {0};
+
+    copy.imageSubresource.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT;
+    copy.imageSubresource.layerCount = copy.imageExtent.depth = 1;
+    copy.imageExtent.width = image->width;
+    copy.imageExtent.height = image->height;
+    vkCmdCopyImageToBuffer(frame->commands, image->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to->buffer, 1, &copy);
+    seen.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+    seen.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
+    vkCmdPipelineBarrier(frame->commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &seen, 0,
+                         NULL, 0, NULL);
+}
+
+/* Draws, stylizes and copies a frame in one command buffer: the library has barriers for what is before and after it. */
 static void render_recorded(Host *host, const Filter *filter, const Frame *frame, uint32_t number)
 {
     IsophoteVulkanImage images[DRAWN + 1];
@@ -238,6 +257,7 @@ static void render_recorded(Host *host, const Filter *filter, const Frame *frame
     draw(&host->scene, frame, number);
     check_effect(filter, "record",
                  filter->vulkans->record(filter->effect, frame->commands, images, DRAWN + 1, host->value));
+    copy_image(frame, &frame->images[RESULT], &host->copies[number % IN_FLIGHT]);
     end(host, frame, host->done);
 }
 
@@ -255,14 +275,12 @@ static void render_submitted(Host *host, const Filter *filter, const Frame *fram
                  filter->vulkans->submit(filter->effect, images, DRAWN + 1, &drawn, 1, NULL, 0, host->value));
 }
 
-/* Copies an image, which is in `layout`, to memory that the CPU sees. */
+/* A copy of an image, which is in `layout`, in memory that the CPU sees. */
 static Buffer read_back(Host *host, const Frame *frame, const Image *image, VkImageLayout layout)
 {
     VkImageMemoryBarrier ready = {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
-    VkMemoryBarrier seen_by_host = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER};
-    VkBufferImageCopy copy = {0};
-    Buffer buffer =
-        create_buffer(&host->gpu, (VkDeviceSize)image->width * image->height * 16, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    VkDeviceSize size = (VkDeviceSize)image->width * image->height * 16;
+    Buffer buffer = create_buffer(&host->gpu, size, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
 
     wait_for(host, host->value);
     host->value++;
@@ -273,18 +291,11 @@ static Buffer read_back(Host *host, const Frame *frame, const Image *image, VkIm
     ready.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
     ready.srcQueueFamilyIndex = ready.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     ready.image = image->image;
-    ready.subresourceRange.aspectMask = copy.imageSubresource.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT;
+    ready.subresourceRange.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT;
     ready.subresourceRange.levelCount = ready.subresourceRange.layerCount = 1;
-    copy.imageSubresource.layerCount = copy.imageExtent.depth = 1;
-    copy.imageExtent.width = image->width;
-    copy.imageExtent.height = image->height;
-    seen_by_host.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
-    seen_by_host.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
     vkCmdPipelineBarrier(frame->commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0,
                          NULL, 0, NULL, 1, &ready);
-    vkCmdCopyImageToBuffer(frame->commands, image->image, ready.newLayout, buffer.buffer, 1, &copy);
-    vkCmdPipelineBarrier(frame->commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
-                         &seen_by_host, 0, NULL, 0, NULL);
+    copy_image(frame, image, &buffer);
     end(host, frame, host->done);
     wait_for(host, host->value);
     return buffer;
@@ -320,40 +331,44 @@ static float *expected(Host *host, const Filter *filter, const Frame *frame)
 }
 
 /* Counts the samples that differ from what `process` makes; keeps the picture where there is a place for it. */
-static void compare(Host *host, const Filter *filter, const Frame *frame, unsigned char *picture)
+static void compare(Host *host, const Filter *filter, const Frame *frame, uint32_t number, unsigned char *picture)
 {
     const size_t count = (size_t)host->width * host->height * 4;
     const Image *image = &frame->images[RESULT];
     float *theirs = expected(host, filter, frame);
-    Buffer ours = read_back(host, frame, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    Buffer read = read_back(host, frame, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    const unsigned char *ours = number % 2 == 0 ? host->copies[number % IN_FLIGHT].bytes : read.bytes;
     size_t i;
 
     for (i = 0; i < count; i++) {
         float value = theirs[i] < 0.0f ? 0.0f : theirs[i] > 1.0f ? 1.0f : theirs[i];
         /* A result of 8 bits is the nearest of them, by a little more than half a step. */
         if (image->format == VK_FORMAT_R8G8B8A8_UNORM)
-            wrong += !(fabsf(ours.bytes[i] - value * 255.0f) <= 0.505f);
+            wrong += !(fabsf(ours[i] - value * 255.0f) <= 0.505f);
         else
-            wrong += ((const float *)ours.bytes)[i] != theirs[i];
+            wrong += ((const float *)(const void *)ours)[i] != theirs[i];
         if (picture != NULL && i % 4 < 3)
             picture[i / 4 * 3 + i % 4] = (unsigned char)(value * 255.0f + 0.5f);
     }
     compared++;
-    destroy_buffer(&host->gpu, &ours);
+    destroy_buffer(&host->gpu, &read);
     free(theirs);
 }
 
 /* Makes the images of all frames in flight: results of 32-bit floats, which are written directly, or of 8 bits. */
 static void make_frames(Host *host)
 {
+    VkDeviceSize size = (VkDeviceSize)host->width * host->height * 16;
     uint32_t i;
 
-    for (i = 0; i < IN_FLIGHT; i++)
+    for (i = 0; i < IN_FLIGHT; i++) {
+        host->copies[i] = create_buffer(&host->gpu, size, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
         host->frames[i] =
             i % 2 == 0 ? make_frame(&host->gpu, &host->scene, host->width, host->height, VK_FORMAT_R32G32B32A32_SFLOAT,
                                     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT)
                        : make_frame(&host->gpu, &host->scene, host->width, host->height, VK_FORMAT_R8G8B8A8_UNORM,
                                     VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+    }
 }
 
 static void destroy_frames(Host *host)
@@ -361,8 +376,10 @@ static void destroy_frames(Host *host)
     uint32_t i;
 
     wait_for(host, host->value);
-    for (i = 0; i < IN_FLIGHT; i++)
+    for (i = 0; i < IN_FLIGHT; i++) {
+        destroy_buffer(&host->gpu, &host->copies[i]);
         destroy_frame(&host->gpu, &host->frames[i]);
+    }
 }
 
 /* Uses the queue and makes effects while frames are rendered. */
@@ -431,7 +448,7 @@ static unsigned render(Host *host, const char *path, uint32_t first, uint32_t la
         host->value++;
         (number % 2 == 0 ? render_recorded : render_submitted)(host, &filter, frame, number);
         if (number % COMPARED == 0 || number + 1 == last)
-            compare(host, &filter, frame, number + 1 == last ? picture : NULL);
+            compare(host, &filter, frame, number, number + 1 == last ? picture : NULL);
     }
     wait_for(host, host->value);
     atomic_store(&beside.stop, 1);

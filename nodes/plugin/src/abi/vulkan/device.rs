@@ -125,13 +125,10 @@ pub fn refused(answer: vk::Result, what: &str) -> Failure {
 /// # Safety
 /// The names of extensions must be text with a closing zero.
 unsafe fn check_host(host: &IsophoteVulkanHost) -> Outcome<()> {
-    let handles = [
-        (host.instance, "instance"),
-        (host.physical_device, "physical device"),
-        (host.device, "device"),
-        (host.timeline as *mut c_void, "timeline"),
-    ];
-    if let Some((_, what)) = handles.iter().find(|(handle, _)| handle.is_null()) {
+    let handles =
+        [(host.instance, "instance"), (host.physical_device, "physical device"), (host.device, "device")];
+    let null = handles.iter().find(|(handle, _)| handle.is_null()).map(|(_, what)| *what);
+    if let Some(what) = null.or((host.timeline == 0).then_some("timeline")) {
         return Err(Failure::argument(format!("the {what} is null")));
     }
     let needs = needs(host.api_version)?;
