@@ -182,6 +182,12 @@ static IsophoteVulkanImage seen(const char *name, const Image *image, VkImageLay
     return seen;
 }
 
+/* The layout in which a result is left: that in which it is written where shaders write it, or one for copies. */
+static VkImageLayout left_in(const Image *result)
+{
+    return result->usage & VK_IMAGE_USAGE_STORAGE_BIT ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+}
+
 static void see(const Frame *frame, IsophoteVulkanImage images[DRAWN + 1])
 {
     const VkImageLayout read = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
@@ -189,8 +195,8 @@ static void see(const Frame *frame, IsophoteVulkanImage images[DRAWN + 1])
 
     for (i = 0; i < DRAWN; i++)
         images[i] = seen(NAMES[i], &frame->images[i], read, read);
-    images[DRAWN] = seen("output", &frame->images[RESULT], VK_IMAGE_LAYOUT_UNDEFINED,
-                         VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    images[DRAWN] =
+        seen("output", &frame->images[RESULT], VK_IMAGE_LAYOUT_UNDEFINED, left_in(&frame->images[RESULT]));
 }
 
 static void wait_for(const Host *host, uint64_t value)
@@ -230,8 +236,8 @@ static void end(Host *host, const Frame *frame, VkSemaphore timeline)
     unlock_queue(&host->queue);
 }
 
-/* Records the copy of an image, which is in the layout for it, to memory that the CPU sees. */
-static void copy_image(const Frame *frame, const Image *image, const Buffer *to)
+/* Records the copy of an image to memory that the CPU sees. */
+static void copy_image(const Frame *frame, const Image *image, VkImageLayout layout, const Buffer *to)
 {
     VkMemoryBarrier seen = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER};
     VkBufferImageCopy copy = {0};
@@ -240,7 +246,7 @@ static void copy_image(const Frame *frame, const Image *image, const Buffer *to)
     copy.imageSubresource.layerCount = copy.imageExtent.depth = 1;
     copy.imageExtent.width = image->width;
     copy.imageExtent.height = image->height;
-    vkCmdCopyImageToBuffer(frame->commands, image->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to->buffer, 1, &copy);
+    vkCmdCopyImageToBuffer(frame->commands, image->image, layout, to->buffer, 1, &copy);
     seen.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
     seen.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
     vkCmdPipelineBarrier(frame->commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &seen, 0,
@@ -257,7 +263,7 @@ static void render_recorded(Host *host, const Filter *filter, const Frame *frame
     draw(&host->scene, frame, number);
     check_effect(filter, "record",
                  filter->vulkans->record(filter->effect, frame->commands, images, DRAWN + 1, host->value));
-    copy_image(frame, &frame->images[RESULT], &host->copies[number % IN_FLIGHT]);
+    copy_image(frame, &frame->images[RESULT], left_in(&frame->images[RESULT]), &host->copies[number % IN_FLIGHT]);
     end(host, frame, host->done);
 }
 
@@ -295,7 +301,7 @@ static Buffer read_back(Host *host, const Frame *frame, const Image *image, VkIm
     ready.subresourceRange.levelCount = ready.subresourceRange.layerCount = 1;
     vkCmdPipelineBarrier(frame->commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0,
                          NULL, 0, NULL, 1, &ready);
-    copy_image(frame, image, &buffer);
+    copy_image(frame, image, ready.newLayout, &buffer);
     end(host, frame, host->done);
     wait_for(host, host->value);
     return buffer;
@@ -336,7 +342,7 @@ static void compare(Host *host, const Filter *filter, const Frame *frame, uint32
     const size_t count = (size_t)host->width * host->height * 4;
     const Image *image = &frame->images[RESULT];
     float *theirs = expected(host, filter, frame);
-    Buffer read = read_back(host, frame, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    Buffer read = read_back(host, frame, image, left_in(image));
     const unsigned char *ours = number % 2 == 0 ? host->copies[number % IN_FLIGHT].bytes : read.bytes;
     size_t i;
 

@@ -418,6 +418,22 @@ fn frames_with_other_parameters_make_no_objects() {
 }
 
 #[test]
+fn recordings_outlive_updates_and_their_effect() {
+    let Some(host) = Host::new("recordings_outlive_updates_and_their_effect") else { return };
+    let studio = Studio::new(&host, c"gaussian");
+    let images = images(&host);
+    let effect = studio.effect(SIZE);
+    let commands = host.commands();
+    assert_eq!(studio.record(effect, commands, &images, 2), ISOPHOTE_OK, "{}", studio.error(effect));
+    let smaller = studio.request([SIZE[0] - 2, SIZE[1]]);
+    assert_eq!(studio.update(effect, Some(smaller)), (ISOPHOTE_OK, ISOPHOTE_CHANGE_STRUCTURE));
+    assert_eq!(studio.record(effect, commands, &images, 3), ISOPHOTE_OK, "{}", studio.error(effect));
+    // SAFETY: handles may be destroyed at any time.
+    assert_eq!(unsafe { (studio.table.effect_destroy)(effect) }, ISOPHOTE_OK);
+    host.execute(commands, 3);
+}
+
+#[test]
 fn recordings_in_flight_are_bounded() {
     let Some(host) = Host::new("recordings_in_flight_are_bounded") else { return };
     let studio = Studio::new(&host, c"gaussian");
