@@ -9,6 +9,8 @@
  *   IsophotePlan    what a graph comes to for one size: textures and passes, for a graphics device of the host's own
  *   IsophoteDevice  a graphics device of the library's own; {0} is the CPU
  *
+ * Extensions have objects of their own.
+ *
  * Order of calls
  *
  *   api = isophote_api(ISOPHOTE_ABI_VERSION);
@@ -26,7 +28,18 @@
  *
  *   const struct IsophotePrecisionApi *precision = api->extension("isophote.precision/1");
  *
- * A host that renders runs the plan instead:
+ * A host that renders with Vulkan records the filter into its command buffers, from and to its images:
+ *
+ *   const struct IsophoteVulkanApi *vulkans = api->extension("isophote.vulkan/1");
+ *   vulkans->needs(VK_API_VERSION_1_2, &error, &needs);          features to create the device with
+ *   vulkans->create(&host, &error, &vulkan);
+ *   vulkans->effect_create(vulkan, graph, &request, &error, &effect);
+ *   each frame:
+ *       vulkans->effect_update(effect, graph, &request, &change);
+ *       vulkans->record(effect, command_buffer, images, image_count, value);
+ *   vulkans->effect_destroy(effect), vulkans->destroy(vulkan);
+ *
+ * A host that renders with anything else runs the plan:
  *
  *   api->plan_create(graph, &request, NULL, &error, &plan);
  *   api->plan_textures(plan, &textures, &texture_count);         make those that are transient or an output
@@ -308,6 +321,15 @@ extern "C" {
 // `ISOPHOTE_FORMAT_RGBA16F`; what a host binds in the place of such an input must have a format that its device filters.
 // Shaders in WGSL and SPIR-V only.
 #define ISOPHOTE_PRECISION_FAST 2
+
+// Bit of features: `shaderStorageImageExtendedFormats` of `VkPhysicalDeviceFeatures`, for images of two floats.
+#define ISOPHOTE_VULKAN_STORAGE_IMAGE_EXTENDED_FORMATS 1
+
+// Bit of features: `timelineSemaphore` of `VkPhysicalDeviceVulkan12Features` or of the extension's own struct.
+#define ISOPHOTE_VULKAN_TIMELINE_SEMAPHORE 2
+
+// Recordings of one effect that may wait to be executed at once.
+#define ISOPHOTE_VULKAN_MOST_IN_FLIGHT 64
 
 // What a call came to: `ISOPHOTE_OK`, which is 0, or what went wrong. The message of the last failure is asked of the object that
 // the call was made on (`graph_error`, `plan_error`, `device_error`); calls that make an object
@@ -1007,6 +1029,189 @@ typedef struct IsophoteSequenceApi {
                                 struct IsophoteText *error,
                                 struct IsophotePlan *plan);
 } IsophoteSequenceApi;
+
+// What a device must be created with.
+typedef struct IsophoteVulkanNeeds {
+  // Features to enable, a sum of `ISOPHOTE_VULKAN_...` bits.
+  uint32_t features;
+  // Number of device extensions to enable.
+  uint32_t extension_count;
+  // Their names.
+  const char *const *extensions;
+} IsophoteVulkanNeeds;
+
+// A function of Vulkan, to be cast to its own type.
+typedef void (ISOPHOTE_ABI *IsophoteVulkanFunction)(void);
+
+// `vkGetInstanceProcAddr`, with the instance as a plain pointer.
+typedef IsophoteVulkanFunction (ISOPHOTE_ABI *IsophoteVulkanLoader)(void *instance, const char *name);
+
+// A Vulkan device of the host's. Handles are cast to plain pointers and numbers, so that this header needs no other.
+typedef struct IsophoteVulkanHost {
+  // Finds all functions of Vulkan.
+  IsophoteVulkanLoader get_instance_proc_addr;
+  // `VkInstance`.
+  void *instance;
+  // `VkPhysicalDevice`.
+  void *physical_device;
+  // `VkDevice`.
+  void *device;
+  // `VkQueue` for `submit`, of the family `queue_family`; null for a host that only records.
+  void *queue;
+  // The version that instance and device are used with, such as `VK_API_VERSION_1_2`: at least 1.1.
+  uint32_t api_version;
+  // Family of the queues that all commands are executed on; it has compute.
+  uint32_t queue_family;
+  // Features that the device was created with, a sum of `ISOPHOTE_VULKAN_...` bits.
+  uint32_t features;
+  // Number of device extensions that it was created with.
+  uint32_t extension_count;
+  // Their names; may be null when there are none.
+  const char *const *extensions;
+  // `VkSemaphore` of the timeline type, by which the library knows without waiting what has been executed. It outlives
+  // the object made with it.
+  uint64_t timeline;
+  // `VkPipelineCache` of the host's, which shaders are compiled with; 0 for none. Vulkan itself guards it, or the host
+  // makes no effects while it uses it elsewhere.
+  uint64_t pipeline_cache;
+  // Handed to both functions.
+  void *user;
+  // Called by `submit`, on its thread, before it touches the queue: the host's lock of it. May be null where no other
+  // thread uses the queue meanwhile. Must not call functions of this extension.
+  void (ISOPHOTE_ABI *lock_queue)(void *user);
+  // Called when the queue was touched.
+  void (ISOPHOTE_ABI *unlock_queue)(void *user);
+} IsophoteVulkanHost;
+
+// A Vulkan device of the host's, with the shaders compiled for it. Its number is never 0.
+typedef struct IsophoteVulkan {
+  // The handle.
+  uint64_t id;
+} IsophoteVulkan;
+
+// A graph made ready for pictures of one size on a Vulkan device of the host's. Its number is never 0.
+typedef struct IsophoteVulkanEffect {
+  // The handle.
+  uint64_t id;
+} IsophoteVulkanEffect;
+
+// An image of the host's and a view of it, which outlive the execution of what they are recorded in. Filters read and write
+// them where they are.
+//
+// Inputs were created with `VK_IMAGE_USAGE_SAMPLED_BIT`, and their views have a format that is read as floats. `normal`,
+// `flow` and `rest_position` need four channels, `color` three or four, `motion` and `motion_forward` two; the others one.
+// `normal` needs signed or floating samples, and `depth`, `object_id`, `rest_position` and motions floating ones. Views of an
+// sRGB format give linear light, which the request's `space` must say. NaN and infinities are not replaced.
+//
+// The output is written by the last filter itself where its view has the format `VK_FORMAT_R32G32B32A32_SFLOAT` (for
+// graphs that give one channel, `VK_FORMAT_R32_SFLOAT`) and the image was created with `VK_IMAGE_USAGE_STORAGE_BIT` and
+// `VK_IMAGE_USAGE_SAMPLED_BIT`. Any other colour format needs `VK_IMAGE_USAGE_TRANSFER_DST_BIT`: the result is then blitted
+// there, converted as blits convert, which needs a queue family with graphics.
+typedef struct IsophoteVulkanImage {
+  // An input of the graph, such as `color`, or `output`. Inputs that the graph does not read are ignored.
+  const char *name;
+  // `VkImage`, of two dimensions and one sample.
+  uint64_t image;
+  // `VkImageView` of one level and layer of the colour aspect, of the type 2D, without swizzling; 0 for an output that
+  // is blitted to.
+  uint64_t view;
+  // `VkFormat` of the view, or of the image that is blitted to.
+  uint32_t format;
+  // `VkImageUsageFlags` that the image was created with.
+  uint32_t usage;
+  // Columns of the level: at least those of the picture, whose pixel (0, 0) is texel (0, 0).
+  uint32_t width;
+  // Rows of the view, likewise.
+  uint32_t height;
+  // Level that the view shows.
+  uint32_t level;
+  // Layer that the view shows.
+  uint32_t layer;
+  // `VkImageLayout` of the level and layer before: of an input anything but undefined; best
+  // `VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL`, or `VK_IMAGE_LAYOUT_GENERAL`, which take no transition.
+  uint32_t layout_before;
+  // `VkImageLayout` that they are left in.
+  uint32_t layout_after;
+} IsophoteVulkanImage;
+
+// A semaphore that a submission waits for or signals.
+typedef struct IsophoteVulkanSemaphore {
+  // `VkSemaphore`.
+  uint64_t semaphore;
+  // Value of a timeline; ignored of binary ones.
+  uint64_t value;
+} IsophoteVulkanSemaphore;
+
+// The functions of the extension "isophote.vulkan/1", which is there on all systems but Apple's. Tags and ownership are
+// those of `IsophoteApi`.
+//
+// The library never waits for the GPU, and never touches a queue but in `submit`, between the host's two functions. What
+// commands use (images for intermediate results, uniforms, bindings) is kept until the timeline has the value that the
+// host gave with them. An effect has one set of intermediate images: its recordings are executed one after another, in the
+// order of a queue or behind semaphores, and any number of them, up to `ISOPHOTE_VULKAN_MOST_IN_FLIGHT`, may be in flight.
+// Frames after the first few make no Vulkan objects and take no memory of the device.
+//
+// After `ISOPHOTE_ERROR_DEVICE` that says that the device is lost, destroy effects and object, and make them on another.
+// After any other error go on: nothing was recorded or submitted.
+typedef struct IsophoteVulkanApi {
+  // Size of this table in bytes.
+  uint32_t struct_size;
+  // [any-thread] What a device that is used with `api_version` (at least 1.1) must be created with. What is handed out
+  // lives as long as the process. The queue family needs compute, and graphics where outputs are blitted.
+  IsophoteStatus (ISOPHOTE_ABI *needs)(uint32_t api_version,
+                          struct IsophoteText *error,
+                          struct IsophoteVulkanNeeds *needs);
+  // [any-thread] Makes an object on a device of the host's. The message of a failure names what the device lacks.
+  // The caller owns it, and destroys it before the device.
+  IsophoteStatus (ISOPHOTE_ABI *create)(const struct IsophoteVulkanHost *host,
+                           struct IsophoteText *error,
+                           struct IsophoteVulkan *vulkan);
+  // [any-thread] Destroys an object and all that its effects hold; their handles can then only be destroyed. All
+  // recordings have been executed, or will never be, as for `vkDestroyDevice`.
+  IsophoteStatus (ISOPHOTE_ABI *destroy)(struct IsophoteVulkan vulkan);
+  // [any-thread, needs-output] Makes a graph ready for the size, spaces and guides of a request. Compiles shaders that the
+  // object has not yet compiled, which takes milliseconds to seconds; other threads may record meanwhile. The caller
+  // owns it and destroys it. The graph may be destroyed.
+  IsophoteStatus (ISOPHOTE_ABI *effect_create)(struct IsophoteVulkan vulkan,
+                                  struct IsophoteGraph graph,
+                                  const struct IsophoteRequest *request,
+                                  struct IsophoteText *error,
+                                  struct IsophoteVulkanEffect *effect);
+  // [any-thread] Destroys an effect. What its recordings use is kept until they have been executed.
+  IsophoteStatus (ISOPHOTE_ABI *effect_destroy)(struct IsophoteVulkanEffect effect);
+  // [object-thread] Message of the last failed call on the effect; empty before the first.
+  IsophoteStatus (ISOPHOTE_ABI *effect_error)(struct IsophoteVulkanEffect effect, struct IsophoteText *text);
+  // [object-thread, needs-output] Takes over the parameters of the graph and the request (null for the one before) for
+  // the next recording, also while commands are in flight. With `ISOPHOTE_CHANGE_UNIFORMS` no Vulkan object was made;
+  // with `ISOPHOTE_CHANGE_STRUCTURE`, which another size always is, intermediate images are others. After a failure the
+  // effect is as it was.
+  IsophoteStatus (ISOPHOTE_ABI *effect_update)(struct IsophoteVulkanEffect effect,
+                                  struct IsophoteGraph graph,
+                                  const struct IsophoteRequest *request,
+                                  IsophoteChange *change);
+  // [object-thread] Records the effect into a `VkCommandBuffer` of the host's, which is in the recording state and
+  // outside of a render pass; to be executed once. Barriers before and after order it with all commands around it on
+  // the queue, so that the host needs none. Afterwards other pipelines and descriptor sets are bound for compute.
+  //
+  // `value` is what the timeline will have once the commands have been executed: the host signals it with the
+  // submission of the command buffer or with a later one. It is above what the timeline has now.
+  IsophoteStatus (ISOPHOTE_ABI *record)(struct IsophoteVulkanEffect effect,
+                           void *command_buffer,
+                           const struct IsophoteVulkanImage *images,
+                           uint32_t image_count,
+                           uint64_t value);
+  // [object-thread] Records the effect into a command buffer of the library's and submits it to the host's queue: it
+  // begins after `waits`, signals `signals` when it is done, and sets the timeline to `value`. Values of the timeline
+  // grow from submission to submission.
+  IsophoteStatus (ISOPHOTE_ABI *submit)(struct IsophoteVulkanEffect effect,
+                           const struct IsophoteVulkanImage *images,
+                           uint32_t image_count,
+                           const struct IsophoteVulkanSemaphore *waits,
+                           uint32_t wait_count,
+                           const struct IsophoteVulkanSemaphore *signals,
+                           uint32_t signal_count,
+                           uint64_t value);
+} IsophoteVulkanApi;
 
 // [any-thread] Returns the table of ABI version `abi_version`, or null when this library has none of
 // that number. The table is the library's and valid for the life of the process.

@@ -12,9 +12,11 @@ pub mod precision;
 pub mod sequences;
 pub mod table;
 pub mod types;
+pub mod vulkan;
 
 pub use constants::*;
 pub use precision::*;
 pub use sequences::*;
 pub use table::*;
 pub use types::*;
+pub use vulkan::*;

@@ -26,7 +26,7 @@ const BREAK = 1e-4;
 // Added to squared derivatives, levels of brightness: noise below it is no constraint.
 const NOISE = 0.01;
 
-fn motion_at(p: vec2i) -> vec2f {
+fn before_at(p: vec2i) -> vec2f {
     return fetch(now, 4u, p).xy;
 }
 
@@ -43,15 +43,15 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let p = pixel(id);
     let origin = fetch(start, 2u, p).xy;
-    let centre = motion_at(p);
-    let left = motion_at(p + vec2i(-1, 0));
-    let right = motion_at(p + vec2i(1, 0));
-    let up = motion_at(p + vec2i(0, -1));
-    let down = motion_at(p + vec2i(0, 1));
-    let left_up = motion_at(p + vec2i(-1, -1));
-    let right_up = motion_at(p + vec2i(1, -1));
-    let left_down = motion_at(p + vec2i(-1, 1));
-    let right_down = motion_at(p + vec2i(1, 1));
+    let centre = before_at(p);
+    let left = before_at(p + vec2i(-1, 0));
+    let right = before_at(p + vec2i(1, 0));
+    let up = before_at(p + vec2i(0, -1));
+    let down = before_at(p + vec2i(0, 1));
+    let left_up = before_at(p + vec2i(-1, -1));
+    let right_up = before_at(p + vec2i(1, -1));
+    let left_down = before_at(p + vec2i(-1, 1));
+    let right_down = before_at(p + vec2i(1, 1));
 
     let weights = vec4f(
         across(left - centre, (down - up) + (left_down - left_up)),

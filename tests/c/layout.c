@@ -28,6 +28,11 @@ int main(void)
     SHOW(IsophoteBinding);
     SHOW(IsophoteShader);
     SHOW(IsophoteApi);
+    SHOW(IsophoteVulkanNeeds);
+    SHOW(IsophoteVulkanHost);
+    SHOW(IsophoteVulkanImage);
+    SHOW(IsophoteVulkanSemaphore);
+    SHOW(IsophoteVulkanApi);
     printf("device_name %lu\n", (unsigned long)offsetof(IsophoteApi, device_name));
     return 0;
 }

@@ -1,4 +1,4 @@
-/* Loads the library by path and gives its table; what the C programs here share. */
+/* Loads the library by path and gives its table; what the C programs here share. Not all of them need all of it. */
 #ifndef LOAD_H
 #define LOAD_H
 
@@ -48,7 +48,7 @@ static void check(const IsophoteApi *api, IsophoteGraph graph, const char *what,
 }
 
 /* Adds the node `id`, gives it the colour and, where it takes one, the tensor of `tensor`. */
-static uint32_t add(const IsophoteApi *api, IsophoteGraph graph, const char *id, uint32_t tensor)
+static inline uint32_t add(const IsophoteApi *api, IsophoteGraph graph, const char *id, uint32_t tensor)
 {
     const IsophoteNode *spec;
     uint32_t node, i;
@@ -66,7 +66,7 @@ static uint32_t add(const IsophoteApi *api, IsophoteGraph graph, const char *id,
 }
 
 /* A graph of the structure tensor and of `id`, which gives what leaves it; `settings` are `param=value`. */
-static IsophoteGraph build(const IsophoteApi *api, const char *id, char **settings, int count)
+static inline IsophoteGraph build(const IsophoteApi *api, const char *id, char **settings, int count)
 {
     char message[512];
     IsophoteText error = {message, sizeof message, 0};

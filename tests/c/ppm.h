@@ -9,7 +9,7 @@ typedef struct Picture {
     uint32_t width, height;
 } Picture;
 
-static Picture read_ppm(const char *path)
+static inline Picture read_ppm(const char *path)
 {
     Picture picture;
     unsigned most;
@@ -31,7 +31,7 @@ static Picture read_ppm(const char *path)
     return picture;
 }
 
-static void write_ppm(const char *path, Picture picture)
+static inline void write_ppm(const char *path, Picture picture)
 {
     FILE *file = fopen(path, "wb");
 

@@ -466,7 +466,7 @@ int main(int argc, char **argv)
     api = load(argv[1], &library);
     picture = read_ppm(argv[2]);
     graph = build(api, argv[4], argv + 5, argc - 5);
-    gpu = open_gpu();
+    gpu = open_gpu(VK_API_VERSION_1_0, VK_QUEUE_COMPUTE_BIT, NULL);
     runner = make_runner(&gpu, api, graph, picture);
     stylize(&gpu, &runner, picture);
     write_ppm(argv[3], picture);

@@ -1,6 +1,7 @@
-/* A Vulkan 1.0 device with a compute queue, and its memory: what every engine has already.
+/* A Vulkan device with a queue, and its memory: what every engine has already.
  *
- * Nothing here is about the library; vulkan.c shows how to run its plans. Errors end the program. */
+ * Nothing here is about the library; vulkan.c shows how to run its plans, vulkan_host.c how to let it record them. Errors
+ * end the program. */
 #ifndef VULKAN_DEVICE_H
 #define VULKAN_DEVICE_H
 
@@ -75,7 +76,7 @@ static int has_validation(const char *layer)
     return found;
 }
 
-static void create_instance(Gpu *gpu)
+static void create_instance(Gpu *gpu, uint32_t version)
 {
     const char *layer = "VK_LAYER_KHRONOS_validation", *extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
     VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO};
@@ -85,7 +86,7 @@ static void create_instance(Gpu *gpu)
     int validated = has_validation(layer);
 
     application.pApplicationName = "isophote example";
-    application.apiVersion = VK_API_VERSION_1_0;
+    application.apiVersion = version;
     info.pApplicationInfo = &application;
     messenger.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
                                 VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
@@ -107,8 +108,8 @@ static void create_instance(Gpu *gpu)
     }
 }
 
-/* The first adapter that has a queue for compute shaders. */
-static void choose_adapter(Gpu *gpu)
+/* The first adapter that has a queue for all of `wanted`. */
+static void choose_adapter(Gpu *gpu, VkQueueFlags wanted)
 {
     VkPhysicalDevice adapters[16];
     VkQueueFamilyProperties families[16];
@@ -121,7 +122,7 @@ static void choose_adapter(Gpu *gpu)
         family_count = 16;
         vkGetPhysicalDeviceQueueFamilyProperties(adapters[i], &family_count, families);
         for (j = 0; j < family_count; j++) {
-            if (!(families[j].queueFlags & VK_QUEUE_COMPUTE_BIT))
+            if ((families[j].queueFlags & wanted) != wanted)
                 continue;
             gpu->adapter = adapters[i];
             gpu->family = j;
@@ -130,10 +131,11 @@ static void choose_adapter(Gpu *gpu)
             return;
         }
     }
-    fail("Vulkan", "no adapter runs compute shaders");
+    fail("Vulkan", "no adapter has a queue of the kind needed");
 }
 
-static Gpu open_gpu(void)
+/* A device of a version with a queue for all of `wanted`; `features_chain` has those of extensions and later versions. */
+static Gpu open_gpu(uint32_t version, VkQueueFlags wanted, const void *features_chain)
 {
     Gpu gpu;
     float priority = 1.0f;
@@ -141,8 +143,9 @@ static Gpu open_gpu(void)
     VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
     VkPhysicalDeviceFeatures features = {0};
 
-    create_instance(&gpu);
-    choose_adapter(&gpu);
+    create_instance(&gpu, version);
+    choose_adapter(&gpu, wanted);
+    info.pNext = features_chain;
     queue.queueFamilyIndex = gpu.family;
     queue.queueCount = 1;
     queue.pQueuePriorities = &priority;

@@ -29,6 +29,7 @@ fn main() -> ExitCode {
     for (name, test) in named! {
         a_c_program_lists_the_nodes_and_stylizes_under_valgrind
         a_c_program_prints_a_plan_as_data_under_valgrind
+        a_c_program_stylizes_frames_on_its_own_vulkan_device
         a_c_program_runs_plans_with_vulkan
         the_header_is_cpp_too
         the_header_has_the_layout_of_the_declarations
@@ -87,7 +88,7 @@ fn compile(source: &str) -> Option<PathBuf> {
         .arg("-o")
         .arg(&program)
         .arg("-ldl")
-        .args((source == "vulkan.c").then_some("-lvulkan"))
+        .args(if source.starts_with("vulkan") { &["-lvulkan", "-lm", "-lpthread"][..] } else { &[] })
         .output()
         .expect("the compiler can be started");
     assert!(output.status.success(), "{source}:\n{}", String::from_utf8_lossy(&output.stderr));
@@ -244,20 +245,62 @@ fn has_file(path: &str, package: &str) -> bool {
     false
 }
 
+/// Drivers that compute on the CPU forgive barriers that are missing; this lets the validation layer find them.
+const SYNCHRONIZATION: [&str; 2] =
+    ["VK_LAYER_ENABLES", "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT"];
+
+fn has_vulkan_headers() -> bool {
+    has_file("/usr/include/vulkan/vulkan.h", "libvulkan-dev")
+}
+
+fn has_validation() -> bool {
+    let layer = "/usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json";
+    std::env::var_os("VK_LAYER_PATH").is_some() || has_file(layer, "vulkan-validationlayers")
+}
+
+const FRAMES: &str = "1000";
+
+fn a_c_program_stylizes_frames_on_its_own_vulkan_device() {
+    if !has_vulkan_headers() {
+        return;
+    }
+    let Some(program) = compiled("vulkan_host.c") else { return };
+    let source = library::root().join("tests/c/vulkan_scene.wgsl");
+    let source = std::fs::read_to_string(source).expect("the scene's shaders are there");
+    let scene = folder().join("vulkan_scene.spv");
+    let words: Vec<u8> = spirv(&source).into_iter().flat_map(u32::to_ne_bytes).collect();
+    std::fs::write(&scene, words).expect("the folder is writable");
+    let [name, value] = SYNCHRONIZATION;
+    let mut command = Command::new(program);
+    command.env(name, value).arg(library::path()).arg(scene).args([FRAMES, "1"]);
+    // A sample that differs and a message of the validation layer fail the program.
+    let text = printed(&command.output().expect("the program can be started"), "vulkan_host");
+    let validated = if has_validation() { "validated" } else { "not validated" };
+    assert!(text.contains(&format!(", {validated}: {FRAMES} frames, ")), "{text}");
+    assert!(text.trim_end().ends_with(" frames compared, 0 samples wrong"), "{text}");
+    println!("{text}");
+}
+
+fn spirv(source: &str) -> Vec<u32> {
+    use naga::valid::{Capabilities, ValidationFlags, Validator};
+    let module = naga::front::wgsl::parse_str(source).expect("the shaders can be read");
+    let info = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module);
+    let info = info.expect("the shaders are valid");
+    naga::back::spv::write_vec(&module, &info, &Default::default(), None).expect("SPIR-V can express them")
+}
+
 fn a_c_program_runs_plans_with_vulkan() {
-    if !has_file("/usr/include/vulkan/vulkan.h", "libvulkan-dev") {
+    if !has_vulkan_headers() {
         return;
     }
     let (Some(executes), Some(processes)) = (compiled("vulkan.c"), compiled("stylize.c")) else { return };
-    let layer = "/usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json";
-    let is_validated =
-        std::env::var_os("VK_LAYER_PATH").is_some() || has_file(layer, "vulkan-validationlayers");
+    let is_validated = has_validation();
     let cases: [(&str, &[&str]); 3] =
         [("cartoon", &[]), ("cartoon", &["posterize=4", "sigma_d=5"]), ("flow_dog", &[])];
     for (node, settings) in cases {
         let mut program = Command::new(&executes);
-        // Drivers that compute on the CPU forgive barriers that are missing.
-        program.env("VK_LAYER_ENABLES", "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT");
+        let [name, value] = SYNCHRONIZATION;
+        program.env(name, value);
         // A message of the validation layer fails the program.
         let ours = run(program, node, settings, [157, 101]);
         assert_eq!(ours.text.contains(", validated: "), is_validated, "{}", ours.text);
@@ -320,6 +363,7 @@ fn the_header_has_the_layout_of_the_declarations() {
         IsophoteText IsophoteRect IsophoteChoice IsophotePort IsophoteParam IsophoteNode IsophoteCatalogue
         IsophoteValue IsophoteRequest IsophoteImage IsophoteTarget IsophoteInput IsophoteSupport
         IsophotePassTime IsophoteControl IsophoteReport IsophoteTexture IsophotePass IsophoteBinding IsophoteShader IsophoteApi
+        IsophoteVulkanNeeds IsophoteVulkanHost IsophoteVulkanImage IsophoteVulkanSemaphore IsophoteVulkanApi
     };
     let Some(program) = compiled("layout.c") else { return };
     let text = printed(&Command::new(program).output().expect("the program can be started"), "layout");

@@ -101,13 +101,8 @@ pub struct Tolerance {
 impl Tolerance {
     /// That of results which are stored in 16-bit floats, and are computed as exactly as before.
     pub const fn rounded_to_half(self) -> Self {
-        let (relative, absolute) = (self.relative + 1.0 / 1024.0, self.absolute + 1e-7);
-        Self {
-            relative,
-            absolute,
-            reason: "as exact, and cut to eleven bits: devices need not round",
-            ..self
-        }
+        let (relative, absolute) = (self.relative + 1.0 / 2040.0, self.absolute + 1e-7);
+        Self { relative, absolute, reason: "as exact, and rounded to eleven bits", ..self }
     }
 }
 

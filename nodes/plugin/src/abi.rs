@@ -15,6 +15,7 @@ pub mod graph;
 pub mod guard;
 pub mod handles;
 pub mod images;
+pub mod lowered;
 pub mod objects;
 pub mod plan;
 pub mod precision;
@@ -24,6 +25,8 @@ pub mod run;
 pub mod sequence;
 pub mod shader;
 pub mod threads;
+#[cfg(not(target_vendor = "apple"))]
+pub mod vulkan;
 pub mod warm;
 
 use contract::{ISOPHOTE_ABI_VERSION, IsophoteApi, IsophoteStatus};
@@ -115,12 +118,12 @@ unsafe extern "C" fn extension(id: *const c_char) -> *const c_void {
     }
     // SAFETY: the host promised text with a closing zero.
     let id = unsafe { CStr::from_ptr(id) };
-    if id == sequence::EXTENSION {
-        (&raw const sequence::API).cast()
-    } else if id == precision::EXTENSION {
-        (&raw const precision::API).cast()
-    } else {
-        std::ptr::null()
+    match id {
+        _ if id == sequence::EXTENSION => (&raw const sequence::API).cast(),
+        _ if id == precision::EXTENSION => (&raw const precision::API).cast(),
+        #[cfg(not(target_vendor = "apple"))]
+        _ if id == vulkan::EXTENSION => (&raw const vulkan::API).cast(),
+        _ => std::ptr::null(),
     }
 }
 

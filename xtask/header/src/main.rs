@@ -10,12 +10,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// The files that declare the contract, in the order of the header.
-const SOURCES: [&str; 6] = [
+const SOURCES: [&str; 7] = [
     "include/rust/constants.rs",
     "include/rust/types.rs",
     "include/rust/table.rs",
     "include/rust/sequences.rs",
     "include/rust/precision.rs",
+    "include/rust/vulkan.rs",
     "nodes/plugin/src/abi/entry.rs",
 ];
 
@@ -30,6 +31,8 @@ const PREAMBLE: &str = "\
  *   IsophoteGraph   nodes, their parameters and connections
  *   IsophotePlan    what a graph comes to for one size: textures and passes, for a graphics device of the host's own
  *   IsophoteDevice  a graphics device of the library's own; {0} is the CPU
+ *
+ * Extensions have objects of their own.
  *
  * Order of calls
  *
@@ -48,7 +51,18 @@ const PREAMBLE: &str = "\
  *
  *   const struct IsophotePrecisionApi *precision = api->extension(\"isophote.precision/1\");
  *
- * A host that renders runs the plan instead:
+ * A host that renders with Vulkan records the filter into its command buffers, from and to its images:
+ *
+ *   const struct IsophoteVulkanApi *vulkans = api->extension(\"isophote.vulkan/1\");
+ *   vulkans->needs(VK_API_VERSION_1_2, &error, &needs);          features to create the device with
+ *   vulkans->create(&host, &error, &vulkan);
+ *   vulkans->effect_create(vulkan, graph, &request, &error, &effect);
+ *   each frame:
+ *       vulkans->effect_update(effect, graph, &request, &change);
+ *       vulkans->record(effect, command_buffer, images, image_count, value);
+ *   vulkans->effect_destroy(effect), vulkans->destroy(vulkan);
+ *
+ * A host that renders with anything else runs the plan:
  *
  *   api->plan_create(graph, &request, NULL, &error, &plan);
  *   api->plan_textures(plan, &textures, &texture_count);         make those that are transient or an output
@@ -172,7 +186,8 @@ fn generate(root: &Path) -> Result<String, Error> {
         ..Config::default()
     };
     // Only the documents name the type of the entry point, and tables of extensions, which are asked for by a string.
-    config.export.include = vec!["IsophoteEntry".into(), "IsophoteSequenceApi".into()];
+    config.export.include =
+        ["IsophoteEntry", "IsophoteSequenceApi", "IsophoteVulkanApi"].map(Into::into).into();
     let mut builder = Builder::new().with_config(config);
     for source in SOURCES {
         builder = builder.with_src(root.join(source));

@@ -42,8 +42,17 @@ const FOLLOW: &str = "follow(id, ";
 /// What takes its place where 16-bit floats are stored.
 const STORE_HALF: &str = "store_half(id, ";
 
-/// A value that 16-bit floats can hold; what is larger may become infinite where a device stores it.
-const HALF: &str = "clamp(value, vec4f(-65504.0), vec4f(65504.0))";
+/// The nearest value that 16-bit floats can hold.
+const HALF: &str = "nearest_half(value)";
+
+/// Devices may cut bits off instead of rounding, which adds up from pass to pass, and may make what is too large infinite.
+/// Ties go to even.
+const NEAREST_HALF: &str = "
+fn nearest_half(value: vec4f) -> vec4f {
+    let bits = bitcast<vec4u>(clamp(value, vec4f(-65504.0), vec4f(65504.0)));
+    return bitcast<vec4f>((bits + 0xfffu + ((bits >> vec4u(13u)) & vec4u(1u))) & vec4u(0xffffe000u));
+}
+";
 
 impl Shader {
     /// That of one kernel, which writes `outputs` and interpolates by a sampler if `is_filtered`.
@@ -125,7 +134,10 @@ fn stored_as(source: &str, outputs: &[Format]) -> String {
     }
     if text.contains(STORE) {
         text = text.replace(STORE, STORE_HALF);
-        let _ = write!(text, "\nfn store_half(id: vec3u, value: vec4f) {{\n    {STORE}{HALF});\n}}\n");
+        let _ = write!(
+            text,
+            "{NEAREST_HALF}\nfn store_half(id: vec3u, value: vec4f) {{\n    {STORE}{HALF});\n}}\n"
+        );
     }
     text
 }
@@ -179,6 +191,9 @@ fn chained(links: &[Link], inputs: usize, output: Format, is_filtered: bool) -> 
         output.wgsl(),
         if output == Format::Rgba16 { HALF } else { "value" },
     );
+    if output == Format::Rgba16 {
+        text.push_str(NEAREST_HALF);
+    }
     text
 }
 

@@ -6,7 +6,7 @@
 
 use super::contract::{
     ISOPHOTE_ERROR_INVALID_HANDLE, ISOPHOTE_ERROR_OUT_OF_MEMORY, IsophoteDevice, IsophoteGraph, IsophotePlan,
-    IsophoteSequence,
+    IsophoteSequence, IsophoteVulkan, IsophoteVulkanEffect,
 };
 use super::failure::{Failure, Outcome};
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
@@ -33,7 +33,7 @@ macro_rules! handles {
     };
 }
 
-handles!(IsophoteGraph, IsophotePlan, IsophoteDevice, IsophoteSequence);
+handles!(IsophoteGraph, IsophotePlan, IsophoteDevice, IsophoteSequence, IsophoteVulkan, IsophoteVulkanEffect);
 
 /// What hosts hold handles of.
 pub trait Object: Send + Sync + Sized + 'static {

@@ -5,14 +5,14 @@ use super::contract::*;
 use super::failure::{Failure, Outcome};
 use super::guard::{self, lock};
 use super::handles::{Object, Slots};
+use super::lowered::Lowered;
 use super::objects::GraphObject;
 use super::request;
 use super::shader;
 use isophote::engine::kernel::WORKGROUP;
 use isophote::engine::program::{Dispatch, Format, Program, Role, Texture};
 use isophote::engine::{Class, Rect};
-use isophote::request::Change;
-use isophote::{Graph, Planned, Request};
+use isophote::{Graph, Request};
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
 use std::ptr::null;
@@ -44,60 +44,25 @@ impl PlanObject {
     /// # Errors
     /// What planning and lowering fail with.
     pub fn new(graph: Graph, request: Request, region: Rect) -> Outcome<Self> {
-        let planned = Planned::new(&graph, request)?;
-        let state = State::new(graph, planned, region)?;
-        Ok(Self { state: Mutex::new(state), message: Mutex::default() })
+        let lowered = Lowered::new(graph, request, region)?;
+        let shown = Shown::new(lowered.program());
+        Ok(Self { state: Mutex::new(State { lowered, shown }), message: Mutex::default() })
     }
 }
 
 #[derive(Debug)]
 struct State {
-    /// The graph that the plan was last made from, to go back to when an update fails.
-    graph: Graph,
-    planned: Planned,
-    region: Rect,
-    program: Program,
+    lowered: Lowered,
     shown: Shown,
 }
 
 impl State {
-    fn new(graph: Graph, planned: Planned, region: Rect) -> Outcome<Self> {
-        let program = Program::lower_as(planned.plan(), region, graph.precision())?;
-        let shown = Shown::new(&program);
-        Ok(Self { graph, planned, region, program, shown })
-    }
-
     fn update(&mut self, graph: Graph, request: Option<Request>) -> Outcome<IsophoteChange> {
-        let before = *self.planned.request();
-        if let Some(request) = request {
-            // What is known of other frames is the plan's own.
-            let Request { frames, max_motion, .. } = before;
-            self.planned.set_request(Request { frames, max_motion, ..request })?;
+        let change = self.lowered.update(graph, request)?;
+        if change == ISOPHOTE_CHANGE_STRUCTURE {
+            self.shown = Shown::new(self.lowered.program());
         }
-        let change = match self.planned.update(&graph) {
-            Ok(change) => change,
-            Err(e) => {
-                self.planned = Planned::new(&self.graph, before)?;
-                return Err(e.into());
-            }
-        };
-        let is_as_precise = graph.precision() == self.graph.precision();
-        if change == Change::Uniforms && is_as_precise && self.program.repack(self.planned.plan()) {
-            self.graph = graph;
-            return Ok(ISOPHOTE_CHANGE_UNIFORMS);
-        }
-        match Program::lower_as(self.planned.plan(), self.region, graph.precision()) {
-            Ok(program) => {
-                self.shown = Shown::new(&program);
-                self.program = program;
-                self.graph = graph;
-                Ok(ISOPHOTE_CHANGE_STRUCTURE)
-            }
-            Err(e) => {
-                self.planned = Planned::new(&self.graph, before)?;
-                Err(e.into())
-            }
-        }
+        Ok(change)
     }
 }
 
@@ -259,8 +224,9 @@ pub(super) unsafe extern "C" fn shader(
 ) -> IsophoteStatus {
     guard::on::<PlanObject>(plan, |object| {
         let state = lock(&object.state);
-        let Some(dispatch) = state.program.dispatches.get(pass as usize) else {
-            let count = state.program.dispatches.len();
+        let dispatches = &state.lowered.program().dispatches;
+        let Some(dispatch) = dispatches.get(pass as usize) else {
+            let count = dispatches.len();
             let message = format!("the plan has {count} passes, counted from 0, and no pass {pass}");
             return Err(Failure::new(ISOPHOTE_ERROR_UNKNOWN, message));
         };

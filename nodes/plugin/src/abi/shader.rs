@@ -86,17 +86,8 @@ impl Bound {
 }
 
 fn translate(kernel: &Shader, language: IsophoteLanguage) -> Outcome<Made> {
-    let fail = |what: &str| {
-        Failure::new(ISOPHOTE_ERROR_UNSUPPORTED, format!("the shader of kernel '{}': {what}", kernel.name))
-    };
-    let module = naga::front::wgsl::parse_str(&kernel.source).map_err(|e| fail(&e.to_string()))?;
-    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
-        .validate(&module)
-        .map_err(|e| fail(&e.to_string()))?;
-    let bindings = bindings(&module);
-    // Other languages have no constants left open: those of WGSL take their defaults.
-    let (module, info) =
-        process_overrides(&module, &info, None, &Default::default()).map_err(|e| fail(&e.to_string()))?;
+    let fail = |what: &str| refused(kernel, what);
+    let (module, info, bindings) = parsed(kernel, true)?;
     let entry = module.entry_points.first().ok_or_else(|| fail("it has no entry point"))?;
     let mut made = Made { code: Vec::new(), size: 0, entry_point: entry.name.clone(), bindings };
     renumber(&mut made.bindings, language);
@@ -121,6 +112,38 @@ fn translate(kernel: &Shader, language: IsophoteLanguage) -> Outcome<Made> {
     bytes.resize(bytes.len() / 4 * 4 + 4, 0);
     made.code = bytes.chunks_exact(4).map(|b| u32::from_ne_bytes([b[0], b[1], b[2], b[3]])).collect();
     Ok(made)
+}
+
+fn refused(kernel: &Shader, why: &str) -> Failure {
+    Failure::new(ISOPHOTE_ERROR_UNSUPPORTED, format!("the shader of kernel '{}': {why}", kernel.name))
+}
+
+/// The kernel's module and bindings. Other languages have no constants left open, so that it is decided here whether
+/// windows of neighbours are held in workgroup memory.
+fn parsed(kernel: &Shader, shared_windows: bool) -> Outcome<(Module, ModuleInfo, Vec<Bound>)> {
+    let fail = |what: &str| refused(kernel, what);
+    let module = naga::front::wgsl::parse_str(&kernel.source).map_err(|e| fail(&e.to_string()))?;
+    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .map_err(|e| fail(&e.to_string()))?;
+    let bindings = bindings(&module);
+    // Kernels without windows do not declare the constant.
+    let declared = module.overrides.iter().filter_map(|(_, constant)| constant.name.as_ref());
+    let windows = declared.filter(|name| *name == "shared_windows");
+    let constants = windows.map(|name| (name.clone(), f64::from(u8::from(shared_windows)))).collect();
+    let (module, info) =
+        process_overrides(&module, &info, None, &constants).map_err(|e| fail(&e.to_string()))?;
+    Ok((module.into_owned(), info.into_owned(), bindings))
+}
+
+/// SPIR-V 1.0 of a kernel in words, entry point `main`; its bindings are the kernel's. It holds windows of neighbours in
+/// workgroup memory where it can and `shared_windows` says so.
+///
+/// # Errors
+/// Unsupported when SPIR-V cannot express the kernel.
+pub fn spirv_words(kernel: &Shader, shared_windows: bool) -> Outcome<Vec<u32>> {
+    let (module, info, _) = parsed(kernel, shared_windows)?;
+    spirv(&module, &info).map_err(|e| refused(kernel, &e))
 }
 
 /// The kernel's bindings in the order of their numbers.
