@@ -144,7 +144,8 @@ pub struct IsophoteVulkanSemaphore {
 /// commands use (images for intermediate results, uniforms, bindings) is kept until the timeline has the value that the
 /// host gave with them. An effect has one set of intermediate images: its recordings are executed one after another, in the
 /// order of a queue or behind semaphores, and any number of them, up to `ISOPHOTE_VULKAN_MOST_IN_FLIGHT`, may be in flight.
-/// Frames after the first few make no Vulkan objects and take no memory of the device.
+/// Frames after the first few make no Vulkan objects and take no memory of the device. All effects of an object share its
+/// timeline; a host with several queues makes an object for each.
 ///
 /// After `ISOPHOTE_ERROR_DEVICE` that says that the device is lost, destroy effects and object, and make them on another.
 /// After any other error go on: nothing was recorded or submitted.
