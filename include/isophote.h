@@ -1023,7 +1023,8 @@ typedef void (ISOPHOTE_ABI *IsophoteVulkanFunction)(void);
 // `vkGetInstanceProcAddr`, with the instance as a plain pointer.
 typedef IsophoteVulkanFunction (ISOPHOTE_ABI *IsophoteVulkanLoader)(void *instance, const char *name);
 
-// A Vulkan device of the host's. Handles are cast to plain pointers and numbers, so that this header needs no other.
+// A Vulkan device of the host's, which outlives the object made on it, as all does that is named here. Handles are cast to
+// plain pointers and numbers, so that this header needs no other.
 typedef struct IsophoteVulkanHost {
   // Finds all functions of Vulkan.
   IsophoteVulkanLoader get_instance_proc_addr;
@@ -1045,8 +1046,7 @@ typedef struct IsophoteVulkanHost {
   uint32_t extension_count;
   // Their names; may be null when there are none.
   const char *const *extensions;
-  // `VkSemaphore` of the timeline type, by which the library knows without waiting what has been executed. It outlives
-  // the object made with it.
+  // `VkSemaphore` of the timeline type, by which the library knows without waiting what has been executed.
   uint64_t timeline;
   // `VkPipelineCache` of the host's, which shaders are compiled with; 0 for none. Vulkan itself guards it, or the host
   // makes no effects while it uses it elsewhere.
@@ -1161,8 +1161,8 @@ typedef struct IsophoteVulkanApi {
   IsophoteStatus (ISOPHOTE_ABI *effect_error)(struct IsophoteVulkanEffect effect, struct IsophoteText *text);
   // [object-thread, needs-output] Takes over the parameters of the graph and the request (null for the one before) for
   // the next recording, also while commands are in flight. With `ISOPHOTE_CHANGE_UNIFORMS` no Vulkan object was made;
-  // with `ISOPHOTE_CHANGE_STRUCTURE`, which another size always is, intermediate images are others. After a failure the
-  // effect is as it was.
+  // with `ISOPHOTE_CHANGE_STRUCTURE`, which another size always is, intermediate images are others, and shaders that are
+  // new were compiled. After a failure the effect is as it was.
   IsophoteStatus (ISOPHOTE_ABI *effect_update)(struct IsophoteVulkanEffect effect,
                                   struct IsophoteGraph graph,
                                   const struct IsophoteRequest *request,

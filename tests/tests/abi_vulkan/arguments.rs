@@ -34,85 +34,71 @@ fn a_host_is_told_what_its_device_needs() {
     );
 }
 
+/// Calls of `create` that are refused: with which status, and how the message begins.
+fn assert_refused(table: &IsophoteVulkanApi, cases: &[(IsophoteVulkanHost, IsophoteStatus, &str)]) {
+    for (shown, expected, words) in cases {
+        let (status, message, vulkan) = create(table, shown);
+        assert!(message.starts_with(words), "{message} does not begin with {words}");
+        assert_eq!((status, vulkan.id), (*expected, 0), "{message}");
+    }
+}
+
 #[test]
 fn what_a_device_lacks_is_named() {
+    use IsophoteVulkanHost as Shown;
     let Some(host) = Host::new("what_a_device_lacks_is_named") else { return };
     let (_library, table) = load();
-    let shown = host.shown();
-    let argument = ISOPHOTE_ERROR_INVALID_ARGUMENT;
+    let own = host.shown();
     let names: [*const c_char; 1] = [c"VK_KHR_swapchain".as_ptr()];
-    let cases = [
+    let old =
+        Shown { api_version: vk::API_VERSION_1_1, extension_count: 1, extensions: names.as_ptr(), ..own };
+    let lacking = [
         (
-            IsophoteVulkanHost { get_instance_proc_addr: None, ..shown },
-            argument,
-            "get_instance_proc_addr is null",
-        ),
-        (IsophoteVulkanHost { instance: null_mut(), ..shown }, argument, "the instance is null"),
-        (
-            IsophoteVulkanHost { physical_device: null_mut(), ..shown },
-            argument,
-            "the physical device is null",
-        ),
-        (IsophoteVulkanHost { device: null_mut(), ..shown }, argument, "the device is null"),
-        (IsophoteVulkanHost { timeline: 0, ..shown }, argument, "the timeline is null"),
-        (
-            IsophoteVulkanHost { features: 0, ..shown },
-            ISOPHOTE_ERROR_UNSUPPORTED,
+            Shown { features: 0, ..own },
             "the device was created without the feature shaderStorageImageExtendedFormats and the feature \
              timelineSemaphore; enable what `needs` names",
         ),
         (
-            IsophoteVulkanHost {
-                api_version: vk::API_VERSION_1_1,
-                extension_count: 1,
-                extensions: names.as_ptr(),
-                ..shown
-            },
-            ISOPHOTE_ERROR_UNSUPPORTED,
+            old,
             "the device was created without the extension VK_KHR_timeline_semaphore; enable what `needs` names",
         ),
-        (
-            IsophoteVulkanHost { api_version: 0, ..shown },
-            ISOPHOTE_ERROR_UNSUPPORTED,
-            "Vulkan 0.0 is too old; ",
-        ),
-        (
-            IsophoteVulkanHost {
-                api_version: vk::API_VERSION_1_1,
-                extension_count: 1,
-                extensions: null(),
-                ..shown
-            },
-            argument,
-            "the list of extensions is null",
-        ),
-        (
-            IsophoteVulkanHost { queue_family: 99, ..shown },
-            ISOPHOTE_ERROR_UNSUPPORTED,
-            "the graphics device '",
-        ),
+        (Shown { api_version: 0, ..own }, "Vulkan 0.0 is too old; "),
+        (Shown { queue_family: 99, ..own }, "the graphics device '"),
     ];
-    for (shown, expected, words) in cases {
-        let (status, message, vulkan) = create(table, &shown);
-        assert!(message.starts_with(words), "{message} does not begin with {words}");
-        assert_eq!((status, vulkan.id), (expected, 0), "{message}");
+    assert_refused(table, &lacking.map(|(shown, words)| (shown, ISOPHOTE_ERROR_UNSUPPORTED, words)));
+    let nulls = [
+        (Shown { get_instance_proc_addr: None, ..own }, "get_instance_proc_addr is null"),
+        (Shown { instance: null_mut(), ..own }, "the instance is null"),
+        (Shown { physical_device: null_mut(), ..own }, "the physical device is null"),
+        (Shown { device: null_mut(), ..own }, "the device is null"),
+        (Shown { timeline: 0, ..own }, "the timeline is null"),
+        (Shown { extensions: null(), ..old }, "the list of extensions is null"),
+    ];
+    assert_refused(table, &nulls.map(|(shown, words)| (shown, ISOPHOTE_ERROR_INVALID_ARGUMENT, words)));
+    // SAFETY: null is what must not matter.
+    unsafe {
+        assert_eq!((table.create)(null(), null_mut(), null_mut()), ISOPHOTE_ERROR_INVALID_ARGUMENT);
+        assert_eq!((table.create)(&raw const own, null_mut(), null_mut()), ISOPHOTE_ERROR_INVALID_ARGUMENT);
     }
-    for name in [
+}
+
+#[test]
+fn functions_that_a_loader_lacks_are_named() {
+    let Some(host) = Host::new("functions_that_a_loader_lacks_are_named") else { return };
+    let (_library, table) = load();
+    let lacking = [
         "vkGetDeviceProcAddr",
         "vkGetPhysicalDeviceProperties",
         "vkCmdDispatch",
         "vkGetSemaphoreCounterValue",
-    ] {
+    ];
+    for name in lacking {
         faults::hide(name);
-        let (status, message, _) = create(table, &shown);
-        assert_eq!((status, message), (argument, format!("get_instance_proc_addr finds no {name}")));
+        let words = format!("get_instance_proc_addr finds no {name}");
+        assert_refused(table, &[(host.shown(), ISOPHOTE_ERROR_INVALID_ARGUMENT, &words)]);
     }
     faults::hide("");
-    // SAFETY: null is what must not matter.
-    unsafe {
-        assert_eq!((table.create)(null(), null_mut(), null_mut()), argument);
-        assert_eq!((table.create)(&raw const shown, null_mut(), null_mut()), argument);
-    }
+    assert_eq!(create(table, &host.shown()).0, ISOPHOTE_OK);
 }
 
 #[test]
@@ -167,99 +153,98 @@ fn wrong_handles_and_nulls_are_statuses() {
     assert_eq!(studio.update(effect, None), (ISOPHOTE_OK, ISOPHOTE_CHANGE_UNIFORMS));
 }
 
-#[test]
-fn images_that_do_not_do_are_refused_by_name() {
-    let Some(host) = Host::new("images_that_do_not_do_are_refused_by_name") else { return };
+type Image = IsophoteVulkanImage;
+
+/// Recordings of a colour and a result that are refused: with which status, and how the message begins.
+fn assert_recordings_refused(
+    test: &str,
+    cases: impl FnOnce(Image, Image) -> Vec<(Vec<Image>, IsophoteStatus, &'static str)>,
+) {
+    let Some(host) = Host::new(test) else { return };
     let studio = Studio::new(&host, c"gaussian");
     let effect = studio.effect(SIZE);
     let [color, output] = images(&host);
-    let (argument, input) = (ISOPHOTE_ERROR_INVALID_ARGUMENT, ISOPHOTE_ERROR_INPUT);
-    let none = vk::ImageLayout::UNDEFINED.as_raw() as u32;
-    type Image = IsophoteVulkanImage;
-    let of = |format: vk::Format, image: Image| Image { format: format.as_raw() as u32, ..image };
-    let named =
-        |name: &'static CStr, format, image: Image| Image { name: name.as_ptr(), ..of(format, image) };
-    let other = |image: Image| Image { image: 0x77, ..image };
-    let cases: &[(&[Image], IsophoteStatus, &str)] = &[
-        (&[color], input, "the image 'output' is missing"),
-        (&[output], input, "the image 'color' is missing"),
-        (&[color, color, output], argument, "the image 'color' is given twice, or is that of 'color'"),
-        (
-            &[color, Image { name: output.name, ..color }],
-            argument,
-            "the image 'output' is given twice, or is that of 'color'",
-        ),
-        (&[Image { name: null(), ..color }, output], argument, "the input's name is null"),
-        (&[Image { name: c"colour".as_ptr(), ..color }, output], ISOPHOTE_ERROR_UNKNOWN, ""),
-        (&[Image { image: 0, ..color }, output], argument, "the image 'color' or its view is null"),
-        (&[Image { view: 0, ..color }, output], argument, "the image 'color' or its view is null"),
-        (
-            &[Image { layout_before: none, ..color }, output],
-            input,
-            "the image 'color' is in the undefined layout, in which it shows nothing",
-        ),
-        (
-            &[Image { layout_after: none, ..color }, output],
-            argument,
-            "the image 'color' cannot be left in UNDEFINED",
-        ),
-        (
-            &[Image { usage: 0, ..color }, output],
-            input,
-            "the image 'color' was created without VK_IMAGE_USAGE_SAMPLED_BIT",
-        ),
-        (
-            &[Image { width: 32, ..color }, output],
-            ISOPHOTE_ERROR_GEOMETRY,
-            "the image 'color' has 32x21 texels; 33x21 are needed",
-        ),
-        (
-            &[color, Image { height: 20, ..output }],
-            ISOPHOTE_ERROR_GEOMETRY,
-            "the image 'output' has 33x20 texels; 33x21 are needed",
-        ),
-        (
-            &[of(vk::Format::R8G8B8A8_UINT, color), output],
-            input,
-            "the image 'color' has the format R8G8B8A8_UINT, which is not read as floats",
-        ),
-        (&[Image { format: u32::MAX, ..color }, output], input, "the image 'color' has the format "),
-        (
-            &[of(vk::Format::R32G32_SFLOAT, color), output],
-            input,
-            "the image 'color' has 2 channels; 3 are needed",
-        ),
-        (
-            &[color, output, named(c"normal", vk::Format::R8G8B8A8_UNORM, other(color))],
-            input,
-            "the image 'normal' must have signed or floating samples",
-        ),
-        (
-            &[color, output, named(c"depth", vk::Format::R16_UNORM, other(color))],
-            input,
-            "the image 'depth' must have floating samples",
-        ),
-        (
-            &[color, of(vk::Format::R8G8B8A8_UINT, output)],
-            input,
-            "the image 'output' has the format R8G8B8A8_UINT, which holds no colours",
-        ),
-        (
-            &[color, Image { usage: vk::ImageUsageFlags::STORAGE.as_raw(), ..output }],
-            input,
-            "the image 'output' was created without VK_IMAGE_USAGE_TRANSFER_DST_BIT",
-        ),
-    ];
     let commands = host.commands();
-    for (images, expected, words) in cases {
-        let status = studio.record(effect, commands, images, 2);
+    for (images, expected, words) in cases(color, output) {
+        let status = studio.record(effect, commands, &images, 2);
         let message = studio.error(effect);
         assert!(message.starts_with(words), "{message} does not begin with {words}");
-        assert_eq!(status, *expected, "{message}");
+        assert_eq!(status, expected, "{message}");
     }
-    assert_eq!(studio.record(effect, commands, &[color, output], 1), argument);
-    assert_eq!(studio.error(effect), "the timeline stands at 1 already; the value must be above, not 1");
     // Nothing was recorded, and the effect goes on.
     assert_eq!(studio.record(effect, commands, &[color, output], 2), ISOPHOTE_OK);
     host.execute(commands, 2);
+    assert_eq!(studio.submit(effect, &[color, output], 2), ISOPHOTE_ERROR_INVALID_ARGUMENT);
+    let late = "the timeline stands at 2 already; the value must be above, not 2";
+    assert_eq!(studio.error(effect), late);
+}
+
+#[test]
+fn images_that_are_missing_or_doubled_are_refused_by_name() {
+    let test = "images_that_are_missing_or_doubled_are_refused_by_name";
+    assert_recordings_refused(test, |color, output| {
+        let (argument, input) = (ISOPHOTE_ERROR_INVALID_ARGUMENT, ISOPHOTE_ERROR_INPUT);
+        let same = Image { name: output.name, ..color };
+        vec![
+            (vec![color], input, "the image 'output' is missing"),
+            (vec![output], input, "the image 'color' is missing"),
+            (vec![color, color, output], argument, "the image 'color' is given twice"),
+            (vec![color, same], argument, "the images 'color' and 'output' are the same"),
+            (vec![color; 17], argument, "17 images are more than any graph has; give at most 16"),
+            (vec![Image { name: null(), ..color }, output], argument, "the input's name is null"),
+            (vec![Image { name: c"colour".as_ptr(), ..color }, output], ISOPHOTE_ERROR_UNKNOWN, ""),
+            (vec![Image { image: 0, ..color }, output], argument, "the image 'color' or its view is null"),
+            (vec![Image { view: 0, ..color }, output], argument, "the image 'color' or its view is null"),
+        ]
+    });
+}
+
+#[test]
+fn images_that_cannot_be_used_are_refused_by_name() {
+    let test = "images_that_cannot_be_used_are_refused_by_name";
+    assert_recordings_refused(test, |color, output| {
+        let (input, geometry) = (ISOPHOTE_ERROR_INPUT, ISOPHOTE_ERROR_GEOMETRY);
+        let layout = vk::ImageLayout::UNDEFINED.as_raw().cast_unsigned();
+        let no_layout = "the image 'color' is in the undefined layout, in which it shows nothing";
+        let no_sampling = "the image 'color' was created without VK_IMAGE_USAGE_SAMPLED_BIT";
+        let no_blits = "the image 'output' was created without VK_IMAGE_USAGE_TRANSFER_DST_BIT";
+        let (narrow, low) = (Image { width: 32, ..color }, Image { height: 20, ..output });
+        let kept = Image { layout_after: layout, ..color };
+        let stored = Image { usage: vk::ImageUsageFlags::STORAGE.as_raw(), ..output };
+        vec![
+            (vec![Image { layout_before: layout, ..color }, output], input, no_layout),
+            (vec![Image { usage: 0, ..color }, output], input, no_sampling),
+            (vec![color, stored], input, no_blits),
+            (vec![narrow, output], geometry, "the image 'color' has 32x21 texels; 33x21 are needed"),
+            (vec![color, low], geometry, "the image 'output' has 33x20 texels; 33x21 are needed"),
+            (
+                vec![kept, output],
+                ISOPHOTE_ERROR_INVALID_ARGUMENT,
+                "the image 'color' cannot be left in UNDEFINED",
+            ),
+        ]
+    });
+}
+
+#[test]
+fn formats_that_do_not_do_are_refused_by_name() {
+    use vk::Format as F;
+    assert_recordings_refused("formats_that_do_not_do_are_refused_by_name", |color, output| {
+        let of = |format: F, image: Image| Image { format: format.as_raw().cast_unsigned(), ..image };
+        // Another image, which is not looked at before its format is.
+        let guide =
+            |name: &'static CStr, format| Image { name: name.as_ptr(), image: 9, ..of(format, color) };
+        let integers = "the image 'color' has the format R8G8B8A8_UINT, which is not read as floats";
+        let colourless = "the image 'output' has the format R8G8B8A8_UINT, which holds no colours";
+        let (normal, depth) = (guide(c"normal", F::R8G8B8A8_UNORM), guide(c"depth", F::R16_UNORM));
+        let cases = vec![
+            (vec![of(F::R8G8B8A8_UINT, color), output], integers),
+            (vec![Image { format: u32::MAX, ..color }, output], "the image 'color' has the format "),
+            (vec![of(F::R32G32_SFLOAT, color), output], "the image 'color' has 2 channels; 3 are needed"),
+            (vec![color, output, normal], "the image 'normal' must have signed or floating samples"),
+            (vec![color, output, depth], "the image 'depth' must have floating samples"),
+            (vec![color, of(F::R8G8B8A8_UINT, output)], colourless),
+        ];
+        cases.into_iter().map(|(images, words)| (images, ISOPHOTE_ERROR_INPUT, words)).collect()
+    });
 }
