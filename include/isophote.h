@@ -1046,7 +1046,8 @@ typedef void (ISOPHOTE_ABI *IsophoteVulkanFunction)(void);
 // `vkGetInstanceProcAddr`, with the instance as a plain pointer.
 typedef IsophoteVulkanFunction (ISOPHOTE_ABI *IsophoteVulkanLoader)(void *instance, const char *name);
 
-// A Vulkan device of the host's. Handles are cast to plain pointers and numbers, so that this header needs no other.
+// A Vulkan device of the host's, which outlives the object made on it, as all does that is named here. Handles are cast to
+// plain pointers and numbers, so that this header needs no other.
 typedef struct IsophoteVulkanHost {
   // Finds all functions of Vulkan.
   IsophoteVulkanLoader get_instance_proc_addr;
@@ -1068,8 +1069,7 @@ typedef struct IsophoteVulkanHost {
   uint32_t extension_count;
   // Their names; may be null when there are none.
   const char *const *extensions;
-  // `VkSemaphore` of the timeline type, by which the library knows without waiting what has been executed. It outlives
-  // the object made with it.
+  // `VkSemaphore` of the timeline type, by which the library knows without waiting what has been executed.
   uint64_t timeline;
   // `VkPipelineCache` of the host's, which shaders are compiled with; 0 for none. Vulkan itself guards it, or the host
   // makes no effects while it uses it elsewhere.
@@ -1149,7 +1149,8 @@ typedef struct IsophoteVulkanSemaphore {
 // commands use (images for intermediate results, uniforms, bindings) is kept until the timeline has the value that the
 // host gave with them. An effect has one set of intermediate images: its recordings are executed one after another, in the
 // order of a queue or behind semaphores, and any number of them, up to `ISOPHOTE_VULKAN_MOST_IN_FLIGHT`, may be in flight.
-// Frames after the first few make no Vulkan objects and take no memory of the device.
+// Frames after the first few make no Vulkan objects and take no memory of the device. All effects of an object share its
+// timeline; a host with several queues makes an object for each.
 //
 // After `ISOPHOTE_ERROR_DEVICE` that says that the device is lost, destroy effects and object, and make them on another.
 // After any other error go on: nothing was recorded or submitted.
@@ -1183,8 +1184,8 @@ typedef struct IsophoteVulkanApi {
   IsophoteStatus (ISOPHOTE_ABI *effect_error)(struct IsophoteVulkanEffect effect, struct IsophoteText *text);
   // [object-thread, needs-output] Takes over the parameters of the graph and the request (null for the one before) for
   // the next recording, also while commands are in flight. With `ISOPHOTE_CHANGE_UNIFORMS` no Vulkan object was made;
-  // with `ISOPHOTE_CHANGE_STRUCTURE`, which another size always is, intermediate images are others. After a failure the
-  // effect is as it was.
+  // with `ISOPHOTE_CHANGE_STRUCTURE`, which another size always is, intermediate images are others, and shaders that are
+  // new were compiled. After a failure the effect is as it was.
   IsophoteStatus (ISOPHOTE_ABI *effect_update)(struct IsophoteVulkanEffect effect,
                                   struct IsophoteGraph graph,
                                   const struct IsophoteRequest *request,

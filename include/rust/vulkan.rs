@@ -47,7 +47,8 @@ pub type IsophoteVulkanFunction = Option<unsafe extern "system" fn()>;
 pub type IsophoteVulkanLoader =
     Option<unsafe extern "system" fn(instance: *mut c_void, name: *const c_char) -> IsophoteVulkanFunction>;
 
-/// A Vulkan device of the host's. Handles are cast to plain pointers and numbers, so that this header needs no other.
+/// A Vulkan device of the host's, which outlives the object made on it, as all does that is named here. Handles are cast to
+/// plain pointers and numbers, so that this header needs no other.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct IsophoteVulkanHost {
@@ -71,8 +72,7 @@ pub struct IsophoteVulkanHost {
     pub extension_count: u32,
     /// Their names; may be null when there are none.
     pub extensions: *const *const c_char,
-    /// `VkSemaphore` of the timeline type, by which the library knows without waiting what has been executed. It outlives
-    /// the object made with it.
+    /// `VkSemaphore` of the timeline type, by which the library knows without waiting what has been executed.
     pub timeline: u64,
     /// `VkPipelineCache` of the host's, which shaders are compiled with; 0 for none. Vulkan itself guards it, or the host
     /// makes no effects while it uses it elsewhere.
@@ -144,7 +144,8 @@ pub struct IsophoteVulkanSemaphore {
 /// commands use (images for intermediate results, uniforms, bindings) is kept until the timeline has the value that the
 /// host gave with them. An effect has one set of intermediate images: its recordings are executed one after another, in the
 /// order of a queue or behind semaphores, and any number of them, up to `ISOPHOTE_VULKAN_MOST_IN_FLIGHT`, may be in flight.
-/// Frames after the first few make no Vulkan objects and take no memory of the device.
+/// Frames after the first few make no Vulkan objects and take no memory of the device. All effects of an object share its
+/// timeline; a host with several queues makes an object for each.
 ///
 /// After `ISOPHOTE_ERROR_DEVICE` that says that the device is lost, destroy effects and object, and make them on another.
 /// After any other error go on: nothing was recorded or submitted.
@@ -190,8 +191,8 @@ pub struct IsophoteVulkanApi {
         unsafe extern "C" fn(effect: IsophoteVulkanEffect, text: *mut IsophoteText) -> IsophoteStatus,
     /// [object-thread, needs-output] Takes over the parameters of the graph and the request (null for the one before) for
     /// the next recording, also while commands are in flight. With `ISOPHOTE_CHANGE_UNIFORMS` no Vulkan object was made;
-    /// with `ISOPHOTE_CHANGE_STRUCTURE`, which another size always is, intermediate images are others. After a failure the
-    /// effect is as it was.
+    /// with `ISOPHOTE_CHANGE_STRUCTURE`, which another size always is, intermediate images are others, and shaders that are
+    /// new were compiled. After a failure the effect is as it was.
     pub effect_update: unsafe extern "C" fn(
         effect: IsophoteVulkanEffect,
         graph: IsophoteGraph,

@@ -97,13 +97,20 @@ static Filter open_filter(Host *host, const char *path)
 {
     char message[512];
     IsophoteText error = {message, sizeof message, 0};
+    const uint32_t enabled = ISOPHOTE_VULKAN_STORAGE_IMAGE_EXTENDED_FORMATS | ISOPHOTE_VULKAN_TIMELINE_SEMAPHORE;
     IsophoteVulkanHost own = {0};
+    IsophoteVulkanNeeds needs;
     Filter filter = {0};
 
     filter.api = load(path, &filter.library);
     filter.vulkans = filter.api->extension("isophote.vulkan/1");
     if (filter.vulkans == NULL)
         fail(path, "it has no extension isophote.vulkan/1");
+    /* An engine asks before it makes its device; this one was made by open_gpu. */
+    if (filter.vulkans->needs(VK_API_VERSION_1_2, &error, &needs) != ISOPHOTE_OK)
+        fail("needs", message);
+    if ((needs.features & ~enabled) != 0 || needs.extension_count != 0)
+        fail("needs", "this device was made without all of it");
     own.get_instance_proc_addr = (IsophoteVulkanLoader)vkGetInstanceProcAddr;
     own.instance = host->gpu.instance;
     own.physical_device = host->gpu.adapter;
@@ -111,7 +118,7 @@ static Filter open_filter(Host *host, const char *path)
     own.queue = host->gpu.queue;
     own.api_version = VK_API_VERSION_1_2;
     own.queue_family = host->gpu.family;
-    own.features = ISOPHOTE_VULKAN_STORAGE_IMAGE_EXTENDED_FORMATS | ISOPHOTE_VULKAN_TIMELINE_SEMAPHORE;
+    own.features = enabled;
     own.timeline = (uint64_t)host->done;
     own.user = &host->queue;
     own.lock_queue = lock_queue;

@@ -127,7 +127,7 @@ static VkShaderModule read_shaders(const Gpu *gpu, const char *path)
     VkShaderModuleCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
     VkShaderModule module;
     FILE *file = fopen(path, "rb");
-    long size;
+    long size = 0;
     uint32_t *words;
 
     if (file == NULL || fseek(file, 0, SEEK_END) != 0 || (size = ftell(file)) <= 0 || size % 4 != 0)

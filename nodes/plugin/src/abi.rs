@@ -2,7 +2,8 @@
 //!
 //! Every function goes through [`guard`], which catches panics, turns every [`failure`] into a status and
 //! keeps messages. Hosts hold numbers, not pointers ([`handles`]), so that a wrong one is an error. Raw
-//! pointers are touched in [`args`], [`images`], [`threads`] and nowhere else if it can be helped.
+//! pointers are touched in [`args`], [`images`], [`threads`] and nowhere else if it can be helped; Vulkan is called in
+//! `vulkan` alone.
 
 pub mod args;
 pub mod catalogue;

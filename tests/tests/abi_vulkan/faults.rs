@@ -7,15 +7,19 @@ use std::collections::BTreeMap;
 use std::ffi::{CStr, c_char, c_void};
 use std::mem::transmute;
 
+/// A function of any type.
+type Plain = unsafe extern "system" fn();
+
 thread_local! {
     static LOADER: Cell<Option<vk::PFN_vkGetInstanceProcAddr>> = const { Cell::new(None) };
     static DEVICE_LOADER: Cell<Option<vk::PFN_vkGetDeviceProcAddr>> = const { Cell::new(None) };
-    static REAL: RefCell<BTreeMap<&'static str, unsafe extern "system" fn()>> = const { RefCell::new(BTreeMap::new()) };
+    static REAL: RefCell<BTreeMap<&'static str, Plain>> = const { RefCell::new(BTreeMap::new()) };
     static MISSING: Cell<&'static str> = const { Cell::new("") };
     static MADE: Cell<u32> = const { Cell::new(0) };
     static MAKING_FAILS_AFTER: Cell<Option<u32>> = const { Cell::new(None) };
     static IS_LOST: Cell<bool> = const { Cell::new(false) };
     static SUBMISSIONS: Cell<u32> = const { Cell::new(0) };
+    static CACHE: Cell<u64> = const { Cell::new(0) };
 }
 
 /// Vulkan objects that the library has made through this thread.
@@ -26,6 +30,11 @@ pub fn made() -> u32 {
 /// Submissions that the library has made through this thread.
 pub fn submissions() -> u32 {
     SUBMISSIONS.get()
+}
+
+/// The pipeline cache that the library gave last.
+pub fn cache() -> u64 {
+    CACHE.get()
 }
 
 /// Lets one object be refused for want of memory, after so many that are made.
@@ -63,14 +72,11 @@ fn next() -> Option<vk::Result> {
     None
 }
 
-fn real(name: &str) -> unsafe extern "system" fn() {
+fn real(name: &str) -> Plain {
     REAL.with_borrow(|known| known[name])
 }
 
-unsafe extern "system" fn instance_function(
-    instance: *mut c_void,
-    name: *const c_char,
-) -> Option<unsafe extern "system" fn()> {
+unsafe extern "system" fn instance_function(instance: *mut c_void, name: *const c_char) -> Option<Plain> {
     // SAFETY: the library hands over names with a closing zero, and the instance that the test gave it.
     let (text, function) = unsafe {
         let real = LOADER.get()?;
@@ -82,20 +88,14 @@ unsafe extern "system" fn instance_function(
     if text == "vkGetDeviceProcAddr" {
         // SAFETY: the function of this name has this type.
         unsafe {
-            DEVICE_LOADER
-                .set(Some(transmute::<unsafe extern "system" fn(), vk::PFN_vkGetDeviceProcAddr>(function)));
-            return Some(transmute::<vk::PFN_vkGetDeviceProcAddr, unsafe extern "system" fn()>(
-                device_function,
-            ));
+            DEVICE_LOADER.set(Some(transmute::<Plain, vk::PFN_vkGetDeviceProcAddr>(function)));
+            return Some(transmute::<vk::PFN_vkGetDeviceProcAddr, Plain>(device_function));
         }
     }
     Some(function)
 }
 
-unsafe extern "system" fn device_function(
-    device: vk::Device,
-    name: *const c_char,
-) -> Option<unsafe extern "system" fn()> {
+unsafe extern "system" fn device_function(device: vk::Device, name: *const c_char) -> Option<Plain> {
     // SAFETY: as above.
     let (text, function) = unsafe {
         let real = DEVICE_LOADER.get()?;
@@ -111,8 +111,8 @@ unsafe extern "system" fn device_function(
     Some(replacement.0)
 }
 
-/// A function of any type.
-struct Function(unsafe extern "system" fn());
+/// One that takes the place of the driver's.
+struct Function(Plain);
 
 /// Functions that make an object, with the types of their arguments.
 macro_rules! makers {
@@ -123,18 +123,26 @@ macro_rules! makers {
             }
             // SAFETY: the driver's function of this name has this type, and gets what the library gave.
             unsafe {
-                let real: unsafe extern "system" fn($($type),*) -> vk::Result = transmute(real($name));
+                let real = transmute::<Plain, unsafe extern "system" fn($($type),*) -> vk::Result>(real($name));
                 real($($argument),*)
             }
         })*
 
         const REPLACED: [(&str, Function); 14] = [
             // SAFETY: they are called with their own types by who asked for them by name.
-            $(($name, Function(unsafe { transmute::<unsafe extern "system" fn($($type),*) -> vk::Result, _>($function) })),)*
+            $(($name, Function(unsafe {
+                transmute::<unsafe extern "system" fn($($type),*) -> vk::Result, Plain>($function)
+            })),)*
             // SAFETY: as above.
-            ("vkQueueSubmit", Function(unsafe { transmute::<vk::PFN_vkQueueSubmit, _>(queue_submit) })),
+            ("vkCreateComputePipelines", Function(unsafe {
+                transmute::<vk::PFN_vkCreateComputePipelines, Plain>(create_pipelines)
+            })),
             // SAFETY: as above.
-            ("vkGetSemaphoreCounterValue", Function(unsafe { transmute::<vk::PFN_vkGetSemaphoreCounterValue, _>(counter) })),
+            ("vkQueueSubmit", Function(unsafe { transmute::<vk::PFN_vkQueueSubmit, Plain>(queue_submit) })),
+            // SAFETY: as above.
+            ("vkGetSemaphoreCounterValue", Function(unsafe {
+                transmute::<vk::PFN_vkGetSemaphoreCounterValue, Plain>(counter)
+            })),
         ];
     };
 }
@@ -153,7 +161,25 @@ makers! {
     "vkCreateCommandPool" create_command_pool(device: vk::Device, info: Any, with: Any, made: *mut u64)
     "vkAllocateDescriptorSets" allocate_sets(device: vk::Device, info: Any, made: *mut u64)
     "vkAllocateCommandBuffers" allocate_commands(device: vk::Device, info: Any, made: *mut u64)
-    "vkCreateComputePipelines" create_pipelines(device: vk::Device, cache: u64, count: u32, info: Any, with: Any, made: *mut u64)
+}
+
+unsafe extern "system" fn create_pipelines(
+    device: vk::Device,
+    cache: vk::PipelineCache,
+    count: u32,
+    infos: *const vk::ComputePipelineCreateInfo<'_>,
+    with: *const vk::AllocationCallbacks<'_>,
+    made: *mut vk::Pipeline,
+) -> vk::Result {
+    if let Some(refused) = next() {
+        return refused;
+    }
+    CACHE.set(vk::Handle::as_raw(cache));
+    // SAFETY: the driver's function of this name has this type, and gets what the library gave.
+    unsafe {
+        let real = transmute::<Plain, vk::PFN_vkCreateComputePipelines>(real("vkCreateComputePipelines"));
+        real(device, cache, count, infos, with, made)
+    }
 }
 
 unsafe extern "system" fn queue_submit(
@@ -167,11 +193,7 @@ unsafe extern "system" fn queue_submit(
     }
     SUBMISSIONS.set(SUBMISSIONS.get() + 1);
     // SAFETY: the driver's function of this name has this type, and gets what the library gave.
-    unsafe {
-        transmute::<unsafe extern "system" fn(), vk::PFN_vkQueueSubmit>(real("vkQueueSubmit"))(
-            queue, count, submits, fence,
-        )
-    }
+    unsafe { transmute::<Plain, vk::PFN_vkQueueSubmit>(real("vkQueueSubmit"))(queue, count, submits, fence) }
 }
 
 unsafe extern "system" fn counter(
@@ -185,8 +207,6 @@ unsafe extern "system" fn counter(
     // SAFETY: as above.
     unsafe {
         let real = real("vkGetSemaphoreCounterValue");
-        transmute::<unsafe extern "system" fn(), vk::PFN_vkGetSemaphoreCounterValue>(real)(
-            device, semaphore, value,
-        )
+        transmute::<Plain, vk::PFN_vkGetSemaphoreCounterValue>(real)(device, semaphore, value)
     }
 }

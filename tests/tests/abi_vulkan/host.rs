@@ -1,23 +1,36 @@
 //! A host with a Vulkan device, under the validation layer where it is installed.
 
 use super::faults;
+use ash::khr;
 use ash::vk::{self, Handle};
 use isophote_tests::library::contract::*;
-use std::ffi::{CStr, c_void};
+use std::ffi::{CStr, c_char, c_void};
+use std::mem::transmute;
 use std::ptr::{null, null_mut};
 use std::sync::{Mutex, PoisonError};
 
 const LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
+/// What devices before Vulkan 1.2 are created with.
+struct Extensions([*const c_char; 1]);
+
+// SAFETY: the names are constant.
+unsafe impl Sync for Extensions {}
+
+static EXTENSIONS: Extensions = Extensions([khr::timeline_semaphore::NAME.as_ptr()]);
+
 /// A device, its timeline, and what the validation layer said.
 pub struct Host {
-    _entry: ash::Entry,
+    entry: ash::Entry,
     pub instance: ash::Instance,
     pub physical: vk::PhysicalDevice,
     pub device: ash::Device,
     pub queue: vk::Queue,
     pub family: u32,
     pub timeline: vk::Semaphore,
+    version: u32,
+    /// The functions of timelines before Vulkan 1.2.
+    timelines: Option<khr::timeline_semaphore::Device>,
     pool: vk::CommandPool,
     pictures: Mutex<Vec<Picture>>,
     messenger: Option<(ash::ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
@@ -56,7 +69,12 @@ fn is_required() -> bool {
 impl Host {
     /// A host for a test, or `None`, loudly, where there is no device.
     pub fn new(test: &str) -> Option<Self> {
-        match Self::open() {
+        Self::of_version(vk::API_VERSION_1_2, test)
+    }
+
+    /// A host that uses Vulkan 1.1 or 1.2.
+    pub fn of_version(version: u32, test: &str) -> Option<Self> {
+        match Self::open(version) {
             Ok(host) => Some(host),
             Err(reason) => {
                 assert!(!is_required(), "{test} needs a Vulkan device: {reason}");
@@ -66,7 +84,7 @@ impl Host {
         }
     }
 
-    fn open() -> Result<Self, String> {
+    fn open(version: u32) -> Result<Self, String> {
         let said = Box::new(Mutex::new(Vec::new()));
         let mut messenger = vk::DebugUtilsMessengerCreateInfoEXT::default()
             .message_severity(
@@ -75,7 +93,7 @@ impl Host {
             .message_type(vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION)
             .pfn_user_callback(Some(hear))
             .user_data((&raw const *said).cast_mut().cast());
-        let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_2);
+        let application = vk::ApplicationInfo::default().api_version(version);
         let enabled = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
         let mut validation = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enabled);
         let (layers, extensions) = ([LAYER.as_ptr()], [ash::ext::debug_utils::NAME.as_ptr()]);
@@ -96,20 +114,23 @@ impl Host {
                 let made = functions.create_debug_utils_messenger(&info, None).unwrap();
                 (functions, made)
             });
-            Self::on(entry, instance, messenger, said)
+            Self::on(version, entry, instance, messenger, said)
         }
     }
 
     /// # Safety
     /// The instance must be alive.
     unsafe fn on(
+        version: u32,
         entry: ash::Entry,
         instance: ash::Instance,
         messenger: Option<(ash::ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
         said: Box<Mutex<Vec<String>>>,
     ) -> Result<Self, String> {
         let features = vk::PhysicalDeviceFeatures::default().shader_storage_image_extended_formats(true);
-        let mut timelines = vk::PhysicalDeviceVulkan12Features::default().timeline_semaphore(true);
+        let mut timelines = vk::PhysicalDeviceTimelineSemaphoreFeatures::default().timeline_semaphore(true);
+        let is_old = version < vk::API_VERSION_1_2;
+        let names = if is_old { &EXTENSIONS.0[..] } else { &[] };
         let wanted = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
         // SAFETY: as the caller promised.
         unsafe {
@@ -123,6 +144,7 @@ impl Host {
             let info = vk::DeviceCreateInfo::default()
                 .queue_create_infos(&queues)
                 .enabled_features(&features)
+                .enabled_extension_names(names)
                 .push_next(&mut timelines);
             let device = instance.create_device(physical, &info, None).map_err(|e| e.to_string())?;
             let mut kind = vk::SemaphoreTypeCreateInfo::default().semaphore_type(vk::SemaphoreType::TIMELINE);
@@ -131,15 +153,18 @@ impl Host {
             let info = vk::CommandPoolCreateInfo::default().queue_family_index(family);
             let pool = device.create_command_pool(&info, None).map_err(|e| e.to_string())?;
             let queue = device.get_device_queue(family, 0);
+            let timelines = is_old.then(|| khr::timeline_semaphore::Device::new(&instance, &device));
             let pictures = Mutex::default();
             Ok(Self {
-                _entry: entry,
+                entry: entry,
                 instance,
                 physical,
                 device,
                 queue,
                 family,
                 timeline,
+                version,
+                timelines,
                 pool,
                 pictures,
                 messenger,
@@ -148,19 +173,29 @@ impl Host {
         }
     }
 
-    /// What the library is told of the device. Its functions go by way of [`faults`].
+    /// What the library is told of the device. Its functions go by way of [`faults`], so that this thread alone may use it.
     pub fn shown(&self) -> IsophoteVulkanHost {
+        let real = self.entry.static_fn().get_instance_proc_addr;
+        IsophoteVulkanHost { get_instance_proc_addr: faults::loader(real), ..self.shown_to_all() }
+    }
+
+    /// As [`Host::shown`], without faults and for all threads.
+    pub fn shown_to_all(&self) -> IsophoteVulkanHost {
+        let real = self.entry.static_fn().get_instance_proc_addr;
         IsophoteVulkanHost {
-            get_instance_proc_addr: faults::loader(self._entry.static_fn().get_instance_proc_addr),
+            // SAFETY: the types differ in the name of the instance's pointer.
+            get_instance_proc_addr: unsafe {
+                transmute::<vk::PFN_vkGetInstanceProcAddr, IsophoteVulkanLoader>(real)
+            },
             instance: self.instance.handle().as_raw() as *mut c_void,
             physical_device: self.physical.as_raw() as *mut c_void,
             device: self.device.handle().as_raw() as *mut c_void,
             queue: self.queue.as_raw() as *mut c_void,
-            api_version: vk::API_VERSION_1_2,
+            api_version: self.version,
             queue_family: self.family,
             features: ISOPHOTE_VULKAN_STORAGE_IMAGE_EXTENDED_FORMATS | ISOPHOTE_VULKAN_TIMELINE_SEMAPHORE,
-            extension_count: 0,
-            extensions: null(),
+            extension_count: u32::from(self.timelines.is_some()),
+            extensions: EXTENSIONS.0.as_ptr(),
             timeline: self.timeline.as_raw(),
             pipeline_cache: 0,
             user: null_mut(),
@@ -205,16 +240,28 @@ impl Host {
         }
     }
 
-    /// A command buffer in the recording state.
+    /// A command buffer in the recording state, for the thread of the host.
     pub fn commands(&self) -> vk::CommandBuffer {
-        let info = vk::CommandBufferAllocateInfo::default().command_pool(self.pool).command_buffer_count(1);
+        self.commands_of(self.pool)
+    }
+
+    /// A command buffer of a pool in the recording state.
+    pub fn commands_of(&self, pool: vk::CommandPool) -> vk::CommandBuffer {
+        let info = vk::CommandBufferAllocateInfo::default().command_pool(pool).command_buffer_count(1);
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-        // SAFETY: the device is alive, and a host is used by one thread.
+        // SAFETY: the device is alive, and the pool is used by one thread.
         unsafe {
             let commands = self.device.allocate_command_buffers(&info).unwrap()[0];
             self.device.begin_command_buffer(commands, &begin).unwrap();
             commands
         }
+    }
+
+    /// A pool of command buffers for another thread; it is the caller's.
+    pub fn pool(&self) -> vk::CommandPool {
+        let info = vk::CommandPoolCreateInfo::default().queue_family_index(self.family);
+        // SAFETY: the device is alive.
+        unsafe { self.device.create_command_pool(&info, None) }.unwrap()
     }
 
     /// Executes commands, which bring the timeline to `value`, and waits for them.
@@ -238,7 +285,13 @@ impl Host {
         let (values, semaphores) = ([value], [self.timeline]);
         let info = vk::SemaphoreWaitInfo::default().semaphores(&semaphores).values(&values);
         // SAFETY: the device is alive.
-        unsafe { self.device.wait_semaphores(&info, u64::MAX) }.unwrap();
+        unsafe {
+            match &self.timelines {
+                Some(extension) => extension.wait_semaphores(&info, u64::MAX),
+                None => self.device.wait_semaphores(&info, u64::MAX),
+            }
+        }
+        .unwrap();
     }
 
     /// Brings an image from nothing to `layout`, all of it of one colour.

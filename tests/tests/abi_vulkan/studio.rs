@@ -54,12 +54,17 @@ pub fn create(
 
 impl Studio {
     pub fn new(host: &Host, node: &CStr) -> Self {
+        Self::on(&host.shown(), node)
+    }
+
+    /// On a device as it is told of.
+    pub fn on(shown: &IsophoteVulkanHost, node: &CStr) -> Self {
         let (library, table) = load();
         let mut graph = IsophoteGraph::default();
         // SAFETY: the pointers lead to what the table asks for.
         let status = unsafe { (library.api.graph_create_single)(node.as_ptr(), null_mut(), &raw mut graph) };
         assert_eq!(status, ISOPHOTE_OK);
-        let (status, message, vulkan) = create(table, &host.shown());
+        let (status, message, vulkan) = create(table, shown);
         assert_eq!(status, ISOPHOTE_OK, "{message}");
         Self { library, table, graph, vulkan }
     }
@@ -166,7 +171,11 @@ pub fn image(name: &'static CStr, picture: &Picture, layouts: [vk::ImageLayout; 
 pub fn images(host: &Host) -> [IsophoteVulkanImage; 2] {
     let color = host.picture(FLOATS, STORED, SIZE);
     host.fill(&color, [0.2, 0.4, 0.6, 1.0], READ, 1);
+    [image(c"color", &color, [READ, READ]), output(host)]
+}
+
+/// A result.
+pub fn output(host: &Host) -> IsophoteVulkanImage {
     let output = host.picture(FLOATS, STORED, SIZE);
-    let left = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
-    [image(c"color", &color, [READ, READ]), image(c"output", &output, [vk::ImageLayout::UNDEFINED, left])]
+    image(c"output", &output, [vk::ImageLayout::UNDEFINED, vk::ImageLayout::TRANSFER_SRC_OPTIMAL])
 }

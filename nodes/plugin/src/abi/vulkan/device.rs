@@ -179,6 +179,42 @@ fn found(function: vk::PFN_vkVoidFunction, name: &CStr, missing: &mut BTreeSet<C
     }
 }
 
+/// The functions of the host's instance and device.
+///
+/// # Safety
+/// As [`Device::new`].
+unsafe fn functions(host: &IsophoteVulkanHost) -> Outcome<(ash::Instance, ash::Device)> {
+    let Some(loader) = host.get_instance_proc_addr else {
+        return Err(Failure::argument("get_instance_proc_addr is null"));
+    };
+    let mut missing = BTreeSet::new();
+    // SAFETY: the caller promised the loader's function and the instance; names end with a zero.
+    let instance = unsafe {
+        let load = |name: &CStr| found(loader(host.instance, name.as_ptr()), name, &mut missing);
+        ash::Instance::load_with(load, vk::Instance::from_raw(host.instance as u64))
+    };
+    if missing.contains(c"vkGetDeviceProcAddr") {
+        return Err(Failure::argument("get_instance_proc_addr finds no vkGetDeviceProcAddr"));
+    }
+    let device = vk::Device::from_raw(host.device as u64);
+    let get = instance.fp_v1_0().get_device_proc_addr;
+    // SAFETY: as above, of the device.
+    let raw = unsafe {
+        let load = |name: &CStr| {
+            let is_extension =
+                host.api_version < vk::API_VERSION_1_2 && name == c"vkGetSemaphoreCounterValue";
+            let asked = if is_extension { c"vkGetSemaphoreCounterValueKHR" } else { name };
+            found(get(device, asked.as_ptr()), name, &mut missing)
+        };
+        ash::Device::load_with(load, device)
+    };
+    if let Some(name) = FUNCTIONS.iter().find(|name| missing.contains(**name)) {
+        let name = name.to_string_lossy();
+        return Err(Failure::argument(format!("get_instance_proc_addr finds no {name}")));
+    }
+    Ok((instance, raw))
+}
+
 /// A device of a host's, which owns it.
 pub struct Device {
     /// Its functions.
@@ -210,35 +246,10 @@ impl Device {
     /// The handles must be of living objects, and the names text with a closing zero.
     pub unsafe fn new(host: &IsophoteVulkanHost) -> Outcome<Self> {
         // SAFETY: as the caller promised.
-        unsafe { check_host(host)? };
-        let Some(loader) = host.get_instance_proc_addr else {
-            return Err(Failure::argument("get_instance_proc_addr is null"));
+        let (instance, raw) = unsafe {
+            check_host(host)?;
+            functions(host)?
         };
-        let mut missing = BTreeSet::new();
-        // SAFETY: the caller promised the loader's function and the instance; names end with a zero.
-        let instance = unsafe {
-            let load = |name: &CStr| found(loader(host.instance, name.as_ptr()), name, &mut missing);
-            ash::Instance::load_with(load, vk::Instance::from_raw(host.instance as u64))
-        };
-        if missing.contains(c"vkGetDeviceProcAddr") {
-            return Err(Failure::argument("get_instance_proc_addr finds no vkGetDeviceProcAddr"));
-        }
-        let device = vk::Device::from_raw(host.device as u64);
-        let get = instance.fp_v1_0().get_device_proc_addr;
-        // SAFETY: as above, of the device.
-        let raw = unsafe {
-            let load = |name: &CStr| {
-                let is_extension =
-                    host.api_version < vk::API_VERSION_1_2 && name == c"vkGetSemaphoreCounterValue";
-                let asked = if is_extension { c"vkGetSemaphoreCounterValueKHR" } else { name };
-                found(get(device, asked.as_ptr()), name, &mut missing)
-            };
-            ash::Device::load_with(load, device)
-        };
-        if let Some(name) = FUNCTIONS.iter().find(|name| missing.contains(**name)) {
-            let name = name.to_string_lossy();
-            return Err(Failure::argument(format!("get_instance_proc_addr finds no {name}")));
-        }
         let physical = vk::PhysicalDevice::from_raw(host.physical_device as u64);
         // SAFETY: the caller promised the physical device.
         let (properties, memory, families) = unsafe {
@@ -334,7 +345,8 @@ impl Device {
         use vk::MemoryPropertyFlags as Flags;
         let types = self.memory.memory_types_as_slice().iter().map(|kind| kind.property_flags);
         // These are for other things.
-        let is_plain = |flags: Flags| !flags.intersects(Flags::PROTECTED | Flags::LAZILY_ALLOCATED);
+        let others = Flags::PROTECTED | Flags::LAZILY_ALLOCATED | Flags::DEVICE_COHERENT_AMD;
+        let is_plain = |flags: Flags| !flags.intersects(others);
         let allowed = (0..).zip(types).filter(|(index, flags)| bits >> index & 1 == 1 && is_plain(*flags));
         // The first of equal ones, as drivers list them from the best on.
         allowed.min_by_key(|(_, flags)| !flags.contains(Flags::DEVICE_LOCAL)).map(|(index, _)| index)

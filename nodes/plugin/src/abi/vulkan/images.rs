@@ -73,6 +73,19 @@ impl Given {
         Err(Failure::geometry(message))
     }
 
+    /// Fails for a name, or a level and layer, that is given twice.
+    fn must_differ(&self, other: &Self) -> Outcome<()> {
+        let place = |g: &Self| (g.image, g.range.base_mip_level, g.range.base_array_layer);
+        let (name, other_name) = (self.name(), other.name());
+        if name == other_name {
+            return Err(Failure::argument(format!("the image '{name}' is given twice")));
+        }
+        if place(self) == place(other) {
+            return Err(Failure::argument(format!("the images '{other_name}' and '{name}' are the same")));
+        }
+        Ok(())
+    }
+
     fn must_be_used_for(&self, usage: vk::ImageUsageFlags, name: &str) -> Outcome<()> {
         if self.usage.contains(usage) {
             return Ok(());
@@ -181,20 +194,12 @@ pub unsafe fn read(images: *const IsophoteVulkanImage, count: u32) -> Outcome<Ve
             let is_output = !host.name.is_null() && CStr::from_ptr(host.name).to_bytes() == OUTPUT.as_bytes();
             given(&host, if is_output { None } else { Some(graph::input(host.name)?) })?
         };
-        if let Some(other) = read.iter().find(|other| is_same(other, &given)) {
-            let (name, other) = (given.name(), other.name());
-            let message = format!("the image '{name}' is given twice, or is that of '{other}'");
-            return Err(Failure::argument(message));
+        for other in &read {
+            given.must_differ(other)?;
         }
         read.push(given);
     }
     Ok(read)
-}
-
-/// Whether two share a name, or the same level and layer.
-fn is_same(a: &Given, b: &Given) -> bool {
-    let place = |g: &Given| (g.image, g.range.base_mip_level, g.range.base_array_layer);
-    a.name() == b.name() || place(a) == place(b)
 }
 
 fn given(host: &IsophoteVulkanImage, input: Option<GraphInput>) -> Outcome<Given> {
