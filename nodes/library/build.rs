@@ -2,6 +2,8 @@
 //! the WGSL text, the uniform block of each as a Rust struct, and the modules and the list of kernels.
 //! A shader that is broken, or that has no Rust file of the same stem, fails the build.
 
+#[path = "build/imports.rs"]
+mod imports;
 #[path = "build/shader.rs"]
 mod shader;
 #[path = "build/uniform.rs"]

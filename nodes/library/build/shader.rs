@@ -1,11 +1,11 @@
 //! One shader: its text put together, validated, and what it says about itself.
 
+use crate::imports::assembled;
 use crate::uniform::Block;
 use naga::front::wgsl::{Frontend, Options};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{ImageClass, StorageFormat, TypeInner};
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// What reflection finds in one shader.
 pub struct Shader {
@@ -25,28 +25,8 @@ impl Shader {
     /// # Errors
     /// What is wrong, as naga says it, or the rule of the house that it breaks.
     pub fn read(shaders: &Path, path: &Path) -> Result<Self, String> {
-        let mut source = String::new();
-        include(shaders, path, &mut Vec::new(), &mut source)?;
-        reflect(source)
+        reflect(assembled(shaders, path)?)
     }
-}
-
-/// Appends the text at `path`, every `#import folder/name` in it replaced by `folder/name.wgsl`; each file once.
-fn include(shaders: &Path, path: &Path, done: &mut Vec<PathBuf>, text: &mut String) -> Result<(), String> {
-    if done.iter().any(|d| d == path) {
-        return Ok(());
-    }
-    done.push(path.to_owned());
-    let own = fs::read_to_string(path).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
-    for line in own.lines() {
-        if let Some(name) = line.strip_prefix("#import ") {
-            include(shaders, &shaders.join(format!("{}.wgsl", name.trim())), done, text)?;
-        } else {
-            text.push_str(line);
-            text.push('\n');
-        }
-    }
-    Ok(())
 }
 
 fn reflect(source: String) -> Result<Shader, String> {
