@@ -19,9 +19,9 @@ pub struct Counts {
     pub workgroup: u64,
 }
 
-/// The loop that a kernel is about: of those that hold no other, the one with most vector instructions. Loops that fill
-/// workgroup memory are not meant, for they take a few turns. None without a loop.
-pub fn main_loop(code: &str) -> Option<Counts> {
+/// The loops that a kernel is about, those with most vector instructions first: all that hold no other and do not fill
+/// workgroup memory, which takes a few turns.
+pub fn main_loops(code: &str) -> Vec<Counts> {
     let lines: Vec<&str> = code.lines().map(instruction).collect();
     let loops = loops(&lines);
     let is_innermost = |body: &&RangeInclusive<usize>| {
@@ -31,8 +31,9 @@ pub fn main_loop(code: &str) -> Option<Counts> {
     };
     let fills = |body: &[&str]| body.iter().any(|line| line.starts_with("ds_write"));
     let bodies = loops.iter().filter(is_innermost).map(|body| &lines[body.clone()]);
-    let bodies = bodies.filter(|body| !fills(body)).map(counts);
-    bodies.max_by_key(|body| (body.vector, body.workgroup))
+    let mut bodies: Vec<Counts> = bodies.filter(|body| !fills(body)).map(counts).collect();
+    bodies.sort_by_key(|body| std::cmp::Reverse((body.vector, body.workgroup)));
+    bodies
 }
 
 /// A line without its bits.
@@ -83,7 +84,7 @@ fn counts(lines: &[&str]) -> Counts {
 
 #[cfg(test)]
 mod tests {
-    use super::{Counts, main_loop};
+    use super::{Counts, main_loops};
 
     /// `gaussian_blur` for Navi 21, by Mesa 22.3.6.
     const SAMPLE: &str = include_str!("../samples/gaussian_blur.txt");
@@ -91,19 +92,21 @@ mod tests {
     #[test]
     fn the_loop_over_the_taps_is_found_among_those_that_load_the_window() {
         let taps = Counts { vector: 15, scalar: 18, image: 0, uniform: 1, workgroup: 2 };
-        assert_eq!(main_loop(SAMPLE), Some(taps));
+        assert_eq!(main_loops(SAMPLE), [taps]);
     }
 
     #[test]
-    fn a_loop_that_holds_another_is_not_the_main_one() {
+    fn a_loop_that_holds_another_is_left_out_and_the_largest_is_first() {
         let code = "BB0:\n\tv_nop\n\tv_nop\n\tv_nop\nBB1:\n\tv_add_f32 v0, v1, v2 ; 0\n\timage_load v0, v1\n\
-                    \ts_cbranch_scc1 BB1 ; 1\n\tv_nop\n\ts_branch BB0\n\ts_endpgm\n";
+                    \ts_cbranch_scc1 BB1 ; 1\n\tv_nop\n\ts_branch BB0\nBB2:\n\tv_nop\n\tv_nop\n\
+                    \ts_branch BB2\n\ts_endpgm\n";
+        let last = Counts { vector: 2, scalar: 1, ..Counts::default() };
         let inner = Counts { vector: 1, scalar: 1, image: 1, ..Counts::default() };
-        assert_eq!(main_loop(code), Some(inner));
+        assert_eq!(main_loops(code), [last, inner]);
     }
 
     #[test]
     fn code_without_a_branch_back_has_no_loop() {
-        assert_eq!(main_loop("BB0:\n\ts_cbranch_scc0 BB2\n\tv_nop\nBB2:\n\ts_endpgm\n"), None);
+        assert_eq!(main_loops("BB0:\n\ts_cbranch_scc0 BB2\n\tv_nop\nBB2:\n\ts_endpgm\n"), []);
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::driver::Executable;
 use crate::error::{Error, Result};
-use crate::machine_code::{Counts, main_loop};
+use crate::machine_code::{Counts, main_loops};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -21,7 +21,7 @@ const GROWTH: f64 = 0.05;
 const FEW: u64 = 2;
 
 /// Figures of a kernel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cost {
     /// Vector registers that a wave is given.
     registers: u64,
@@ -29,6 +29,8 @@ pub struct Cost {
     live: u64,
     /// Registers that are kept in memory for lack of room.
     spilled: u64,
+    /// Bytes of memory that a wave has for arrays that fit no registers.
+    scratch: u64,
     /// Bytes of workgroup memory.
     workgroup_memory: u64,
     /// Waves of 64 invocations that a SIMD unit holds at once.
@@ -37,16 +39,19 @@ pub struct Cost {
     instructions: u64,
     /// What is in the main loop.
     body: Counts,
+    /// Vector instructions of the other loops, the largest first.
+    others: Vec<u64>,
 }
 
 /// Figures by kernel.
 pub type Costs = BTreeMap<String, Cost>;
 
-/// The columns, as `Cost::figures` has them.
-const COLUMNS: [&str; 11] = [
+/// The columns, as `Cost::figures` has them; one with the other loops follows.
+const COLUMNS: [&str; 12] = [
     "registers",
     "live",
     "spilled",
+    "scratch bytes",
     "LDS bytes",
     "waves",
     "instructions",
@@ -57,6 +62,9 @@ const COLUMNS: [&str; 11] = [
     "LDS loads",
 ];
 
+/// The last column.
+const OTHERS: &str = "other loops: vector";
+
 impl Cost {
     /// The figures of what the driver made.
     ///
@@ -65,15 +73,18 @@ impl Cost {
     pub fn of(executable: &Executable) -> Result<Self> {
         let figure =
             |name: &'static str| executable.statistics.get(name).copied().ok_or(Error::Statistic(name));
+        let mut bodies = main_loops(&executable.assembly).into_iter();
         Ok(Self {
             registers: figure("VGPRs")?,
             live: figure("Pre-Sched VGPRs")?,
             spilled: figure("Spilled VGPRs")? + figure("Spilled SGPRs")?,
+            scratch: figure("Scratch size")?,
             workgroup_memory: figure("LDS size")?,
             // The driver counts in waves of 32, compute shaders run in waves of 64.
             waves: figure("Subgroups per SIMD")? / 2,
             instructions: figure("Instructions")?,
-            body: main_loop(&executable.assembly).unwrap_or_default(),
+            body: bodies.next().unwrap_or_default(),
+            others: bodies.map(|body| body.vector).collect(),
         })
     }
 
@@ -83,6 +94,7 @@ impl Cost {
             self.registers,
             self.live,
             self.spilled,
+            self.scratch,
             self.workgroup_memory,
             self.waves,
             self.instructions,
@@ -94,11 +106,12 @@ impl Cost {
         ]
     }
 
-    fn from_figures(figures: [u64; COLUMNS.len()]) -> Self {
+    fn from_figures(figures: [u64; COLUMNS.len()], others: Vec<u64>) -> Self {
         let [
             registers,
             live,
             spilled,
+            scratch,
             workgroup_memory,
             waves,
             instructions,
@@ -109,7 +122,7 @@ impl Cost {
             workgroup,
         ] = figures;
         let body = Counts { vector, scalar, image, uniform, workgroup };
-        Self { registers, live, spilled, workgroup_memory, waves, instructions, body }
+        Self { registers, live, spilled, scratch, workgroup_memory, waves, instructions, body, others }
     }
 
     /// What is dearer than it was, as sentences without a subject.
@@ -118,13 +131,18 @@ impl Cost {
         if self.spilled > old.spilled {
             found.push(format!("spills {} registers, {} before", self.spilled, old.spilled));
         }
+        if self.scratch > old.scratch {
+            found.push(format!("needs {} bytes of scratch memory, {} before", self.scratch, old.scratch));
+        }
         if self.waves < old.waves {
             found.push(format!("leaves room for {} waves, {} before", self.waves, old.waves));
         }
         // Registers and workgroup memory cost nothing but waves.
-        for ((name, new), old) in COLUMNS.iter().zip(self.figures()).zip(old.figures()).skip(5) {
+        let figures = COLUMNS.into_iter().zip(self.figures().into_iter().zip(old.figures())).skip(6);
+        let others = self.others.iter().copied().zip(old.others.iter().copied());
+        for (name, (new, old)) in figures.chain(others.map(|pair| (OTHERS, pair))) {
             if new > old + FEW && new as f64 > old as f64 * (1.0 + GROWTH) {
-                found.push(format!("has {new} {name}, {old} before"));
+                found.push(format!("has {new} under '{name}', {old} before"));
             }
         }
         found
@@ -133,14 +151,18 @@ impl Cost {
 
 /// The table as text, for the driver named.
 pub fn text(driver: &str, costs: &Costs) -> String {
-    let mut text = format!("{MADE_BY}{driver}.\n\n| kernel | {} |\n|---|", COLUMNS.join(" | "));
+    let mut text = format!("{MADE_BY}{driver}.\n\n| kernel | {} | {OTHERS} |\n|---|", COLUMNS.join(" | "));
     text.push_str(&"--:|".repeat(COLUMNS.len()));
-    text.push('\n');
+    text.push_str("---|\n");
     for (name, cost) in costs {
-        let figures: Vec<String> = cost.figures().iter().map(u64::to_string).collect();
-        let _ = writeln!(text, "| `{name}` | {} |", figures.join(" | "));
+        let figures = joined(&cost.figures(), " | ");
+        let _ = writeln!(text, "| `{name}` | {figures} | {} |", joined(&cost.others, ", "));
     }
     text
+}
+
+fn joined(figures: &[u64], between: &str) -> String {
+    figures.iter().map(u64::to_string).collect::<Vec<_>>().join(between)
 }
 
 /// The driver that made a table, and its figures.
@@ -159,10 +181,14 @@ pub fn parse(table: &str) -> Result<(&str, Costs)> {
 }
 
 fn parse_line(line: &str) -> Option<(&str, Cost)> {
-    let mut cells = line.strip_prefix("| ")?.strip_suffix(" |")?.split(" | ");
-    let name = cells.next()?.strip_prefix('`')?.strip_suffix('`')?;
-    let figures: Vec<u64> = cells.map(|cell| cell.parse().ok()).collect::<Option<_>>()?;
-    Some((name, Cost::from_figures(figures.try_into().ok()?)))
+    let numbers = |cells: &mut dyn Iterator<Item = &str>| -> Option<Vec<u64>> {
+        cells.map(|cell| cell.parse().ok()).collect()
+    };
+    let (name, cells) = line.strip_prefix("| `")?.strip_suffix(" |")?.split_once("` | ")?;
+    let (figures, others) = cells.rsplit_once(" | ")?;
+    let figures = numbers(&mut figures.split(" | "))?;
+    let others = numbers(&mut others.split(", ").filter(|cell| !cell.is_empty()))?;
+    Some((name, Cost::from_figures(figures.try_into().ok()?, others)))
 }
 
 /// What is dearer than the table says, a sentence each. Kernels that the table lacks, or that are gone, count too.
@@ -184,7 +210,7 @@ mod tests {
     use super::*;
 
     fn cost() -> Cost {
-        Cost::from_figures([32, 30, 0, 8192, 4, 400, 100, 20, 2, 1, 2])
+        Cost::from_figures([32, 30, 0, 0, 8192, 4, 400, 100, 20, 2, 1, 2], vec![80, 7])
     }
 
     fn costs(cost: Cost) -> Costs {
@@ -211,17 +237,21 @@ mod tests {
     }
 
     #[test]
-    fn spills_fewer_waves_and_growth_are_told() {
+    fn spills_scratch_fewer_waves_and_growth_are_told() {
         let mut other = cost();
         other.spilled = 3;
+        other.scratch = 400;
         other.waves = 3;
         other.body.vector = 106;
+        other.others = vec![99, 8];
         assert_eq!(
             dearer(&costs(other), &costs(cost())),
             [
                 "blur spills 3 registers, 0 before",
+                "blur needs 400 bytes of scratch memory, 0 before",
                 "blur leaves room for 3 waves, 4 before",
-                "blur has 106 loop: vector, 100 before"
+                "blur has 106 under 'loop: vector', 100 before",
+                "blur has 99 under 'other loops: vector', 80 before"
             ]
         );
     }
