@@ -23,18 +23,12 @@ fn fetch_covered(image: texture_2d<f32>, slot: u32, p: vec2i) -> vec4f {
 
 // `sample_linear` of colours multiplied by their alpha.
 fn sample_covered(image: texture_2d<f32>, slot: u32, p: vec2f) -> vec4f {
-    let last = vec2f(grid.inputs[slot].zw);
-    let q = min(max(p - 0.5, vec2f(-2.0)), last + 2.0);
-    let corner = floor(q);
-    let f = q - corner;
-    let i = vec2i(corner);
-    let a = fetch_covered(image, slot, i);
-    let b = fetch_covered(image, slot, i + vec2i(1, 0));
-    let c = fetch_covered(image, slot, i + vec2i(0, 1));
-    let d = fetch_covered(image, slot, i + vec2i(1, 1));
-    let top = a + (b - a) * f.x;
-    let bottom = c + (d - c) * f.x;
-    return top + (bottom - top) * f.y;
+    let s = surroundings(slot, p);
+    let a = premultiply(textureLoad(image, s.near, 0));
+    let b = premultiply(textureLoad(image, vec2i(s.far.x, s.near.y), 0));
+    let c = premultiply(textureLoad(image, vec2i(s.near.x, s.far.y), 0));
+    let d = premultiply(textureLoad(image, s.far, 0));
+    return bilinear(a, b, c, d, s.f);
 }
 
 // Mean coverage, exactly 1 where only rounding can have kept it from that.
