@@ -2,6 +2,10 @@
 //! the WGSL text, the uniform block of each as a Rust struct, and the modules and the list of kernels.
 //! A shader that is broken, or that has no Rust file of the same stem, fails the build.
 
+#[path = "build/filtered.rs"]
+mod filtered;
+#[path = "build/imports.rs"]
+mod imports;
 #[path = "build/shader.rs"]
 mod shader;
 #[path = "build/uniform.rs"]
@@ -50,7 +54,7 @@ fn main() {
     let target = out.join("kernels.rs");
     let _ = fs::remove_file(&target);
     assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
-    let text = imports(&shaders, &kernels) + &generated(&kernels, &rust);
+    let text = shared_texts(&shaders, &kernels) + &generated(&kernels, &rust);
     fs::write(&target, text).expect("OUT_DIR is writable");
 }
 
@@ -89,12 +93,12 @@ fn without_twin(wgsl: &BTreeMap<Name, PathBuf>, rust: &BTreeMap<Name, PathBuf>) 
 }
 
 /// The texts that shaders share, as constants.
-fn imports(shaders: &Path, kernels: &BTreeMap<Name, Shader>) -> String {
+fn shared_texts(shaders: &Path, kernels: &BTreeMap<Name, Shader>) -> String {
     let names: BTreeSet<&String> = kernels.values().flat_map(|shader| &shader.imports).collect();
     let mut text = String::from("/// What shaders import.\npub mod imports {\n");
     for name in names {
-        let wgsl = shader::imported(shaders, name).expect("it was read for a shader");
-        let filtered = shader::filtered(shaders, name).expect("it was read for a shader");
+        let wgsl = imports::imported(shaders, name).expect("it was read for a shader");
+        let filtered = filtered::filtered(shaders, name).expect("it was read for a shader");
         let _ = write!(
             text,
             "/// `shaders/{name}.wgsl`.\npub static {}: isophote_engine::kernel::Import = \

@@ -2,7 +2,7 @@
 // luma is least or greatest, chosen by the sign of a second derivative.
 // Cost: per step of the derivative four loads and about 25 multiply-adds, and at most four loads per step of
 // the radius.
-#import gpu/grid
+#import gpu/line
 #import shared/tensor
 
 struct Params {
@@ -25,25 +25,23 @@ struct Params {
 @group(0) @binding(4) var smooth_source: texture_2d<f32>;
 @group(0) @binding(5) var target_image: texture_storage_2d<rgba32float, write>;
 
-// A line through a pixel, in steps of one pixel along the axis nearer to its direction (Fig. 3.9).
+// A line through a pixel (Fig. 3.9).
 struct PixelSteps {
-    along_x: bool,
-    // Absolute component of the direction on that axis.
+    line: Line,
+    // Absolute component of its direction on the axis of its steps.
     share: f32,
-    // Pixels on the other axis per pixel on that one.
-    slope: f32,
 }
 
-// The line in the direction `n`, a unit vector of either sign.
-fn pixel_steps(n: vec2f) -> PixelSteps {
+// The line through pixel p in the direction `n`, a unit vector of either sign.
+fn pixel_steps(p: vec2i, n: vec2f) -> PixelSteps {
     let along_x = abs(n.x) > abs(n.y);
     let major = select(n.y, n.x, along_x);
-    return PixelSteps(along_x, abs(major), select(n.x, n.y, along_x) / major);
+    return PixelSteps(Line(p, along_x, select(n.x, n.y, along_x) / major), abs(major));
 }
 
 // The pixel `along` steps on and `across` pixels to the side.
-fn pixel_on(p: vec2i, line: PixelSteps, along: i32, across: i32) -> vec2i {
-    return p + select(vec2i(across, along), vec2i(along, across), line.along_x);
+fn pixel_on(line: Line, along: i32, across: i32) -> vec2i {
+    return line.pixel + select(vec2i(across, along), vec2i(along, across), line.along_x);
 }
 
 fn luma(rgb: vec3f) -> f32 {
@@ -51,27 +49,21 @@ fn luma(rgb: vec3f) -> f32 {
 }
 
 // Luma times coverage, and coverage.
-fn tap(p: vec2i) -> vec2f {
-    let v = fetch(smooth_source, 2u, p);
+fn covered_luma(v: vec4f) -> vec2f {
     return vec2f(luma(v.rgb) * v.a, v.a);
 }
 
 // By how much the luma `along` steps on exceeds that of the centre; transparent taps stand for the centre.
-fn difference(p: vec2i, line: PixelSteps, along: i32, centre: f32) -> f32 {
-    let across = f32(along) * line.slope;
-    let i = floor(across);
-    let a = tap(pixel_on(p, line, along, i32(i)));
-    let b = tap(pixel_on(p, line, along, i32(i) + 1));
-    let v = a + (b - a) * (across - i);
+fn difference(line: Line, along: i32, centre: f32, inside: bool) -> f32 {
+    let tap = line_tap(smooth_source, 2u, line, along, inside);
+    let a = covered_luma(tap.a);
+    let v = a + (covered_luma(tap.b) - a) * tap.f;
     return v.x - v.y * centre;
 }
 
-// The scale-normalised second derivative of a Gaussian of the luma along the line through pixel p (Listing 6.1):
-// negative about maxima, positive about minima.
-fn flow_log(p: vec2i, line: PixelSteps) -> f32 {
-    let step = 1.0 / line.share;
-    let steps = i32((params.reach + 1e-3) * line.share);
-    let centre = luma(fetch(smooth_source, 2u, p).rgb);
+// The sum over both sides of the line, of steps of length `step`.
+fn gather(line: Line, steps: i32, step: f32, inside: bool) -> f32 {
+    let centre = luma(fetch(smooth_source, 2u, line.pixel).rgb);
     let variance = params.sigma * params.sigma;
     // exp(-d^2 / 2 sigma^2) at d = k step, from one step to the next.
     let falloff = exp2(-0.72134752 * step * step / variance);
@@ -80,13 +72,27 @@ fn flow_log(p: vec2i, line: PixelSteps) -> f32 {
     var sum = 0.0;
     for (var k = 1; k <= steps; k++) {
         let d = f32(k) * step;
-        let both = difference(p, line, k, centre) + difference(p, line, -k, centre);
+        let both = difference(line, k, centre, inside) + difference(line, -k, centre, inside);
         sum += (d * d - variance) * gaussian * both;
         gaussian *= ratio;
         ratio *= falloff * falloff;
     }
+    return sum;
+}
+
+// The scale-normalised second derivative of a Gaussian of the luma along the line (Listing 6.1): negative about
+// maxima, positive about minima.
+fn flow_log(through: PixelSteps) -> f32 {
+    let step = 1.0 / through.share;
+    let steps = i32((params.reach + 1e-3) * through.share);
+    var sum: f32;
+    if line_inside(through.line, 2u, steps) {
+        sum = gather(through.line, steps, step, true);
+    } else {
+        sum = gather(through.line, steps, step, false);
+    }
     // Weights sum to zero by taking differences to the centre, so flat parts respond with exactly 0.
-    return sum * step / (2.5066283 * variance * params.sigma);
+    return sum * step / (2.5066283 * (params.sigma * params.sigma) * params.sigma);
 }
 
 @compute @workgroup_size(8, 8)
@@ -96,14 +102,15 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let p = pixel(id);
     let tensor = fetch(tensors, 1u, p);
-    let line = pixel_steps(tensor_axis((tensor.x - tensor.z) * 0.5, tensor.y).major);
-    let z = flow_log(p, line);
+    let through = pixel_steps(p, tensor_axis((tensor.x - tensor.z) * 0.5, tensor.y).major);
+    let line = through.line;
+    let z = flow_log(through);
     let origin = fetch(source, 0u, p);
     var best = origin;
     if abs(z) > params.threshold {
         // Above the threshold lies the zone of a minimum: erode. Below its opposite: dilate.
         let sign = select(1.0, -1.0, z > 0.0);
-        let wanted = floor((params.radius + 1e-3) * line.share) * params.scale;
+        let wanted = floor((params.radius + 1e-3) * through.share) * params.scale;
         let steps = i32(ceil(wanted));
         var extreme = sign * luma(origin.rgb);
         var whole = best;
@@ -116,7 +123,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 let across = f32(side * k) * line.slope;
                 for (var next = 0.999; next > 0.0; next -= 0.998) {
                     // The pixels on both sides of the line; one and the same where it meets a centre.
-                    let v = fetch(source, 0u, pixel_on(p, line, side * k, i32(floor(across + next))));
+                    let v = fetch(source, 0u, pixel_on(line, side * k, i32(floor(across + next))));
                     let value = sign * luma(v.rgb);
                     // A pixel much less covered than this one knows little of its own colour.
                     if value > extreme && v.a >= 0.5 * origin.a {

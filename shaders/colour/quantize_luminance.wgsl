@@ -28,7 +28,7 @@ struct Params {
 @group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;
 // The mean gradient of L around each pixel.
-@group(0) @binding(3) var surroundings: texture_2d<f32>;
+@group(0) @binding(3) var tones_around: texture_2d<f32>;
 @group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
 
 // Lightness of a neighbour; where it is not covered, that of the pixel itself.
@@ -56,7 +56,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
         if params.inverse_least > 0.0 {
             phi = min(phi, 2.0 / max(params.crispest * g, 1e-6));
-            let around = fetch(surroundings, 1u, p).xy;
+            let around = fetch(tones_around, 1u, p).xy;
             let t = clamp((sqrt(dot(around, around)) * params.inverse_least - 0.6) * 1.25, 0.0, 1.0);
             stepped = t * t * (3.0 - 2.0 * t);
         }

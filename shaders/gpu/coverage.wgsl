@@ -12,7 +12,7 @@ fn sample_filtered(image: texture_2d<f32>, slot: u32, p: vec2f) -> vec4f {
     return textureSampleLevel(image, filtering, texel / vec2f(textureDimensions(image)), 0.0);
 }
 
-fn covered_between(image: texture_2d<f32>, slot: u32, p: vec2i, next: vec2i, share: f32) -> vec4f {
+fn covered_between(image: texture_2d<f32>, slot: u32, p: vec2i, next: vec2i, share: f32, inside: bool) -> vec4f {
     let v = sample_filtered(image, slot, vec2f(p) + 0.5 + share * vec2f(next));
     if v.a == 1.0 {
         return v;
@@ -27,14 +27,10 @@ fn sample_covered(image: texture_2d<f32>, slot: u32, p: vec2f) -> vec4f {
     if v.a == 1.0 {
         return v;
     }
-    let corner = floor(p - 0.5);
-    let f = p - 0.5 - corner;
-    let i = vec2i(corner);
-    let a = fetch_covered(image, slot, i);
-    let b = fetch_covered(image, slot, i + vec2i(1, 0));
-    let c = fetch_covered(image, slot, i + vec2i(0, 1));
-    let d = fetch_covered(image, slot, i + vec2i(1, 1));
-    let top = a + (b - a) * f.x;
-    let bottom = c + (d - c) * f.x;
-    return top + (bottom - top) * f.y;
+    let s = surroundings(slot, p);
+    let a = premultiply(textureLoad(image, s.near, 0));
+    let b = premultiply(textureLoad(image, vec2i(s.far.x, s.near.y), 0));
+    let c = premultiply(textureLoad(image, vec2i(s.near.x, s.far.y), 0));
+    let d = premultiply(textureLoad(image, s.far, 0));
+    return bilinear(a, b, c, d, s.f);
 }

@@ -3,8 +3,8 @@
 // Windows of neighbours in workgroup memory: what the windows of many pixels share is fetched from the
 // texture once.
 //
-// The shader defines `window_tap(p: vec2i) -> vec4f`, what a window holds of the pixel at absolute position p.
-// A window is gone through in parts that fit the memory:
+// The shader defines `window_tap(p: vec2i) -> vec4f`, what a window holds of the pixel at absolute position p, and
+// `WINDOW_PIXELS`, one of the sizes below. A window is gone through in parts that fit the memory:
 //
 //   let step = window_step(end - begin + 1);
 //   for (var y = begin.y; y <= end.y; y += step.y) {
@@ -18,14 +18,20 @@
 //
 // Offsets are those of taps from their own pixel. What `first` and `last` are made of must be uniform.
 
-// Pixels that the taps of a part take: 8 KiB, so that several workgroups find room at once, and together with
-// the opposite ones less than the 16 KiB of the smallest devices.
-const WINDOW_PIXELS: i32 = 504;
+// Pixels that the taps of a part take. Fewer leave room for more workgroups at once, which is what hides the time that
+// loads take; more taps share what is loaded. Two windows of any size stay below the 16 KiB of the smallest devices.
+//
+// Windows of one row or column are gone through 8 taps at a time; their sums are the same however they are cut.
+const WINDOW_LINE: i32 = 120;
+// Windows of many rows and columns lose more by being cut than by waiting.
+const WINDOW_AREA: i32 = 504;
+// Windows of 5 x 5 pixels, which are not cut.
+const WINDOW_SMALL: i32 = 144;
 
-var<workgroup> window: array<vec4f, 504>;
+var<workgroup> window: array<vec4f, WINDOW_PIXELS>;
 
 // The taps opposite those of `window`, for kernels that take both at once.
-var<workgroup> window_opposite: array<vec4f, 504>;
+var<workgroup> window_opposite: array<vec4f, WINDOW_PIXELS>;
 
 struct WindowPart {
     // The invocation's own pixel: absolute, and its index in the two arrays if that were in them.
@@ -59,7 +65,7 @@ fn window_load(id: vec3u, first: vec2i, last: vec2i) -> WindowPart {
     if !shared_windows {
         return window_unshared(id);
     }
-    let stride = last.x - first.x + 8;
+    let part = window_part(id, first, last);
     let size = group_size(id) + last - first;
     let corner = group_corner(id) + first;
     let local = group_local(id);
@@ -67,31 +73,44 @@ fn window_load(id: vec3u, first: vec2i, last: vec2i) -> WindowPart {
     workgroupBarrier();
     for (var y = local.y; y < size.y; y += 8) {
         for (var x = local.x; x < size.x; x += 8) {
-            window[y * stride + x] = window_tap(corner + vec2i(x, y));
+            window[y * part.stride + x] = window_tap(corner + vec2i(x, y));
         }
     }
     workgroupBarrier();
+    return part;
+}
+
+// The same, and the taps at the offsets -`last` to -`first`. Both are fetched at once, so that the time of one load
+// passes for two.
+fn window_load_both(id: vec3u, first: vec2i, last: vec2i) -> WindowPart {
+    if !shared_windows {
+        return window_unshared(id);
+    }
+    let part = window_part(id, first, last);
+    let size = group_size(id) + last - first;
+    let corner = group_corner(id);
+    let local = group_local(id);
+    workgroupBarrier();
+    for (var y = local.y; y < size.y; y += 8) {
+        for (var x = local.x; x < size.x; x += 8) {
+            let place = corner + vec2i(x, y);
+            let tap = window_tap(place + first);
+            let opposite = window_tap(place - last);
+            window[y * part.stride + x] = tap;
+            window_opposite[y * part.stride + x] = opposite;
+        }
+    }
+    workgroupBarrier();
+    return part;
+}
+
+// Where the invocation's taps of a part are.
+fn window_part(id: vec3u, first: vec2i, last: vec2i) -> WindowPart {
+    let stride = last.x - first.x + 8;
     let seat = group_seat(id);
     let index = (seat.y - first.y) * stride + seat.x - first.x;
     let opposite = (seat.y + last.y) * stride + seat.x + last.x;
     return WindowPart(group_pixel(id), index, opposite, stride, true);
-}
-
-// The same, and the taps at the offsets -`last` to -`first`.
-fn window_load_both(id: vec3u, first: vec2i, last: vec2i) -> WindowPart {
-    if shared_windows {
-        let stride = last.x - first.x + 8;
-        let size = group_size(id) + last - first;
-        let corner = group_corner(id) - last;
-        let local = group_local(id);
-        workgroupBarrier();
-        for (var y = local.y; y < size.y; y += 8) {
-            for (var x = local.x; x < size.x; x += 8) {
-                window_opposite[y * stride + x] = window_tap(corner + vec2i(x, y));
-            }
-        }
-    }
-    return window_load(id, first, last);
 }
 
 // The tap at `offset`.

@@ -1,6 +1,6 @@
 // Columns of two Gaussians at once, their difference and its threshold: the second half of the
 // isotropic extended difference of Gaussians (4.7-4.10).
-// Cost: one multiply-add on vec4 per tap, 2 radius reads of workgroup memory, radius / 4 + 3 loads.
+// Cost: one multiply-add on vec4 per tap, 2 radius reads of workgroup memory, radius / 2 + 2 loads.
 #import gpu/window
 #import shared/edge_threshold
 
@@ -30,6 +30,8 @@ struct Params {
 fn weights(i: i32) -> vec4f {
     return vec4f(vec2f(params.narrow[i >> 2u][i & 3]), vec2f(params.wide[i >> 2u][i & 3]));
 }
+
+const WINDOW_PIXELS: i32 = WINDOW_LINE;
 
 fn window_tap(p: vec2i) -> vec4f {
     return fetch(source, 0u, p);

@@ -1,7 +1,7 @@
 // Rows of two Gaussians at once, on lightness and coverage: the first half of the isotropic
 // difference of Gaussians (4.5, 4.7).
 // Cost: two multiply-adds on vec2 per tap, 2 radius reads of workgroup memory,
-// radius / 4 + 3 loads.
+// radius / 2 + 2 loads.
 #import gpu/window
 
 struct Params {
@@ -16,6 +16,8 @@ struct Params {
 @group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+
+const WINDOW_PIXELS: i32 = WINDOW_LINE;
 
 fn window_tap(p: vec2i) -> vec4f {
     return fetch(source, 0u, p);

@@ -4,7 +4,7 @@
 // Steps have length 1 along the axis nearer to the gradient, so a sample lies between two pixels of
 // one row or column, and two loads interpolate it exactly as a bilinear sample would.
 // Cost: 4 loads and two exponentials per step, about 3 k sigma_e steps.
-#import gpu/grid
+#import gpu/line
 #import shared/tensor
 #import shared/edge_threshold
 
@@ -27,17 +27,28 @@ struct Params {
 @group(0) @binding(3) var field: texture_2d<f32>;
 @group(0) @binding(4) var target_image: texture_storage_2d<rg32float, write>;
 
-// Sample k steps along the main axis and k * slope across it.
-fn sample(p: vec2i, upright: bool, k: i32, slope: f32) -> vec2f {
-    let across = f32(k) * slope;
-    let whole = floor(across);
-    let f = across - whole;
-    let i = i32(whole);
-    let o = select(vec2i(k, i), vec2i(i, k), upright);
-    let next = select(vec2i(0, 1), vec2i(1, 0), upright);
-    let a = fetch(lightness, 0u, p + o).xy;
-    let b = fetch(lightness, 0u, p + o + next).xy;
-    return a + (b - a) * f;
+// The interpolated sample k steps along the line.
+fn sample(line: Line, k: i32, inside: bool) -> vec2f {
+    let tap = line_tap(lightness, 0u, line, k, inside);
+    return tap.a.xy + (tap.b.xy - tap.a.xy) * tap.f;
+}
+
+struct Sums {
+    narrow: vec2f,
+    wide: vec2f,
+}
+
+// Both Gaussians along the line, of which the pixel itself holds `middle`.
+fn gather(line: Line, middle: vec2f, inside: bool) -> Sums {
+    let ds = sqrt(1.0 + line.slope * line.slope);
+    var sums = Sums(middle, middle);
+    for (var k = 1; f32(k) * ds <= params.halfwidth; k++) {
+        let d = f32(k) * ds;
+        let both = sample(line, k, inside) + sample(line, -k, inside);
+        sums.narrow += exp(params.narrow * d * d) * both;
+        sums.wide += exp(params.wide * d * d) * both;
+    }
+    return sums;
 }
 
 @compute @workgroup_size(8, 8)
@@ -49,18 +60,14 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let t = tensor_tangent(fetch(field, 1u, p));
     // The gradient is (t.y, -t.x); its sign means nothing.
     let upright = abs(t.x) > abs(t.y);
-    let slope = select(-t.x / t.y, -t.y / t.x, upright);
-    let ds = sqrt(1.0 + slope * slope);
-
+    let line = Line(p, !upright, select(-t.x / t.y, -t.y / t.x, upright));
     let middle = fetch(lightness, 0u, p).xy;
-    var narrow = middle;
-    var wide = middle;
-    for (var k = 1; f32(k) * ds <= params.halfwidth; k++) {
-        let d = f32(k) * ds;
-        let both = sample(p, upright, k, slope) + sample(p, upright, -k, slope);
-        narrow += exp(params.narrow * d * d) * both;
-        wide += exp(params.wide * d * d) * both;
+    var sums: Sums;
+    if line_inside(line, 0u, i32(params.halfwidth)) {
+        sums = gather(line, middle, true);
+    } else {
+        sums = gather(line, middle, false);
     }
-    let u = dog_of_sums(narrow, wide, params.base, params.edge);
+    let u = dog_of_sums(sums.narrow, sums.wide, params.base, params.edge);
     textureStore(target_image, vec2i(id.xy), vec4f(u * middle.y, middle.y, 0.0, 0.0));
 }

@@ -36,6 +36,8 @@ struct Params {
 @group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
 @group(0) @binding(5) var deviations: texture_storage_2d<r32float, write>;
 
+const WINDOW_PIXELS: i32 = WINDOW_AREA;
+
 fn window_tap(p: vec2i) -> vec4f {
     return fetch(source, 0u, p);
 }

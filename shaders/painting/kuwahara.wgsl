@@ -1,6 +1,6 @@
 // The Kuwahara filter (thesis § 5.2) from sums over the rows of its subregions: the mean of the
 // subregion with the least variance.
-// Cost: 6 count reads of workgroup memory and 20 multiply-adds each, 3 count / 4 + 6 loads.
+// Cost: 6 count reads of workgroup memory and 20 multiply-adds each, 3 count / 2 + 4 loads.
 #import gpu/window
 
 struct Params {
@@ -31,6 +31,8 @@ const SEEN: f32 = 1e-3;
 
 // The input that windows hold.
 var<private> held: u32;
+
+const WINDOW_PIXELS: i32 = WINDOW_LINE;
 
 fn window_tap(p: vec2i) -> vec4f {
     switch held {

@@ -1,6 +1,6 @@
 // The rows of the Kuwahara filter's four subregions (thesis § 5.2): weighted sums to the left and to the
 // right of every pixel.
-// Cost: 2 count reads of workgroup memory and 10 multiply-adds each, count / 4 + 2 loads.
+// Cost: 2 count reads of workgroup memory and 10 multiply-adds each, count / 2 + 1 loads.
 #import gpu/window
 
 struct Params {
@@ -19,6 +19,8 @@ struct Params {
 @group(0) @binding(3) var left_sums: texture_storage_2d<rgba32float, write>;
 @group(0) @binding(4) var right_sums: texture_storage_2d<rgba32float, write>;
 @group(0) @binding(5) var square_sums: texture_storage_2d<rg32float, write>;
+
+const WINDOW_PIXELS: i32 = WINDOW_LINE;
 
 fn window_tap(p: vec2i) -> vec4f {
     return fetch(source, 0u, p);

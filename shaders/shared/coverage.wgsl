@@ -21,27 +21,30 @@ fn fetch_covered(image: texture_2d<f32>, slot: u32, p: vec2i) -> vec4f {
     return premultiply(fetch(image, slot, p));
 }
 
-// Between the pixel at absolute position p and that at p + next, so much of the way, colours multiplied by their alpha.
-fn covered_between(image: texture_2d<f32>, slot: u32, p: vec2i, next: vec2i, share: f32) -> vec4f {
-    let a = fetch_covered(image, slot, p);
-    let b = fetch_covered(image, slot, p + next);
+// Between the pixel at absolute position p and that at p + next, `share` of the way, colours multiplied by their alpha; of
+// pixels that are not `inside`, clamped to the picture.
+fn covered_between(image: texture_2d<f32>, slot: u32, p: vec2i, next: vec2i, share: f32, inside: bool) -> vec4f {
+    var a: vec4f;
+    var b: vec4f;
+    if inside {
+        let texel = p - grid.inputs[slot].xy;
+        a = premultiply(textureLoad(image, texel, 0));
+        b = premultiply(textureLoad(image, texel + next, 0));
+    } else {
+        a = fetch_covered(image, slot, p);
+        b = fetch_covered(image, slot, p + next);
+    }
     return a + (b - a) * share;
 }
 
 // `sample_linear` of colours multiplied by their alpha.
 fn sample_covered(image: texture_2d<f32>, slot: u32, p: vec2f) -> vec4f {
-    let last = vec2f(grid.inputs[slot].zw);
-    let q = min(max(p - 0.5, vec2f(-2.0)), last + 2.0);
-    let corner = floor(q);
-    let f = q - corner;
-    let i = vec2i(corner);
-    let a = fetch_covered(image, slot, i);
-    let b = fetch_covered(image, slot, i + vec2i(1, 0));
-    let c = fetch_covered(image, slot, i + vec2i(0, 1));
-    let d = fetch_covered(image, slot, i + vec2i(1, 1));
-    let top = a + (b - a) * f.x;
-    let bottom = c + (d - c) * f.x;
-    return top + (bottom - top) * f.y;
+    let s = surroundings(slot, p);
+    let a = premultiply(textureLoad(image, s.near, 0));
+    let b = premultiply(textureLoad(image, vec2i(s.far.x, s.near.y), 0));
+    let c = premultiply(textureLoad(image, vec2i(s.near.x, s.far.y), 0));
+    let d = premultiply(textureLoad(image, s.far, 0));
+    return bilinear(a, b, c, d, s.f);
 }
 
 // Mean coverage, exactly 1 where only rounding can have kept it from that.

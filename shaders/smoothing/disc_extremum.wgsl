@@ -16,6 +16,8 @@ struct Params {
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
 
+const WINDOW_PIXELS: i32 = WINDOW_AREA;
+
 fn window_tap(p: vec2i) -> vec4f {
     return fetch(source, 0u, p);
 }

@@ -1,5 +1,5 @@
 // One axis of a separable Gaussian on four channels (2.21).
-// Cost: radius + 1 multiply-adds on vec4, 2 radius reads of workgroup memory, radius / 4 + 3 loads.
+// Cost: radius + 1 multiply-adds on vec4, 2 radius reads of workgroup memory, radius / 2 + 2 loads.
 #import shared/coverage
 #import gpu/window
 
@@ -17,6 +17,8 @@ struct Params {
 @group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+
+const WINDOW_PIXELS: i32 = WINDOW_LINE;
 
 fn window_tap(p: vec2i) -> vec4f {
     let v = fetch(source, 0u, p);

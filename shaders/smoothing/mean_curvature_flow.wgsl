@@ -19,6 +19,8 @@ struct Params {
 // Gradients below this count as flat, where the flow is plain diffusion.
 const EPSILON2: f32 = 1e-6;
 
+const WINDOW_PIXELS: i32 = WINDOW_SMALL;
+
 fn window_tap(p: vec2i) -> vec4f {
     let v = fetch(source, 0u, p);
     return vec4f(v.rgb * v.a, v.a);

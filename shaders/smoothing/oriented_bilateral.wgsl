@@ -1,6 +1,7 @@
 // One pass of the orientation-aligned bilateral filter (Listing 3.1), along the gradient or along the
 // tangent; the range is measured as Euclidean distance of the three colour channels.
 // Cost: about 2 cutoff taps of two loads, one interpolation and one or two exponentials.
+#import gpu/line
 #import shared/coverage
 #import shared/tensor
 
@@ -27,9 +28,45 @@ struct Params {
 const SAMPLING_LINEAR = 0u;
 const SAMPLING_NEAREST = 2u;
 
-fn weight(color: vec3f, origin: vec3f, domain: f32, range: f32) -> f32 {
-    let d = color - origin;
-    return exp2(range * dot(d, d) + domain);
+// What weighs a tap: the colour of the pixel itself, and both Gaussians as powers of two.
+struct Weighting {
+    origin: vec3f,
+    domain: f32,
+    range: f32,
+}
+
+// Of a colour, for the `domain` part of the exponent.
+fn weight(color: vec3f, w: Weighting, domain: f32) -> f32 {
+    let d = color - w.origin;
+    return exp2(w.range * dot(d, d) + domain);
+}
+
+// The tap `k` steps along the line times its weight.
+fn weighted(line: Line, k: i32, w: Weighting, inside: bool) -> vec4f {
+    let domain = w.domain * f32(k) * f32(k);
+    if params.sampling == SAMPLING_LINEAR {
+        let place = line_place(line, k);
+        let mixed = covered_between(source, 0u, place.pixel, place.next, place.f, inside);
+        let color = mixed.rgb / max(mixed.a, LEAST_COVERAGE);
+        return weight(color, w, domain) * mixed;
+    }
+    let tap = line_tap(source, 0u, line, k, inside);
+    let near = params.sampling == SAMPLING_NEAREST;
+    let shares = vec2f(1.0 - tap.f, tap.f);
+    let share = select(shares, vec2f(shares >= vec2f(0.5)), near);
+    let wa = share.x * tap.a.a * weight(tap.a.rgb, w, domain);
+    let wb = share.y * tap.b.a * weight(tap.b.rgb, w, domain);
+    return wa * vec4f(tap.a.rgb, 1.0) + wb * vec4f(tap.b.rgb, 1.0);
+}
+
+// The taps of both sides, added to `first`.
+fn gather(line: Line, steps: i32, w: Weighting, first: vec4f, inside: bool) -> vec4f {
+    var sum = first;
+    for (var k = 1; k <= steps; k++) {
+        sum += weighted(line, -k, w, inside);
+        sum += weighted(line, k, w, inside);
+    }
+    return sum;
 }
 
 @compute @workgroup_size(8, 8)
@@ -47,38 +84,22 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     // Steps of one pixel along the axis nearer to t: taps then lie between two pixels (3.6, 3.7).
     let along_x = abs(t.x) > abs(t.y);
     let major = select(t.y, t.x, along_x);
-    let slope = select(t.x, t.y, along_x) / major;
+    let line = Line(p, along_x, select(t.x, t.y, along_x) / major);
     let steps = i32((params.cutoff * scale + 1e-3) * abs(major));
-    let next = select(vec2i(1, 0), vec2i(0, 1), along_x);
 
-    // Both Gaussians as powers of two.
     let sigma_d = params.sigma_d * scale * abs(major);
-    let domain = -0.72134752 / max(sigma_d * sigma_d, 1e-6);
-    let range = -0.72134752 / max(params.sigma_r * params.sigma_r, 1e-6);
-
     let origin = fetch(source, 0u, p);
-    var sum = vec4f(origin.rgb * origin.a, origin.a);
-    for (var k = 1; k <= steps; k++) {
-        let distance = f32(k);
-        for (var side = -1; side <= 1; side += 2) {
-            let o = f32(side) * distance * slope;
-            let i = floor(o);
-            let f = o - i;
-            let q = p + select(vec2i(i32(i), side * k), vec2i(side * k, i32(i)), along_x);
-            if params.sampling != SAMPLING_LINEAR {
-                let a = fetch(source, 0u, q);
-                let b = fetch(source, 0u, q + next);
-                let near = params.sampling == SAMPLING_NEAREST;
-                let share = select(vec2f(1.0 - f, f), vec2f(vec2(1.0 - f, f) >= vec2f(0.5)), near);
-                let wa = share.x * a.a * weight(a.rgb, origin.rgb, domain * distance * distance, range);
-                let wb = share.y * b.a * weight(b.rgb, origin.rgb, domain * distance * distance, range);
-                sum += wa * vec4f(a.rgb, 1.0) + wb * vec4f(b.rgb, 1.0);
-            } else {
-                let tap = covered_between(source, 0u, q, next, f);
-                let color = tap.rgb / max(tap.a, LEAST_COVERAGE);
-                sum += weight(color, origin.rgb, domain * distance * distance, range) * tap;
-            }
-        }
+    let w = Weighting(
+        origin.rgb,
+        -0.72134752 / max(sigma_d * sigma_d, 1e-6),
+        -0.72134752 / max(params.sigma_r * params.sigma_r, 1e-6),
+    );
+    let first = premultiply(origin);
+    var sum: vec4f;
+    if line_inside(line, 0u, steps) {
+        sum = gather(line, steps, w, first, true);
+    } else {
+        sum = gather(line, steps, w, first, false);
     }
     let color = select(origin.rgb, sum.rgb / sum.a, sum.a > LEAST_COVERAGE);
     textureStore(target_image, vec2i(id.xy), vec4f(color, origin.a));

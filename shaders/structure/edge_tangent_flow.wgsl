@@ -26,6 +26,8 @@ fn weight(i: i32) -> f32 {
     return params.weights[abs(i) >> 2u][abs(i) & 3];
 }
 
+const WINDOW_PIXELS: i32 = WINDOW_AREA;
+
 fn window_tap(p: vec2i) -> vec4f {
     return fetch(source, 0u, p);
 }

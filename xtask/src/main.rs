@@ -6,6 +6,7 @@ mod demo;
 mod error;
 mod experiments;
 mod gallery;
+mod gpu_cost;
 mod header;
 mod looks;
 mod readme;
@@ -39,6 +40,8 @@ enum Chore {
     Gallery(gallery::Options),
     /// Every look that ships with the host, as one sheet
     Looks(looks::Options),
+    /// Counts what the shaders cost on a graphics card, without one
+    GpuCost(gpu_cost::Options),
     /// Runs the host's benchmark, built for speed
     Bench(bench::Options),
     /// Makes the OpenFX bundle, and installs it
@@ -60,6 +63,7 @@ fn main() -> ExitCode {
         Chore::Experiments(options) => experiments::run(&options),
         Chore::Gallery(options) => gallery::run(&options),
         Chore::Looks(options) => looks::run(&options),
+        Chore::GpuCost(options) => gpu_cost::run(&options),
         Chore::Bundle(options) => bundle::run(&options),
         Chore::Bench(options) => bench::run(&options),
         Chore::Readme(options) => readme::run(&options),

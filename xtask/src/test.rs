@@ -74,6 +74,7 @@ fn check_sources() -> Result<()> {
     heading("generated files");
     crate::header::run(&crate::header::Options { check: true })?;
     crate::readme::run(&crate::readme::Options { check: true })?;
+    crate::gpu_cost::run(&crate::gpu_cost::Options { check: true, kernel: None })?;
     heading("documents");
     cargo(&["doc", "--workspace", "--no-deps", "--quiet"])
 }

@@ -194,6 +194,10 @@ const BOUNDS: BoundsCheckPolicies = BoundsCheckPolicies {
     binding_array: BoundsCheckPolicy::Unchecked,
 };
 
+/// Every loop of a kernel ends by the values that plans hold: compilers need no counters that prove it, which take
+/// about six instructions a turn.
+const BOUND_LOOPS: bool = false;
+
 /// Kernels read no workgroup memory that they have not written.
 const CLEAR_WORKGROUP_MEMORY: bool = false;
 
@@ -203,6 +207,7 @@ fn spirv(module: &Module, info: &ModuleInfo) -> Result<Vec<u32>, String> {
         // Compute shaders have no positions to adjust; names help in debuggers.
         flags: spv::WriterFlags::DEBUG,
         bounds_check_policies: BOUNDS,
+        force_loop_bounding: BOUND_LOOPS,
         // As CLEAR_WORKGROUP_MEMORY.
         zero_initialize_workgroup_memory: spv::ZeroInitializeWorkgroupMemoryMode::None,
         ..spv::Options::default()
@@ -217,6 +222,7 @@ fn hlsl(module: &Module, info: &ModuleInfo, made: &mut Made) -> Result<String, S
         binding_map: made.bindings.iter().map(|b| (b.resource(), target(b))).collect(),
         fake_missing_bindings: false,
         zero_initialize_workgroup_memory: CLEAR_WORKGROUP_MEMORY,
+        force_loop_bounding: BOUND_LOOPS,
         ..hlsl::Options::default()
     };
     let mut text = String::new();
@@ -252,6 +258,7 @@ fn msl(module: &Module, info: &ModuleInfo, made: &mut Made) -> Result<String, St
         fake_missing_bindings: false,
         bounds_check_policies: BOUNDS,
         zero_initialize_workgroup_memory: CLEAR_WORKGROUP_MEMORY,
+        force_loop_bounding: BOUND_LOOPS,
         ..msl::Options::default()
     };
     let (text, translation) = msl::write_string(module, info, &options, &msl::PipelineOptions::default())

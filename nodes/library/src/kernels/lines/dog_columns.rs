@@ -3,7 +3,7 @@
 //!
 //! Cost: one multiply-add per tap and value (four values a pixel), radius + 1 taps; two divisions
 //! and the threshold. Sixteen interleaved pixels at a time. The shader reads its windows through workgroup
-//! memory, radius / 4 + 3 loads a pixel.
+//! memory, radius / 2 + 2 loads a pixel.
 
 use crate::kernels::lines::dog_rows;
 pub use crate::kernels::shaders::dog_columns::Params;

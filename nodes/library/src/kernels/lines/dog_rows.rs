@@ -2,7 +2,7 @@
 //! difference of Gaussians (4.5, 4.7).
 //!
 //! Cost: two multiply-adds per tap and value, radius + 1 taps. Sixteen interleaved pixels at a time.
-//! The shader reads its windows through workgroup memory, radius / 4 + 3 loads a pixel.
+//! The shader reads its windows through workgroup memory, radius / 2 + 2 loads a pixel.
 
 pub use crate::kernels::shaders::dog_rows::Params;
 use crate::kernels::simd::window_sum::{GaussianTable, flat, gaussian_radius, gaussian_table};

@@ -6,7 +6,7 @@
 //! every sum is put together from two such, whatever the radius, and holds none but its own pixels.
 //!
 //! Cost: 3 additions on ten channels and 60 operations; other weights 20 multiply-adds each.
-//! The shader takes all weights singly, through workgroup memory: 3 count / 4 + 6 loads a pixel.
+//! The shader takes all weights singly, through workgroup memory: 3 count / 2 + 4 loads a pixel.
 
 use crate::kernels::painting::kuwahara_rows::{self, Side};
 pub use crate::kernels::shaders::kuwahara::Params;

@@ -5,7 +5,7 @@
 //! pixels alone, so that a highlight leaves no rounding behind as it does in a running sum.
 //!
 //! Cost: 2 log2(r + 1) additions on five channels; other weights 10 multiply-adds each.
-//! The shader takes all weights singly, through workgroup memory: count / 4 + 2 loads a pixel.
+//! The shader takes all weights singly, through workgroup memory: count / 2 + 1 loads a pixel.
 
 pub use crate::kernels::shaders::kuwahara_rows::Params;
 use crate::kernels::simd::line_buffer::strips;

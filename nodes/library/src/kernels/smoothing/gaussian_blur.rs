@@ -2,7 +2,7 @@
 //!
 //! Cost: radius + 1 multiply-adds per value. Rows and columns run the same arithmetic on
 //! interleaved values, sixteen pixels at a time. The shader reads its windows through workgroup memory,
-//! radius / 4 + 3 loads a pixel.
+//! radius / 2 + 2 loads a pixel.
 
 pub use crate::kernels::shaders::gaussian_blur::Params;
 use crate::kernels::shared::coverage::{FULL, LEAST_COVERAGE, is_opaque};
