@@ -21,14 +21,18 @@ fn fetch_covered(image: texture_2d<f32>, slot: u32, p: vec2i) -> vec4f {
     return premultiply(fetch(image, slot, p));
 }
 
-// `sample_linear` of colours multiplied by their alpha.
-fn sample_covered(image: texture_2d<f32>, slot: u32, p: vec2f) -> vec4f {
-    let s = surroundings(slot, p);
+// `sample_among` of colours multiplied by their alpha.
+fn sample_covered_among(image: texture_2d<f32>, s: Surroundings) -> vec4f {
     let a = premultiply(textureLoad(image, s.near, 0));
     let b = premultiply(textureLoad(image, vec2i(s.far.x, s.near.y), 0));
     let c = premultiply(textureLoad(image, vec2i(s.near.x, s.far.y), 0));
     let d = premultiply(textureLoad(image, s.far, 0));
     return bilinear(a, b, c, d, s.f);
+}
+
+// `sample_linear` of colours multiplied by their alpha.
+fn sample_covered(image: texture_2d<f32>, slot: u32, p: vec2f) -> vec4f {
+    return sample_covered_among(image, surroundings(slot, p));
 }
 
 // Mean coverage, exactly 1 where only rounding can have kept it from that.
