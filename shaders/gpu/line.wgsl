@@ -11,6 +11,8 @@
 struct Line {
     // The pixel, absolute.
     pixel: vec2i,
+    // The same as a texel of the texture that taps are read from.
+    texel: vec2i,
     // True where a step is one pixel along x, false where it is one along y.
     along_x: bool,
     // Pixels along the other axis per step, -1..1.
@@ -22,6 +24,11 @@ struct LineTap {
     a: vec4f,
     b: vec4f,
     f: f32,
+}
+
+// A line through the pixel at absolute position p, for taps from input `slot`.
+fn line_through(p: vec2i, slot: u32, along_x: bool, slope: f32) -> Line {
+    return Line(p, p - grid.inputs[slot].xy, along_x, slope);
 }
 
 // True when the picture of input `slot` holds all pixels that the taps of up to `steps` steps lie between.
@@ -38,7 +45,7 @@ fn line_tap(image: texture_2d<f32>, slot: u32, line: Line, k: i32, inside: bool)
     let offset = select(vec2i(i, k), vec2i(k, i), line.along_x);
     let next = select(vec2i(1, 0), vec2i(0, 1), line.along_x);
     if inside {
-        let texel = line.pixel - grid.inputs[slot].xy + offset;
+        let texel = line.texel + offset;
         return LineTap(textureLoad(image, texel, 0), textureLoad(image, texel + next, 0), across - whole);
     }
     let p = line.pixel + offset;

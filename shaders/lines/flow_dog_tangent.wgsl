@@ -29,11 +29,13 @@ struct Params {
 fn gather(origin: vec2f, tangent: vec2f, limit: f32, first: vec2f, inside: bool) -> vec2f {
     // exp(-u^2 / 2 sigma^2) as a power of two.
     let falloff = -0.72134752 / max(params.sigma * params.sigma, 1e-6);
+    // Loops take no parameter from memory that they can hold.
+    let integrator = params.integrator;
     var sum = first;
     for (var side = -1.0; side <= 1.0; side += 2.0) {
         var line = stream_begin(origin, side * tangent, inside);
         for (var u = 1.0; u <= limit; u += 1.0) {
-            stream_step(&line, field, 1u, 1.0, params.integrator);
+            stream_step(&line, field, 1u, 1.0, integrator);
             if stream_ends(line, 0u) {
                 break;
             }

@@ -58,15 +58,18 @@ fn gather(origin: vec2f, tangent: vec2f, sigma: f32, first: Sum, inside: bool) -
     let c = params.least_turn;
     let least_turn = min(c, 1.0 - stretch * ((1.0 - c) * (1.0 - c) + stretch * c * (1.0 - c)));
 
+    // Loops take no parameter from memory that they can hold.
+    let integrator = params.integrator;
+    let by_angle = params.adapt == 2u;
     var sum = first;
     for (var side = -1.0; side <= 1.0; side += 2.0) {
         var line = stream_begin(origin, side * tangent, inside);
         line.nearest = params.nearest != 0u;
         var u = 0.0;
         while u + step <= limit {
-            stream_step(&line, field, INPUT_FIELD, step, params.integrator);
+            stream_step(&line, field, INPUT_FIELD, step, integrator);
             var du = step;
-            if params.adapt == 2u {
+            if by_angle {
                 du = max(du, acos(min(line.turn, 1.0)) * radius / 3.14159265);
             }
             u += du;
