@@ -36,7 +36,7 @@ struct PixelSteps {
 fn pixel_steps(p: vec2i, n: vec2f) -> PixelSteps {
     let along_x = abs(n.x) > abs(n.y);
     let major = select(n.y, n.x, along_x);
-    return PixelSteps(Line(p, along_x, select(n.x, n.y, along_x) / major), abs(major));
+    return PixelSteps(line_through(p, 2u, along_x, select(n.x, n.y, along_x) / major), abs(major));
 }
 
 // The pixel `along` steps on and `across` pixels to the side.

@@ -11,15 +11,17 @@
 struct Line {
     // The pixel, absolute.
     pixel: vec2i,
+    // The same as a texel of the texture that taps are read from.
+    texel: vec2i,
     // True where a step is one pixel along x, false where it is one along y.
     along_x: bool,
     // Pixels along the other axis per step, -1..1.
     slope: f32,
 }
 
-// Where a tap lies: `f` of the way from a pixel, absolute, to the next one.
+// Where a tap lies, from the pixel of the line: `f` of the way from one pixel to the `next`.
 struct LinePlace {
-    pixel: vec2i,
+    offset: vec2i,
     next: vec2i,
     f: f32,
 }
@@ -29,6 +31,11 @@ struct LineTap {
     a: vec4f,
     b: vec4f,
     f: f32,
+}
+
+// A line through the pixel at absolute position p, for taps from input `slot`.
+fn line_through(p: vec2i, slot: u32, along_x: bool, slope: f32) -> Line {
+    return Line(p, p - grid.inputs[slot].xy, along_x, slope);
 }
 
 // True when the picture of input `slot` holds all pixels that the taps of up to `steps` steps lie between.
@@ -43,16 +50,16 @@ fn line_place(line: Line, k: i32) -> LinePlace {
     let whole = floor(across);
     let i = i32(whole);
     let offset = select(vec2i(i, k), vec2i(k, i), line.along_x);
-    let next = select(vec2i(1, 0), vec2i(0, 1), line.along_x);
-    return LinePlace(line.pixel + offset, next, across - whole);
+    return LinePlace(offset, select(vec2i(1, 0), vec2i(0, 1), line.along_x), across - whole);
 }
 
 // The tap `k` steps from the pixel; of lines that are not `inside`, clamped to the picture.
 fn line_tap(image: texture_2d<f32>, slot: u32, line: Line, k: i32, inside: bool) -> LineTap {
     let place = line_place(line, k);
     if inside {
-        let texel = place.pixel - grid.inputs[slot].xy;
+        let texel = line.texel + place.offset;
         return LineTap(textureLoad(image, texel, 0), textureLoad(image, texel + place.next, 0), place.f);
     }
-    return LineTap(fetch(image, slot, place.pixel), fetch(image, slot, place.pixel + place.next), place.f);
+    let p = line.pixel + place.offset;
+    return LineTap(fetch(image, slot, p), fetch(image, slot, p + place.next), place.f);
 }

@@ -55,6 +55,13 @@ fn window_step(taps: vec2i) -> vec2i {
     return vec2i(columns, min(taps.y, WINDOW_PIXELS / (columns + 7) - 7));
 }
 
+// How far a disc reaches to either side in row `dy`: the largest whole number whose square and that of dy are `limit`
+// together, or less.
+fn window_chord(limit: i32, dy: i32) -> i32 {
+    // Half a unit more keeps the root of a square from coming out too small, and reaches no other.
+    return i32(sqrt(f32(limit - dy * dy) + 0.5));
+}
+
 // A part whose taps are fetched one by one.
 fn window_unshared(id: vec3u) -> WindowPart {
     return WindowPart(group_pixel(id), 0, 0, 0, false);

@@ -41,12 +41,15 @@ struct Sums {
 // Both Gaussians along the line, of which the pixel itself holds `middle`.
 fn gather(line: Line, middle: vec2f, inside: bool) -> Sums {
     let ds = sqrt(1.0 + line.slope * line.slope);
+    // Loops take no parameter from memory that they can hold.
+    let rates = vec2f(params.narrow, params.wide);
+    let halfwidth = params.halfwidth;
     var sums = Sums(middle, middle);
-    for (var k = 1; f32(k) * ds <= params.halfwidth; k++) {
+    for (var k = 1; f32(k) * ds <= halfwidth; k++) {
         let d = f32(k) * ds;
         let both = sample(line, k, inside) + sample(line, -k, inside);
-        sums.narrow += exp(params.narrow * d * d) * both;
-        sums.wide += exp(params.wide * d * d) * both;
+        sums.narrow += exp(rates.x * d * d) * both;
+        sums.wide += exp(rates.y * d * d) * both;
     }
     return sums;
 }
@@ -60,7 +63,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let t = tensor_tangent(fetch(field, 1u, p));
     // The gradient is (t.y, -t.x); its sign means nothing.
     let upright = abs(t.x) > abs(t.y);
-    let line = Line(p, !upright, select(-t.x / t.y, -t.y / t.x, upright));
+    let line = line_through(p, 0u, !upright, select(-t.x / t.y, -t.y / t.x, upright));
     let middle = fetch(lightness, 0u, p).xy;
     var sums: Sums;
     if line_inside(line, 0u, i32(params.halfwidth)) {

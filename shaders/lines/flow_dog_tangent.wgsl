@@ -25,6 +25,27 @@ struct Params {
 @group(0) @binding(3) var field: texture_2d<f32>;
 @group(0) @binding(4) var target_image: texture_storage_2d<r32float, write>;
 
+// The Gaussian along both sides of the line through `origin`, up to `limit` pixels away, added to `first`.
+fn gather(origin: vec2f, tangent: vec2f, limit: f32, first: vec2f, inside: bool) -> vec2f {
+    // exp(-u^2 / 2 sigma^2) as a power of two.
+    let falloff = -0.72134752 / max(params.sigma * params.sigma, 1e-6);
+    // Loops take no parameter from memory that they can hold.
+    let integrator = params.integrator;
+    var sum = first;
+    for (var side = -1.0; side <= 1.0; side += 2.0) {
+        var line = stream_begin(origin, side * tangent, inside);
+        for (var u = 1.0; u <= limit; u += 1.0) {
+            stream_step(&line, field, 1u, 1.0, integrator);
+            if stream_ends(line, 0u) {
+                break;
+            }
+            let around = stream_surroundings(line, 0u, line.position);
+            sum += exp2(falloff * u * u) * sample_among(response, around).xy;
+        }
+    }
+    return sum;
+}
+
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
@@ -33,19 +54,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let origin = centre(id);
     // A last bit must not decide whether a whole number of pixels is reached.
     let limit = floor(2.0 * params.sigma + 1e-3);
-    // exp(-u^2 / 2 sigma^2) as a power of two.
-    let falloff = -0.72134752 / max(params.sigma * params.sigma, 1e-6);
     let tangent = tensor_tangent(fetch(field, 1u, pixel(id)));
-    var sum = fetch(response, 0u, pixel(id)).xy;
-    for (var side = -1.0; side <= 1.0; side += 2.0) {
-        var line = stream_begin(origin, side * tangent);
-        for (var u = 1.0; u <= limit; u += 1.0) {
-            stream_step(&line, field, 1u, 1.0, params.integrator);
-            if stream_outside(0u, line.position) {
-                break;
-            }
-            sum += exp2(falloff * u * u) * sample_linear(response, 0u, line.position).xy;
-        }
+    let first = fetch(response, 0u, pixel(id)).xy;
+    var sum: vec2f;
+    if stream_inside(0u, origin, limit) && stream_inside(1u, origin, limit) {
+        sum = gather(origin, tangent, limit, first, true);
+    } else {
+        sum = gather(origin, tangent, limit, first, false);
     }
     let edge = edge_of_sum(sum, params.threshold, params.epsilon, params.phi);
     textureStore(target_image, vec2i(id.xy), vec4f(edge));

@@ -93,10 +93,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             }
             continue;
         }
-        var line = stream_begin(centre(id), side * tangent);
+        var line = stream_begin(centre(id), side * tangent, false);
         for (var u = 1.0; u <= limit; u += 1.0) {
             stream_step(&line, field, 1u, 1.0, params.stepping);
-            if stream_outside(0u, line.position) {
+            if stream_ends(line, 0u) {
                 break;
             }
             sum += exp2(falloff * u * u) * across(line.position, stream_tangent(field, 1u, line.position));

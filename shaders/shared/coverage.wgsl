@@ -21,13 +21,20 @@ fn fetch_covered(image: texture_2d<f32>, slot: u32, p: vec2i) -> vec4f {
     return premultiply(fetch(image, slot, p));
 }
 
-// Between the pixel at absolute position p and that at p + next, `share` of the way, colours multiplied by their alpha; of
-// pixels that are not `inside`, clamped to the picture.
-fn covered_between(image: texture_2d<f32>, slot: u32, p: vec2i, next: vec2i, share: f32, inside: bool) -> vec4f {
+// Between two pixels, `share` of the way from that at absolute position p to that at p + next, colours multiplied by their
+// alpha; where both lie `inside` the picture, by the first one's texel.
+fn covered_between(
+    image: texture_2d<f32>,
+    slot: u32,
+    p: vec2i,
+    texel: vec2i,
+    next: vec2i,
+    share: f32,
+    inside: bool,
+) -> vec4f {
     var a: vec4f;
     var b: vec4f;
     if inside {
-        let texel = p - grid.inputs[slot].xy;
         a = premultiply(textureLoad(image, texel, 0));
         b = premultiply(textureLoad(image, texel + next, 0));
     } else {
@@ -37,14 +44,18 @@ fn covered_between(image: texture_2d<f32>, slot: u32, p: vec2i, next: vec2i, sha
     return a + (b - a) * share;
 }
 
-// `sample_linear` of colours multiplied by their alpha.
-fn sample_covered(image: texture_2d<f32>, slot: u32, p: vec2f) -> vec4f {
-    let s = surroundings(slot, p);
+// `sample_among` of colours multiplied by their alpha.
+fn sample_covered_among(image: texture_2d<f32>, s: Surroundings) -> vec4f {
     let a = premultiply(textureLoad(image, s.near, 0));
     let b = premultiply(textureLoad(image, vec2i(s.far.x, s.near.y), 0));
     let c = premultiply(textureLoad(image, vec2i(s.near.x, s.far.y), 0));
     let d = premultiply(textureLoad(image, s.far, 0));
     return bilinear(a, b, c, d, s.f);
+}
+
+// `sample_linear` of colours multiplied by their alpha.
+fn sample_covered(image: texture_2d<f32>, slot: u32, p: vec2f) -> vec4f {
+    return sample_covered_among(image, surroundings(slot, p));
 }
 
 // Mean coverage, exactly 1 where only rounding can have kept it from that.

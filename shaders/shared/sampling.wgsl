@@ -25,6 +25,13 @@ fn surroundings(slot: u32, p: vec2f) -> Surroundings {
     return Surroundings(near, min(near + 1, last - place.xy), fract(q));
 }
 
+// The same of positions whose four pixels the picture is known to hold.
+fn surroundings_inside(slot: u32, p: vec2f) -> Surroundings {
+    let q = p - 0.5;
+    let near = vec2i(q) - grid.inputs[slot].xy;
+    return Surroundings(near, near + 1, fract(q));
+}
+
 // Four pixels interpolated: a and b above c and d.
 fn bilinear(a: vec4f, b: vec4f, c: vec4f, d: vec4f, f: vec2f) -> vec4f {
     let top = a + (b - a) * f.x;
@@ -32,12 +39,16 @@ fn bilinear(a: vec4f, b: vec4f, c: vec4f, d: vec4f, f: vec2f) -> vec4f {
     return top + (bottom - top) * f.y;
 }
 
-// Input `slot` at absolute position p, interpolated.
-fn sample_linear(image: texture_2d<f32>, slot: u32, p: vec2f) -> vec4f {
-    let s = surroundings(slot, p);
+// The image among four pixels, interpolated.
+fn sample_among(image: texture_2d<f32>, s: Surroundings) -> vec4f {
     let a = textureLoad(image, s.near, 0);
     let b = textureLoad(image, vec2i(s.far.x, s.near.y), 0);
     let c = textureLoad(image, vec2i(s.near.x, s.far.y), 0);
     let d = textureLoad(image, s.far, 0);
     return bilinear(a, b, c, d, s.f);
+}
+
+// Input `slot` at absolute position p, interpolated.
+fn sample_linear(image: texture_2d<f32>, slot: u32, p: vec2f) -> vec4f {
+    return sample_among(image, surroundings(slot, p));
 }

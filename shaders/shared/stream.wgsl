@@ -7,12 +7,15 @@
 // Tensors are interpolated, never eigenvectors: those are defined up to sign, and opposite ones would
 // cancel. A line is traced from its centre in one direction and then in the other:
 //
-//   var line = stream_begin(centre(id), side * stream_tangent(field, slot, centre(id)));
+//   var line = stream_begin(centre(id), side * stream_tangent(field, slot, centre(id)), inside);
 //   for (u = h; u <= radius; u += h) {
 //       stream_step(&line, field, slot, h, integrator);
-//       if stream_outside(slot, line.position) { break; }
+//       if stream_ends(line, slot) { break; }
 //       ...
 //   }
+//
+// Lines that cannot reach the picture's edge need no clamping: kernels where that counts have this in a function that
+// is called once with `inside` as true and once as false, as stream_inside says.
 //
 // Every tensor is then read within `radius` of the centre: a kernel's support is floor(radius) + 1 for steps of one pixel.
 
@@ -29,6 +32,22 @@ struct Stream {
     begins: bool,
     // True where tensors of the nearest pixels are taken, not interpolated ones.
     nearest: bool,
+    // True where the picture holds all that the line reads.
+    inside: bool,
+}
+
+// Whether it does: of a line from absolute position p, no longer than `length`, in the picture of input `slot`.
+fn stream_inside(slot: u32, p: vec2f, length: f32) -> bool {
+    let room = vec2f(length + 2.0);
+    return all(p >= room) && all(p + room <= vec2f(grid.inputs[slot].zw));
+}
+
+// The pixels around position p on the line.
+fn stream_surroundings(line: Stream, slot: u32, p: vec2f) -> Surroundings {
+    if line.inside {
+        return surroundings_inside(slot, p);
+    }
+    return surroundings(slot, p);
 }
 
 // Unit minor eigenvector at p, of either sign.
@@ -37,14 +56,16 @@ fn stream_tangent(field: texture_2d<f32>, slot: u32, p: vec2f) -> vec2f {
 }
 
 // A line that starts at p towards the unit vector `direction`, which is the tangent at p or its opposite.
-fn stream_begin(p: vec2f, direction: vec2f) -> Stream {
-    return Stream(p, direction, 1.0, direction, true, false);
+fn stream_begin(p: vec2f, direction: vec2f, inside: bool) -> Stream {
+    return Stream(p, direction, 1.0, direction, true, false, inside);
 }
 
-// The same on the side of the unit vector `direction`; at the `nearest` pixel's centre nothing is interpolated.
-fn stream_tangent_along(field: texture_2d<f32>, slot: u32, p: vec2f, direction: vec2f, nearest: bool) -> Along {
-    let tensor = sample_linear(field, slot, select(p, floor(p) + 0.5, nearest));
-    return tensor_tangent_along(tensor.x - tensor.z, tensor.y, direction);
+// The unit minor eigenvector at p, turned to where the line goes; at the nearest pixel's centre nothing is
+// interpolated.
+fn stream_tangent_along(line: Stream, field: texture_2d<f32>, slot: u32, p: vec2f) -> Along {
+    let place = select(p, floor(p) + 0.5, line.nearest);
+    let tensor = sample_among(field, stream_surroundings(line, slot, place));
+    return tensor_tangent_along(tensor.x - tensor.z, tensor.y, line.direction);
 }
 
 // Euler's method (2.176, 2.177).
@@ -57,18 +78,20 @@ const STREAM_TWO_STEP = 2u;
 
 // Moves by `h` pixels.
 fn stream_step(line: ptr<function, Stream>, field: texture_2d<f32>, slot: u32, h: f32, integrator: u32) {
-    let from_here = (*line).position;
-    let last = (*line).direction;
-    let begins = (*line).begins;
-    var next = Along(select(last, (*line).ahead, integrator == STREAM_TWO_STEP), 1.0);
-    if !begins && integrator != STREAM_TWO_STEP {
-        next = stream_tangent_along(field, slot, from_here, last, (*line).nearest);
+    let from_here = *line;
+    let last = from_here.direction;
+    var next = Along(select(last, from_here.ahead, integrator == STREAM_TWO_STEP), 1.0);
+    if !from_here.begins && integrator != STREAM_TWO_STEP {
+        next = stream_tangent_along(from_here, field, slot, from_here.position);
     }
     if integrator != STREAM_EULER {
-        next = stream_tangent_along(field, slot, from_here + (0.5 * h) * next.tangent, last, (*line).nearest);
+        next = stream_tangent_along(from_here, field, slot, from_here.position + (0.5 * h) * next.tangent);
     }
-    let ahead = next.tangent + select(0.5, 1.0, begins) * (next.tangent - last);
-    *line = Stream(from_here + h * next.tangent, next.tangent, next.cosine, ahead, false, (*line).nearest);
+    (*line).position = from_here.position + h * next.tangent;
+    (*line).direction = next.tangent;
+    (*line).turn = next.cosine;
+    (*line).ahead = next.tangent + select(0.5, 1.0, from_here.begins) * (next.tangent - last);
+    (*line).begins = false;
 }
 
 // Lines of no more steps to a side keep theirs.
@@ -88,4 +111,9 @@ fn stream_stretched(steps: f32, few: f32) -> f32 {
 // True when p has left the picture of input `slot`.
 fn stream_outside(slot: u32, p: vec2f) -> bool {
     return any(p < vec2f(0.0)) || any(p >= vec2f(grid.inputs[slot].zw));
+}
+
+// True when the line has left the picture of input `slot`.
+fn stream_ends(line: Stream, slot: u32) -> bool {
+    return !line.inside && stream_outside(slot, line.position);
 }

@@ -16,6 +16,9 @@ struct Params {
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
 
+// Below every value.
+const LOWEST: f32 = -3.40282346e38;
+
 const WINDOW_PIXELS: i32 = WINDOW_AREA;
 
 fn window_tap(p: vec2i) -> vec4f {
@@ -26,7 +29,10 @@ fn window_tap(p: vec2i) -> vec4f {
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let p = group_pixel(id);
     let origin = fetch(source, 0u, p);
-    var best = vec3f(0.0);
+    // Loops take no parameter from memory that they can hold.
+    let sign = params.sign;
+    let limit = params.limit;
+    var best = vec3f(LOWEST);
     var seen = false;
     let step = window_step(vec2i(2 * params.extent + 1));
     for (var y = -params.extent; y <= params.extent; y += step.y) {
@@ -34,19 +40,17 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             let last = min(vec2i(x, y) + step - 1, vec2i(params.extent));
             let part = window_load(id, vec2i(x, y), last);
             for (var dy = y; dy <= last.y; dy++) {
-                for (var dx = x; dx <= last.x; dx++) {
+                let chord = window_chord(limit, dy);
+                for (var dx = max(x, -chord); dx <= min(last.x, chord); dx++) {
                     let tap = window_read(part, vec2i(dx, dy));
-                    if dx * dx + dy * dy > params.limit || tap.a < 0.5 {
-                        continue;
-                    }
-                    let value = params.sign * tap.rgb;
-                    best = select(value, max(best, value), seen);
-                    seen = true;
+                    let covered = tap.a >= 0.5;
+                    best = max(best, select(vec3f(LOWEST), sign * tap.rgb, covered));
+                    seen = seen || covered;
                 }
             }
         }
     }
-    let color = select(origin.rgb, params.sign * best, seen);
+    let color = select(origin.rgb, sign * best, seen);
     if !outside(id) {
         textureStore(target_image, vec2i(id.xy), vec4f(color, origin.a));
     }

@@ -86,7 +86,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let first = vec4f(origin.rgb * origin.a, origin.a);
     var sum = select(first, vec4f(0.0), centres);
     for (var side = -1.0; side <= 1.0; side += 2.0) {
-        var line = stream_begin(start, side * tangent);
+        var line = stream_begin(start, side * tangent, false);
         var last = first;
         var last_u = 0.0;
         for (var u = 1.0; u <= params.radius; u += 1.0) {

@@ -19,6 +19,28 @@ struct Params {
 const INPUT_TENSORS = 1u;
 const INPUT_NOISE = 2u;
 
+// Where the noise is greatest on both sides of the line through `origin`, up to `limit` pixels away; it is `first`
+// there.
+fn greatest(origin: vec2f, tangent: vec2f, limit: f32, first: f32, inside: bool) -> vec2f {
+    var place = origin;
+    var most = first;
+    for (var side = -1.0; side <= 1.0; side += 2.0) {
+        var line = stream_begin(origin, side * tangent, inside);
+        for (var u = 1.0; u <= limit; u += 1.0) {
+            stream_step(&line, tensors, INPUT_TENSORS, 1.0, STREAM_MIDPOINT);
+            if stream_ends(line, 0u) {
+                break;
+            }
+            let value = sample_among(noise, stream_surroundings(line, INPUT_NOISE, line.position)).x;
+            if value > most {
+                most = value;
+                place = line.position;
+            }
+        }
+    }
+    return place;
+}
+
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
@@ -33,21 +55,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     limit += 1e-3;
     let tangent = tensor_tangent(tensor);
-    var place = origin;
-    var most = fetch(noise, INPUT_NOISE, pixel(id)).x;
-    for (var side = -1.0; side <= 1.0; side += 2.0) {
-        var line = stream_begin(origin, side * tangent);
-        for (var u = 1.0; u <= limit; u += 1.0) {
-            stream_step(&line, tensors, INPUT_TENSORS, 1.0, STREAM_MIDPOINT);
-            if stream_outside(0u, line.position) {
-                break;
-            }
-            let value = sample_linear(noise, INPUT_NOISE, line.position).x;
-            if value > most {
-                most = value;
-                place = line.position;
-            }
-        }
+    let first = fetch(noise, INPUT_NOISE, pixel(id)).x;
+    var place: vec2f;
+    if stream_inside(INPUT_TENSORS, origin, limit) && stream_inside(INPUT_NOISE, origin, limit) {
+        place = greatest(origin, tangent, limit, first, true);
+    } else {
+        place = greatest(origin, tangent, limit, first, false);
     }
     let own = fetch(source, 0u, pixel(id));
     let found = fetch(source, 0u, vec2i(floor(place)));

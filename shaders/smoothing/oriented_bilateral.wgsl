@@ -33,6 +33,8 @@ struct Weighting {
     origin: vec3f,
     domain: f32,
     range: f32,
+    // `params.sampling`: loops take no parameter from memory that they can hold.
+    sampling: u32,
 }
 
 // Of a colour, for the `domain` part of the exponent.
@@ -44,14 +46,15 @@ fn weight(color: vec3f, w: Weighting, domain: f32) -> f32 {
 // The tap `k` steps along the line times its weight.
 fn weighted(line: Line, k: i32, w: Weighting, inside: bool) -> vec4f {
     let domain = w.domain * f32(k) * f32(k);
-    if params.sampling == SAMPLING_LINEAR {
-        let place = line_place(line, k);
-        let mixed = covered_between(source, 0u, place.pixel, place.next, place.f, inside);
+    if w.sampling == SAMPLING_LINEAR {
+        let at = line_place(line, k);
+        let p = line.pixel + at.offset;
+        let mixed = covered_between(source, 0u, p, line.texel + at.offset, at.next, at.f, inside);
         let color = mixed.rgb / max(mixed.a, LEAST_COVERAGE);
         return weight(color, w, domain) * mixed;
     }
     let tap = line_tap(source, 0u, line, k, inside);
-    let near = params.sampling == SAMPLING_NEAREST;
+    let near = w.sampling == SAMPLING_NEAREST;
     let shares = vec2f(1.0 - tap.f, tap.f);
     let share = select(shares, vec2f(shares >= vec2f(0.5)), near);
     let wa = share.x * tap.a.a * weight(tap.a.rgb, w, domain);
@@ -84,7 +87,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     // Steps of one pixel along the axis nearer to t: taps then lie between two pixels (3.6, 3.7).
     let along_x = abs(t.x) > abs(t.y);
     let major = select(t.y, t.x, along_x);
-    let line = Line(p, along_x, select(t.x, t.y, along_x) / major);
+    let line = line_through(p, 0u, along_x, select(t.x, t.y, along_x) / major);
     let steps = i32((params.cutoff * scale + 1e-3) * abs(major));
 
     let sigma_d = params.sigma_d * scale * abs(major);
@@ -93,6 +96,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         origin.rgb,
         -0.72134752 / max(sigma_d * sigma_d, 1e-6),
         -0.72134752 / max(params.sigma_r * params.sigma_r, 1e-6),
+        params.sampling,
     );
     let first = premultiply(origin);
     var sum: vec4f;

@@ -35,6 +35,8 @@ fn window_tap(p: vec2i) -> vec4f {
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let p = group_pixel(id);
+    // Loops take no parameter from memory that they can hold.
+    let limit = params.limit;
     // Sums of the tensors around, plain and by their magnitude.
     var plain = vec3f(0.0);
     var strong = vec3f(0.0);
@@ -44,10 +46,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             let end = min(vec2i(x, y) + step - 1, params.reach);
             let part = window_load(id, vec2i(x, y), end);
             for (var j = y; j <= end.y; j++) {
+                let across = weight(j);
                 for (var i = x; i <= end.x; i++) {
-                    if f32(i * i + j * j) < params.limit {
+                    if f32(i * i + j * j) < limit {
                         let t = window_read(part, vec2i(i, j));
-                        let w = weight(i) * weight(j);
+                        let w = weight(i) * across;
                         plain += w * t.xyz;
                         strong += w * t.w * t.xyz;
                     }

@@ -110,11 +110,11 @@ impl Driver {
         // SAFETY: the pipeline lives and was made to keep its statistics; compute pipelines have one executable.
         let found = unsafe { self.executables.get_pipeline_executable_statistics(&info) };
         let number = |s: &vk::PipelineExecutableStatisticKHR<'_>| {
-            // SAFETY: the field is the one that the format names.
-            match s.format {
-                vk::PipelineExecutableStatisticFormatKHR::UINT64 => Some(unsafe { s.value.u64 }),
-                _ => None,
+            if s.format != vk::PipelineExecutableStatisticFormatKHR::UINT64 {
+                return None;
             }
+            // SAFETY: the field is the one that the format names.
+            Some(unsafe { s.value.u64 })
         };
         let found = found.map_err(Error::vulkan("statistics"))?;
         Ok(found.iter().filter_map(|s| Some((text(s.name_as_c_str()), number(s)?))).collect())
