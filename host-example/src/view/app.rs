@@ -132,6 +132,7 @@ impl App {
         } else if let Some(input) = &self.input {
             // The letters lived on the device that is gone.
             input.egui_ctx().set_fonts(egui::FontDefinitions::default());
+            self.session.previews.forget_textures();
         }
         window.set_visible(true);
         self.session.record.adapter = stage.adapter();
@@ -213,6 +214,10 @@ impl App {
             Drawn::Begun => self.due = Some(Instant::now()),
             Drawn::Controls => {}
         }
+        if let Some(frame) = stage.snapshot(session)? {
+            session.show_scene_frame(frame);
+            self.due = Some(Instant::now());
+        }
         if session.reel.as_ref().is_some_and(Reel::is_waiting) {
             let soon = Instant::now() + Duration::from_millis(20);
             self.due = Some(self.due.map_or(soon, |due| due.min(soon)));
@@ -247,8 +252,8 @@ impl App {
                 Key::Character("z" | "Z" | "y") => session.redo(),
                 Key::Character("e") => session.plan_export(),
                 Key::Character("o") => session.wishes.push(Wish::ChooseFile),
-                Key::Character("s") => session.wishes.push(Wish::SaveLook(self.modifiers.shift_key())),
-                Key::Character("S") => session.wishes.push(Wish::SaveLook(true)),
+                Key::Character("s") => session.save_look(self.modifiers.shift_key()),
+                Key::Character("S") => session.save_look(true),
                 Key::Character("q") => session.wishes.push(Wish::Quit),
                 _ => {}
             }
@@ -267,8 +272,8 @@ impl App {
         let (Some(window), Some(input)) = (&self.window, &mut self.input) else { return };
         let tab = matches!(event, WindowEvent::KeyboardInput { event, .. }
             if event.logical_key == Key::Named(NamedKey::Tab));
-        // Tab goes from style to style, unless something is being typed.
-        if tab && !input.egui_ctx().text_edit_focused() {
+        // Tab goes from style to style, unless something is being typed or chosen.
+        if tab && !input.egui_ctx().text_edit_focused() && !self.session.is_covered() {
             return;
         }
         if input.on_window_event(window, event).repaint && !matches!(event, WindowEvent::RedrawRequested) {

@@ -10,6 +10,7 @@ use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
 use super::canvas::{Arrangement, Canvas, Numbers, SURROUND, Shown};
+use super::document::frame::Frame;
 use super::easel::Overlay;
 use super::lane::{Lane, Part};
 use super::look::Look;
@@ -17,6 +18,7 @@ use super::panel::Panel;
 use super::pictures::{PictureSource, numbers};
 use super::probe::Probe;
 use super::session::{Session, Which};
+use super::snapshot::Snapshots;
 use super::source::{SceneSource, Source};
 use super::worker::Wake;
 use crate::error::{Error, Result};
@@ -35,6 +37,7 @@ pub struct Stage {
     source: Option<Source>,
     canvas: Canvas,
     probe: Probe,
+    snapshots: Snapshots<Face>,
     /// Colours under the pointer, before and after, as of the last frame.
     pub probed: Option<[[f32; 4]; 2]>,
     /// Draws the controls.
@@ -77,6 +80,9 @@ struct Made {
     scene: Option<(View, Light, f32)>,
 }
 
+/// What a frame of a scene shows, looks apart.
+type Face = (IsophoteRequest, u64, Option<(View, Light, f32)>);
+
 /// What recording a part of a picture may take.
 const GOAL: [Duration; 2] = [Duration::from_millis(15), Duration::from_millis(40)];
 
@@ -115,6 +121,7 @@ impl Stage {
             source: None,
             canvas,
             probe,
+            snapshots: Snapshots::new(wake)?,
             probed: None,
             panel,
             surface,
@@ -218,6 +225,31 @@ impl Stage {
             self.sources += 1;
         }
         Ok(())
+    }
+
+    /// The frame of a scene that was copied since the last call, for previews. Copies the present one where it stands still and
+    /// is covered by them.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the device refuses.
+    pub fn snapshot(&mut self, session: &Session) -> Result<Option<Frame>> {
+        let taken = self.snapshots.answer();
+        let is_wanted = session.is_covered() && !session.is_playing() && !self.is_begun;
+        let made = self.made.as_ref().filter(|made| is_wanted && made.asked.scale == 1.0);
+        let face = made.map(|made| (made.asked, made.source, made.scene));
+        if let (Some(Source::Scene(source)), Some(scenery), Some(face)) =
+            (&mut self.source, &session.scenery, face)
+            && !self.snapshots.shows(&face)
+        {
+            if source.add_rest_positions() {
+                self.lanes.iter_mut().for_each(Lane::unbind);
+                let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+                source.encode(&mut encoder, scenery);
+                self.gpu.queue.submit([encoder.finish()]);
+            }
+            self.snapshots.take(&self.gpu, source, face);
+        }
+        taken.transpose()
     }
 
     /// Whether a look is being built.
