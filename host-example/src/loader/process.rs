@@ -3,8 +3,8 @@
 use std::ffi::c_void;
 
 use super::contract::{
-    self as c, IsophoteControl, IsophoteDevice, IsophoteImage, IsophoteInput, IsophotePassTime,
-    IsophoteRect, IsophoteReport, IsophoteRequest, IsophoteSample, IsophoteSupport, IsophoteTarget,
+    self as c, IsophoteControl, IsophoteDevice, IsophoteImage, IsophoteInput, IsophotePassTime, IsophoteRect,
+    IsophoteReport, IsophoteRequest, IsophoteSample, IsophoteSupport, IsophoteTarget,
 };
 use super::device::Device;
 use super::graph::Graph;

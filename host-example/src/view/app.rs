@@ -123,7 +123,10 @@ impl App {
             let context = egui::Context::default();
             ui::theme::apply(&context);
             // Where frames are slow, a click takes as long as two of them.
-            context.options_mut(|options| options.input_options.max_click_duration = f64::INFINITY);
+            context.options_mut(|options| {
+                options.input_options.max_click_duration = f64::INFINITY;
+                options.input_options.max_double_click_delay = 0.6;
+            });
             let scale = Some(window.scale_factor() as f32);
             let side = Some(stage.most_texels());
             let mut input = State::new(context, egui::ViewportId::ROOT, event_loop, scale, None, side);

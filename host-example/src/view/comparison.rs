@@ -38,7 +38,8 @@ pub fn grid(count: usize, area: Area, aspect: f32) -> (usize, usize) {
 /// Where panes lie in an area, rows from the top; all are of the same size.
 pub fn areas(count: usize, area: Area, aspect: f32) -> Vec<Area> {
     let (columns, rows) = grid(count, area, aspect);
-    let side = |length: f32, parts: usize| ((length - GAP * (parts - 1) as f32) / parts as f32).floor().max(1.0);
+    let side =
+        |length: f32, parts: usize| ((length - GAP * (parts - 1) as f32) / parts as f32).floor().max(1.0);
     let (width, height) = (side(area.width, columns), side(area.height, rows));
     let place = |index: usize| {
         let (column, row) = ((index % columns) as f32, (index / columns) as f32);
@@ -55,9 +56,14 @@ mod tests {
 
     #[test]
     fn pictures_are_as_large_as_they_can_be() {
-        for (count, aspect, wanted) in
-            [(2, 1.5, (1, 2)), (2, 0.7, (2, 1)), (4, 1.5, (2, 2)), (6, 1.0, (3, 2)), (6, 1.6, (2, 3)), (3, 4.0, (1, 3))]
-        {
+        for (count, aspect, wanted) in [
+            (2, 1.5, (1, 2)),
+            (2, 0.7, (2, 1)),
+            (4, 1.5, (2, 2)),
+            (6, 1.0, (3, 2)),
+            (6, 1.6, (2, 3)),
+            (3, 4.0, (1, 3)),
+        ] {
             assert_eq!(grid(count, AREA, aspect), wanted, "{count} of {aspect}");
         }
     }
@@ -69,9 +75,14 @@ mod tests {
             assert_eq!(areas.len(), count);
             for (index, a) in areas.iter().enumerate() {
                 assert_eq!((a.width, a.height), (areas[0].width, areas[0].height));
-                assert!(a.x + a.width <= AREA.width && a.y >= AREA.y && a.y + a.height <= AREA.y + AREA.height);
+                assert!(
+                    a.x + a.width <= AREA.width && a.y >= AREA.y && a.y + a.height <= AREA.y + AREA.height
+                );
                 for b in &areas[index + 1..] {
-                    assert!(a.x + a.width <= b.x || b.x + b.width <= a.x || a.y + a.height <= b.y, "{a:?} {b:?}");
+                    assert!(
+                        a.x + a.width <= b.x || b.x + b.width <= a.x || a.y + a.height <= b.y,
+                        "{a:?} {b:?}"
+                    );
                 }
             }
         }

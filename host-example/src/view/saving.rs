@@ -51,7 +51,8 @@ impl Saving {
     /// The name was changed, and with it that of the file where nobody has chosen another.
     pub fn rename(&mut self) {
         if self.follows {
-            self.path = self.file().with_file_name(format!("{}.json", stem(&self.words.name))).display().to_string();
+            self.path =
+                self.file().with_file_name(format!("{}.json", stem(&self.words.name))).display().to_string();
         }
         (self.asks, self.problem) = (false, None);
     }
@@ -69,8 +70,9 @@ impl Saving {
     /// # Errors
     /// As [`Look::save`].
     pub fn write(&self) -> Result<Look> {
-        let file = std::path::absolute(self.file())
-            .map_err(|e| Error::input(&self.path, format!("is no path: {e}"), "name a file that ends in .json"))?;
+        let file = std::path::absolute(self.file()).map_err(|e| {
+            Error::input(&self.path, format!("is no path: {e}"), "name a file that ends in .json")
+        })?;
         if let Some(folder) = file.parent() {
             std::fs::create_dir_all(folder)
                 .map_err(|e| Error::file(folder, format!("cannot be made: {e}"), "name another folder"))?;

@@ -161,6 +161,10 @@ impl Stage {
     /// [`Error::Failure`] when the device fails, [`Error::Input`] for a scene beyond its limits.
     pub fn follow(&mut self, session: &Session, scale: f32) -> Result<Vec<Error>> {
         self.follow_source(session, scale)?;
+        // What is covered is built when it is seen, where that takes the processor's time.
+        if session.is_covered() && self.is_software() {
+            return Ok(Vec::new());
+        }
         let Some(source) = &mut self.source else { return Ok(Vec::new()) };
         let overlay = session.easel.overlay.node().map(|node| Look::open(&session.library, node.as_ref()));
         let overlay = overlay.transpose()?.unwrap_or_else(Look::plain);

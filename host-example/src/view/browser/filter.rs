@@ -83,7 +83,9 @@ mod tests {
             text: text.into(),
             tags: tags.iter().map(|t| (*t).to_owned()).collect(),
         };
-        for (text, tags) in [("", &[][..]), ("noir DARK", &[]), ("toon", &["dark", "comic"]), (" ", &["Comic"])] {
+        for (text, tags) in
+            [("", &[][..]), ("noir DARK", &[]), ("toon", &["dark", "comic"]), (" ", &["Comic"])]
+        {
             assert!(filter(text, tags).takes(&entry), "{text} {tags:?}");
         }
         for (text, tags) in [("noir pale", &[][..]), ("", &["dark", "pale"]), ("ink", &["dark"])] {
@@ -93,7 +95,8 @@ mod tests {
 
     #[test]
     fn tags_are_counted_and_switched() {
-        let entries = [entry("a", "", &["dark", "Pale"]), entry("b", "", &["dark"]), entry("c", "", &["fine"])];
+        let entries =
+            [entry("a", "", &["dark", "Pale"]), entry("b", "", &["dark"]), entry("c", "", &["fine"])];
         let counted: Vec<(String, usize)> = tags(entries.iter());
         assert_eq!(counted, [("dark".into(), 2), ("fine".into(), 1), ("pale".into(), 1)]);
         let mut filter = Filter::default();

@@ -73,7 +73,8 @@ impl Listing {
     fn read_folder(&mut self, library: &Library, folder: &Path, depth: usize, seen: &mut HashSet<PathBuf>) {
         self.watched.push(folder.to_owned());
         let real = fs::canonicalize(folder);
-        let entries = real.and_then(|real| if seen.insert(real) { fs::read_dir(folder).map(Some) } else { Ok(None) });
+        let entries =
+            real.and_then(|real| if seen.insert(real) { fs::read_dir(folder).map(Some) } else { Ok(None) });
         let entries = match entries {
             Ok(Some(entries)) => entries,
             Ok(None) => return,
@@ -86,8 +87,9 @@ impl Listing {
         let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
         paths.retain(|path| !path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.')));
         paths.sort_by_key(|path| path.to_string_lossy().to_lowercase());
-        let is_look =
-            |path: &PathBuf| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) && path.is_file();
+        let is_look = |path: &PathBuf| {
+            path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) && path.is_file()
+        };
         for path in paths.iter().filter(|path| is_look(path)) {
             if self.watched.len() >= MOST_FILES {
                 return;

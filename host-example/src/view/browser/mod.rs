@@ -178,7 +178,9 @@ impl Browser {
     pub fn mark(&mut self, id: u64) -> bool {
         if let Some(at) = self.marked.iter().position(|marked| *marked == id) {
             self.marked.remove(at);
-        } else if self.marked.len() < MOST_COMPARED && self.entry(id).is_some_and(|entry| entry.look().is_some()) {
+        } else if self.marked.len() < MOST_COMPARED
+            && self.entry(id).is_some_and(|entry| entry.look().is_some())
+        {
             self.marked.push(id);
         } else {
             return false;

@@ -70,7 +70,8 @@ mod tests {
     #[test]
     fn words_are_a_title_and_a_title_is_words() {
         let file = Path::new("/looks/dusk.json");
-        let words = Words { name: " Dusk ".into(), about: "Soft lines.".into(), tags: "soft,, evening ,soft".into() };
+        let words =
+            Words { name: " Dusk ".into(), about: "Soft lines.".into(), tags: "soft,, evening ,soft".into() };
         let title = words.title(file);
         assert_eq!((title.name.as_deref(), title.tags.join("|")), (Some("Dusk"), "soft|evening".into()));
         assert_eq!(Words::of("Dusk", &title).title(file), title);
@@ -81,14 +82,19 @@ mod tests {
     fn only_the_title_of_a_file_changes() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("dusk.json");
-        std::fs::write(&file, r#"{"style": "ink", "lengths": "pixels", "parameters": {"tone": {"1": 0.2, "9": 1}}}"#)
-            .unwrap();
+        std::fs::write(
+            &file,
+            r#"{"style": "ink", "lengths": "pixels", "parameters": {"tone": {"1": 0.2, "9": 1}}}"#,
+        )
+        .unwrap();
         let before = Preset::parse(&file, &std::fs::read_to_string(&file).unwrap()).unwrap();
         let title = Title { name: Some("Dusk".into()), about: None, tags: vec!["soft".into()] };
         write(&file, &title).unwrap();
         let after = Preset::parse(&file, &std::fs::read_to_string(&file).unwrap()).unwrap();
         assert_eq!(after, Preset { title, ..before });
-        for (text, words) in [("{", "is no JSON"), (r#"{"nodes": []}"#, "is a graph"), (r#"{"sytle": "ink"}"#, "sytle")] {
+        for (text, words) in
+            [("{", "is no JSON"), (r#"{"nodes": []}"#, "is a graph"), (r#"{"sytle": "ink"}"#, "sytle")]
+        {
             std::fs::write(&file, text).unwrap();
             let error = write(&file, &Title::default()).unwrap_err().to_string();
             assert!(error.contains(words) && error.contains("dusk.json"), "{error}");

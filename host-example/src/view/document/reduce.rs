@@ -99,7 +99,9 @@ mod tests {
 
     #[test]
     fn areas_are_averaged_by_what_they_cover() {
-        let grey = |values: &[u8]| frame(values.len() as u32, 1, values.iter().flat_map(|v| [*v, *v, *v, 255]).collect());
+        let grey = |values: &[u8]| {
+            frame(values.len() as u32, 1, values.iter().flat_map(|v| [*v, *v, *v, 255]).collect())
+        };
         let half = reduced(&grey(&[0, 255, 51, 51]), (2, 1), whole((2, 1)));
         assert_eq!((half.width, half.height), (2, 1));
         assert!((half.color[0][0] - 0.5).abs() < 1e-6 && (half.color[1][0] - 0.2).abs() < 1e-6);

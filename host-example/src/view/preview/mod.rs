@@ -61,7 +61,8 @@ struct Slot {
 
 struct Made {
     image: Arc<ColorImage>,
-    texture: Option<TextureHandle>,
+    /// Whether it shows single pixels, and the texture.
+    texture: Option<(bool, TextureHandle)>,
     /// What it shows.
     order: Order,
     picture: Arc<Picture>,
@@ -114,14 +115,20 @@ impl Previews {
         self.slots.insert(place, slot);
     }
 
-    /// What can be drawn at a place, which may be of another picture or look than is asked for now.
-    pub fn get(&mut self, context: &Context, place: Place) -> Option<Preview> {
+    /// What can be drawn at a place, which may be of another picture or look than is asked for now. `crisp`: its pixels are to
+    /// be seen where it is magnified.
+    pub fn get(&mut self, context: &Context, place: Place, crisp: bool) -> Option<Preview> {
         let picture = self.picture.as_ref()?;
         let slot = self.slots.get_mut(&place)?;
         let made = slot.made.as_mut()?;
-        let texture = made.texture.get_or_insert_with(|| {
-            context.load_texture("preview", Arc::clone(&made.image), TextureOptions::LINEAR)
-        });
+        let (_, texture) = match made.texture.take().filter(|(known, _)| *known == crisp) {
+            Some(known) => made.texture.insert(known),
+            None => {
+                let options = if crisp { TextureOptions::NEAREST } else { TextureOptions::LINEAR };
+                let image = Arc::clone(&made.image);
+                made.texture.insert((crisp, context.load_texture("preview", image, options)))
+            }
+        };
         Some(Preview {
             texture: texture.id(),
             size: made.order.size,

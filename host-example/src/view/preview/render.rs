@@ -23,6 +23,10 @@ use crate::view::look::Look;
 /// Bytes a pixel that filtering takes beside the picture, for nearly all looks.
 const WORKING: u64 = 300;
 
+/// How many times finer small previews are computed than they are seen: enough for fine hatching to be as grey as it is in the
+/// whole picture made small.
+pub const FINENESS: u32 = 3;
+
 /// What is to be made.
 #[derive(Clone, Debug)]
 pub struct Order {

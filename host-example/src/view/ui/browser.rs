@@ -3,13 +3,17 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use egui::{Align2, Button, FontId, Id, Rect, RichText, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2};
+use egui::{
+    Align, Align2, Button, FontId, Id, Layout, Rect, RichText, ScrollArea, Sense, TextEdit, Ui, UiBuilder,
+    pos2, vec2,
+};
 
 use super::{card, theme};
-use crate::view::browser::filter::tags;
-use crate::view::browser::{Entry, Group};
+use crate::view::browser::filter::{Filter, tags};
+use crate::view::browser::{Entry, Group, Step};
+use crate::view::look::PLAIN;
 use crate::view::preview::Place;
-use crate::view::preview::render::Order;
+use crate::view::preview::render::{FINENESS, Order};
 use crate::view::session::{Session, Wish};
 
 /// Least width of a card in points.
@@ -20,12 +24,12 @@ const GAP: f32 = 14.0;
 const HEADING: f32 = 40.0;
 /// Points beside the grid.
 const MARGIN: f32 = 18.0;
-/// Tags that are offered at most.
-const MOST_TAGS: usize = 18;
+/// Points from one tag to the next, on average.
+const CHIP: f32 = 62.0;
+/// What is narrower has the controls on two lines.
+const NARROW: f32 = 720.0;
 /// Most bytes of previews that are made before they are seen.
 const AHEAD: usize = 48 << 20;
-/// Times that previews are finer than they are seen.
-pub const FINENESS: u32 = 2;
 
 /// What the controls of the browser ask for.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,50 +60,70 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session) {
         ui.add_space(4.0);
         chips(ui, session);
         ui.add_space(6.0);
-        ScrollArea::vertical().id_salt("looks").auto_shrink([false, false]).show_viewport(ui, |ui, viewport| {
-            grid(ui, viewport, session);
-        });
+        ScrollArea::vertical().id_salt("looks").auto_shrink([false, false]).show_viewport(
+            ui,
+            |ui, viewport| {
+                grid(ui, viewport, session);
+            },
+        );
     });
 }
 
-/// Searching, comparing, folders.
+/// Searching, comparing, folders; on two lines where there is little room.
 fn strip(ui: &mut Ui, session: &mut Session) {
+    let is_narrow = ui.available_width() < NARROW;
     ui.horizontal(|ui| {
         ui.set_min_height(28.0);
         ui.label(RichText::new("Looks").size(17.0).color(theme::BRIGHT));
         ui.add_space(8.0);
-        let field = TextEdit::singleline(&mut session.browser.filter.text)
-            .hint_text("Search names, tags and styles")
-            .desired_width(220.0);
-        let field = ui.add(field);
-        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Search looks"));
-        if field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter)) {
-            session.browser.selected = None;
-            session.browser.step(crate::view::browser::Step::Down);
+        search(ui, session);
+        if !is_narrow {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| buttons(ui, session));
         }
-        if !session.browser.filter.is_empty() && ui.button("Show all").clicked() {
-            session.browser.filter = Default::default();
-        }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if ui.button("Back to the picture").on_hover_text("Esc").clicked() {
-                session.browser.is_open = false;
-            }
-            if ui.button("Add a folder…").on_hover_text("Offer the looks of a folder and of those within it").clicked() {
-                session.wishes.push(Wish::ChooseFolder);
-            }
-            let marked = session.browser.marked.len();
-            let text = if marked > 0 { format!("Compare {marked}") } else { "Compare".to_owned() };
-            let button = Button::new(text).fill(if marked > 1 { theme::CHOSEN } else { ui.visuals().widgets.inactive.weak_bg_fill });
-            let button = ui.add_enabled(marked > 1, button);
-            let button = button.on_hover_text("See the marked looks beside each other (c)");
-            if button.on_disabled_hover_text("Mark two to six looks to see them beside each other").clicked() {
-                session.compare_marked();
-            }
-            if marked > 0 && ui.button("Clear marks").clicked() {
-                session.browser.marked.clear();
-            }
-        });
     });
+    if is_narrow {
+        ui.horizontal_wrapped(|ui| buttons(ui, session));
+    }
+}
+
+fn search(ui: &mut Ui, session: &mut Session) {
+    let width = ui.available_width().min(220.0);
+    let field = TextEdit::singleline(&mut session.browser.filter.text)
+        .hint_text("Search names, tags and styles")
+        .desired_width(width);
+    let field = ui.add(field);
+    field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Search looks"));
+    if field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter)) {
+        session.browser.selected = None;
+        session.browser.step(Step::Down);
+    }
+    if !session.browser.filter.is_empty() && ui.button("Show all").clicked() {
+        session.browser.filter = Filter::default();
+    }
+}
+
+fn buttons(ui: &mut Ui, session: &mut Session) {
+    if ui.button("Back to the picture").on_hover_text("Esc").clicked() {
+        session.browser.is_open = false;
+    }
+    let hint = "Offer the looks of a folder and of those within it";
+    if ui.button("Add a folder…").on_hover_text(hint).clicked() {
+        session.wishes.push(Wish::ChooseFolder);
+    }
+    let marked = session.browser.marked.len();
+    let text = if marked > 0 { format!("Compare {marked}") } else { "Compare".to_owned() };
+    let mut button = Button::new(text);
+    if marked > 1 {
+        button = button.fill(theme::CHOSEN);
+    }
+    let button =
+        ui.add_enabled(marked > 1, button).on_hover_text("See the marked looks beside each other (c)");
+    if button.on_disabled_hover_text("Mark two to six looks to see them beside each other").clicked() {
+        session.compare_marked();
+    }
+    if marked > 0 && ui.button("Clear marks").clicked() {
+        session.browser.marked.clear();
+    }
 }
 
 /// Tags that can be asked for.
@@ -107,8 +131,9 @@ fn chips(ui: &mut Ui, session: &mut Session) {
     let counted = tags(session.browser.entries().iter().map(|entry| &**entry));
     let wanted = session.browser.filter.tags.clone();
     let is_wanted = |tag: &str| wanted.iter().any(|known| known.eq_ignore_ascii_case(tag));
-    let mut shown: Vec<&str> = counted.iter().take(MOST_TAGS).map(|(tag, _)| tag.as_str()).collect();
-    shown.extend(counted.iter().skip(MOST_TAGS).map(|(tag, _)| tag.as_str()).filter(|tag| is_wanted(tag)));
+    let most = ((ui.available_width() / CHIP) as usize).max(6);
+    let mut shown: Vec<&str> = counted.iter().take(most).map(|(tag, _)| tag.as_str()).collect();
+    shown.extend(counted.iter().skip(most).map(|(tag, _)| tag.as_str()).filter(|tag| is_wanted(tag)));
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
         for tag in shown {
@@ -153,7 +178,9 @@ fn layout(session: &Session, width: f32, columns: usize) -> (Vec<(Rect, Item)>, 
 
 fn grid(ui: &mut Ui, viewport: Rect, session: &mut Session) {
     let width = ui.available_width() - 14.0;
-    let columns = (((width + GAP) / (LEAST + GAP)) as usize).max(1);
+    // Two beside each other can be compared where there is hardly room for them.
+    let least = if width < 2.0 * LEAST + GAP { 140.0 } else { LEAST };
+    let columns = (((width + GAP) / (least + GAP)) as usize).max(1);
     session.browser.columns = columns;
     let (items, height) = layout(session, width, columns);
     ui.set_height(height);
@@ -176,7 +203,8 @@ fn grid(ui: &mut Ui, viewport: Rect, session: &mut Session) {
     }
     let mut ahead = AHEAD;
     let below = |rect: &Rect| rect.min.y >= viewport.min.y;
-    let rest = unseen.iter().filter(|(rect, _)| below(rect)).chain(unseen.iter().filter(|(rect, _)| !below(rect)));
+    let rest =
+        unseen.iter().filter(|(rect, _)| below(rect)).chain(unseen.iter().filter(|(rect, _)| !below(rect)));
     for (rect, item) in rest {
         if let Item::Card(entry) = item
             && let Some(bytes) = ahead.checked_sub(card::want(ui, rect.size(), session, entry))
@@ -184,15 +212,18 @@ fn grid(ui: &mut Ui, viewport: Rect, session: &mut Session) {
             ahead = bytes;
         }
     }
-    let selected = seen.iter().chain(&unseen).find(|(_, item)| {
-        matches!(item, Item::Card(entry) if Some(entry.id) == session.browser.selected)
-    });
+    let selected = seen
+        .iter()
+        .chain(&unseen)
+        .find(|(_, item)| matches!(item, Item::Card(entry) if Some(entry.id) == session.browser.selected));
     if let Some((rect, _)) = selected
         && std::mem::take(&mut session.browser.scrolls)
     {
         ui.scroll_to_rect(rect.translate(corner).expand(GAP), None);
     }
-    act.into_iter().for_each(|act| perform(session, act));
+    if let Some(act) = act {
+        perform(ui, session, act);
+    }
 }
 
 /// The picture itself, which is behind cards that are not ready, is made before all others.
@@ -201,7 +232,7 @@ fn ask_plain(ui: &Ui, session: &mut Session, items: &[(Rect, Item)]) {
     let (Some((rect, _)), Some(picture)) = (card, session.previews.picture()) else { return };
     let size = card::pixels(ui, rect.size(), picture);
     let plain = session.looks.iter().find(|look| look.is_plain()).cloned();
-    let plain = plain.or_else(|| session.browser.find(crate::view::look::PLAIN.as_ref())?.look().cloned());
+    let plain = plain.or_else(|| session.browser.find(PLAIN.as_ref())?.look().cloned());
     if let Some(look) = plain {
         session.previews.want(Place::Plain, Order::whole(look, size, FINENESS));
     }
@@ -224,15 +255,20 @@ fn heading(ui: &mut Ui, rect: Rect, session: &Session, group: &Group, count: usi
     if !session.settings.look_folders.contains(folder) {
         return None;
     }
-    let button = Button::new(RichText::new("Remove from the list").size(11.0).color(theme::FAINT)).frame(false);
+    let button =
+        Button::new(RichText::new("Remove from the list").size(11.0).color(theme::FAINT)).frame(false);
     let place = Rect::from_min_size(pos2(number.right() + 14.0, base - 17.0), vec2(120.0, 18.0));
-    let button = ui.put(place, button).on_hover_text("Offer these looks no more; the files stay where they are");
-    button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Remove {text} from the list")));
+    let button =
+        ui.put(place, button).on_hover_text("Offer these looks no more; the files stay where they are");
+    button.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Remove {text} from the list"))
+    });
     button.clicked().then(|| Act::RemoveFolder(folder.clone()))
 }
 
-/// Does what the controls ask for.
-pub fn perform(session: &mut Session, act: Act) {
+/// Does what the controls ask for, after which they show something else.
+pub fn perform(ui: &Ui, session: &mut Session, act: Act) {
+    ui.ctx().request_repaint();
     match act {
         Act::Apply(id) => session.apply(id, false),
         Act::ApplyAndClose(id) => session.apply(id, true),

@@ -1,16 +1,16 @@
 //! A card of the browser: what a look makes of the picture, its name, style and tags.
 
 use egui::{
-    Align, Align2, Color32, FontId, Galley, Id, Layout, Rect, Response, RichText, Sense, Stroke, StrokeKind, TextureId, Ui,
-    UiBuilder, pos2, vec2,
+    Align, Align2, Color32, FontId, Galley, Id, Layout, Rect, Response, RichText, Sense, Stroke, StrokeKind,
+    TextureId, Ui, UiBuilder, pos2, vec2,
 };
 use std::sync::Arc;
 
-use super::browser::{Act, FINENESS};
+use super::browser::Act;
 use super::theme;
 use crate::view::browser::{Content, Entry};
 use crate::view::preview::picture::Picture;
-use crate::view::preview::render::Order;
+use crate::view::preview::render::{FINENESS, Order};
 use crate::view::preview::{Place, Preview};
 use crate::view::session::Session;
 
@@ -23,9 +23,10 @@ const ASPECTS: [f32; 2] = [0.5, 0.8];
 
 /// Height of a card of a width.
 pub fn height(width: f32, session: &Session) -> f32 {
-    let aspect = session.previews.picture().map_or(2.0 / 3.0, |picture| {
-        picture.frame.height as f32 / picture.frame.width.max(1) as f32
-    });
+    let aspect = session
+        .previews
+        .picture()
+        .map_or(2.0 / 3.0, |picture| picture.frame.height as f32 / picture.frame.width.max(1) as f32);
     ((width - 2.0 * PAD) * aspect.clamp(ASPECTS[0], ASPECTS[1])).round() + PAD + TEXT
 }
 
@@ -96,10 +97,10 @@ fn picture(ui: &mut Ui, place: Rect, session: &mut Session, entry: &Entry) {
         return wrapped(ui, place, &problem);
     }
     let context = ui.ctx().clone();
-    let preview = session.previews.get(&context, card).filter(|preview| preview.is_current);
+    let preview = session.previews.get(&context, card, false).filter(|preview| preview.is_current);
     match preview {
         Some(preview) => image(ui, place, &preview, Color32::WHITE),
-        None => match session.previews.get(&context, Place::Plain) {
+        None => match session.previews.get(&context, Place::Plain, false) {
             Some(plain) if plain.is_current => image(ui, place, &plain, Color32::from_gray(72)),
             _ => drop(ui.painter().rect_filled(place, 3.0, theme::EMPTY)),
         },
@@ -110,7 +111,7 @@ fn picture(ui: &mut Ui, place: Rect, session: &mut Session, entry: &Entry) {
 pub fn image(ui: &Ui, place: Rect, preview: &Preview, tint: Color32) {
     let scale = ui.pixels_per_point();
     let size = vec2(preview.size.0 as f32, preview.size.1 as f32) / scale;
-    let size = size * (place.width() / size.x).min(place.height() / size.y).min(1.0);
+    let size = size * (place.width() / size.x).min(place.height() / size.y);
     let corner = place.center() - size * 0.5;
     let corner = pos2((corner.x * scale).round() / scale, (corner.y * scale).round() / scale);
     draw(ui, preview.texture, Rect::from_min_size(corner, size), tint);
@@ -124,7 +125,8 @@ pub fn draw(ui: &Ui, texture: TextureId, rect: Rect, tint: Color32) {
 /// Why there is no preview.
 fn wrapped(ui: &mut Ui, place: Rect, problem: &str) {
     ui.painter().rect_filled(place, 3.0, theme::EMPTY);
-    let mut inner = ui.new_child(UiBuilder::new().max_rect(place.shrink(8.0)).layout(Layout::top_down(Align::Min)));
+    let mut inner =
+        ui.new_child(UiBuilder::new().max_rect(place.shrink(8.0)).layout(Layout::top_down(Align::Min)));
     inner.set_clip_rect(place.intersect(ui.clip_rect()));
     inner.add(egui::Label::new(RichText::new(problem).size(11.0).color(theme::BAD)).wrap().selectable(false));
 }
@@ -152,7 +154,8 @@ pub fn line(entry: &Entry) -> String {
 
 /// A line that is cut off where it is too long.
 fn cut(ui: &Ui, text: &str, size: f32, color: Color32, width: f32) -> Arc<Galley> {
-    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), FontId::proportional(size), color);
+    let mut job =
+        egui::text::LayoutJob::simple_singleline(text.to_owned(), FontId::proportional(size), color);
     job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(1.0));
     ui.fonts_mut(|fonts| fonts.layout_job(job))
 }
@@ -171,7 +174,8 @@ fn mark(ui: &Ui, place: Rect, session: &Session, entry: &Entry, card: &Response)
     });
     let hint = "Mark it, to see it beside other looks (up to six)";
     let response = response.on_hover_text(hint);
-    let is_seen = number.is_some() || card.hovered() || response.hovered() || !session.browser.marked.is_empty();
+    let is_seen =
+        number.is_some() || card.hovered() || response.hovered() || !session.browser.marked.is_empty();
     if is_seen {
         let fill = if number.is_some() { theme::ACCENT } else { theme::VEIL };
         ui.painter().rect_filled(rect, 4.0, fill);
@@ -197,13 +201,13 @@ pub fn actions(ui: &mut Ui, session: &Session, entry: &Entry) -> Option<Act> {
     let is_look = entry.look().is_some();
     let is_marked = session.browser.marked.contains(&entry.id);
     item(ui, "Apply", is_look, &|| Act::ApplyAndClose(entry.id));
-    let mark = if is_marked { "Do not compare" } else { "Compare" };
+    let mark = if is_marked { "Remove the mark" } else { "Mark to compare" };
     item(ui, mark, is_look, &|| Act::Mark(entry.id));
     item(ui, "Save a copy…", is_look && !entry.style.is_empty(), &|| Act::Copy(entry.id));
     if let Some(file) = entry.file() {
         item(ui, "Name and tags…", entry.has_title(), &|| Act::Title(entry.id));
         item(ui, "Delete…", true, &|| Act::Delete(file.to_owned()));
-        if ui.button("Copy the path of the file").on_hover_text(file.display().to_string()).clicked() {
+        if ui.button("Copy the file's path").on_hover_text(file.display().to_string()).clicked() {
             ui.ctx().copy_text(file.display().to_string());
             ui.close();
         }

@@ -39,11 +39,19 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session) {
     }
     if let Some(index) = taken {
         session.take_pane(index);
+        ui.ctx().request_repaint();
     }
 }
 
 /// One pane, `by` pixels of the window from the first; says whether its look is taken.
-fn pane(ui: &mut Ui, rect: Rect, session: &mut Session, index: usize, look: &Arc<Look>, by: [f32; 2]) -> bool {
+fn pane(
+    ui: &mut Ui,
+    rect: Rect,
+    session: &mut Session,
+    index: usize,
+    look: &Arc<Look>,
+    by: [f32; 2],
+) -> bool {
     let response = ui.interact(rect, Id::unique(("pane", index)), Sense::click_and_drag());
     let name = format!("Take {}", look.name);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
@@ -62,15 +70,22 @@ fn pane(ui: &mut Ui, rect: Rect, session: &mut Session, index: usize, look: &Arc
     inner.set_clip_rect(clip);
     let context = ui.ctx().clone();
     let mut is_current = false;
-    for of in [Place::Pane(index), Place::Detail(index)] {
-        if let Some(preview) = session.previews.get(&context, of) {
+    // Single pixels are seen from twice their size on, as on the canvas.
+    let is_large = session.easel.scale(session.nominal_size()) >= 2.0;
+    for (of, crisp) in [(Place::Pane(index), false), (Place::Detail(index), is_large)] {
+        if let Some(preview) = session.previews.get(&context, of, crisp) {
             is_current = preview.is_current;
             draw(&inner, &preview, place);
         }
     }
     let problem = session.previews.problem(Place::Pane(index)).map(str::to_owned);
     let waits = if is_current || problem.is_some() { "" } else { " …" };
-    canvas::tag(&inner, rect.left_top() + vec2(12.0, 12.0), Align2::LEFT_TOP, &format!("{}{waits}", look.name));
+    canvas::tag(
+        &inner,
+        rect.left_top() + vec2(12.0, 12.0),
+        Align2::LEFT_TOP,
+        &format!("{}{waits}", look.name),
+    );
     if let Some(problem) = problem {
         canvas::tag(&inner, rect.center(), Align2::CENTER_CENTER, &problem);
     }
@@ -116,8 +131,7 @@ fn ask(
 fn draw(ui: &Ui, preview: &Preview, place: Area) {
     let scale = ui.pixels_per_point();
     let [x, y] = [place.width / preview.size.0 as f32, place.height / preview.size.1 as f32];
-    let [from, to] = preview.part.map(|[column, row]| {
-        pos2(place.x + column as f32 * x, place.y + row as f32 * y) / scale
-    });
+    let [from, to] =
+        preview.part.map(|[column, row]| pos2(place.x + column as f32 * x, place.y + row as f32 * y) / scale);
     card::draw(ui, preview.texture, Rect::from_min_max(from, to), Color32::WHITE);
 }

@@ -6,8 +6,9 @@ use egui::{Color32, Label, RichText, ScrollArea, Sense, Ui, vec2};
 
 use super::{browser, card, theme};
 use crate::view::browser::Content;
+use crate::view::look::Look;
 use crate::view::preview::Place;
-use crate::view::preview::render::Order;
+use crate::view::preview::render::{FINENESS, Order};
 use crate::view::session::Session;
 
 /// Shows the selected look.
@@ -33,12 +34,12 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
             _ => {}
         }
         ui.add_space(10.0);
-        let act = ui.vertical(|ui| {
-            ui.spacing_mut().button_padding = vec2(10.0, 5.0);
+        let act = ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
             card::actions(ui, session, &entry)
         });
         if let Some(act) = act.inner {
-            browser::perform(session, act);
+            browser::perform(ui, session, act);
         }
         if let Some(file) = entry.file() {
             ui.add_space(10.0);
@@ -50,19 +51,19 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
 }
 
 /// The preview, as wide as the panel.
-fn large(ui: &mut Ui, session: &mut Session, look: Option<&Arc<crate::view::look::Look>>) {
+fn large(ui: &mut Ui, session: &mut Session, look: Option<&Arc<Look>>) {
     let (Some(look), Some(picture)) = (look, session.previews.picture()) else { return };
     let width = ui.available_width();
     let scale = ui.pixels_per_point();
     let size = picture.fitting([width * scale, width * scale]);
-    let order = Order::whole(Arc::clone(look), size, browser::FINENESS);
-    let room = vec2(width, size.1 as f32 / scale);
+    let order = Order::whole(Arc::clone(look), size, FINENESS);
+    let room = vec2(width, width * size.1 as f32 / size.0 as f32);
     session.previews.want(Place::Large, order);
     let (rect, _) = ui.allocate_exact_size(room, Sense::hover());
     let context = ui.ctx().clone();
-    match session.previews.get(&context, Place::Large) {
+    match session.previews.get(&context, Place::Large, false) {
         Some(preview) if preview.is_current => card::image(ui, rect, &preview, Color32::WHITE),
-        _ => match session.previews.get(&context, Place::Plain) {
+        _ => match session.previews.get(&context, Place::Plain, false) {
             Some(plain) if plain.is_current => card::draw(ui, plain.texture, rect, Color32::from_gray(72)),
             _ => drop(ui.painter().rect_filled(rect, 3.0, theme::EMPTY)),
         },

@@ -67,7 +67,9 @@ fn saving(context: &Context, session: &mut Session) {
         if let Some(problem) = &saving.problem {
             ui.label(RichText::new(problem).color(theme::BAD));
         } else if saving.asks {
-            ui.label(RichText::new("There is a file of this name. Is it to be replaced?").color(theme::ACCENT));
+            ui.label(
+                RichText::new("There is a file of this name. Is it to be replaced?").color(theme::ACCENT),
+            );
         }
         ui.add_space(4.0);
         ui.horizontal(|ui| {
@@ -86,6 +88,7 @@ fn saving(context: &Context, session: &mut Session) {
     }
     if done {
         session.finish_saving();
+        context.request_repaint();
     }
 }
 
@@ -109,6 +112,7 @@ fn titling(context: &Context, session: &mut Session) {
     }
     if done {
         session.write_title();
+        context.request_repaint();
     }
 }
 
@@ -131,6 +135,7 @@ fn deleting(context: &Context, session: &mut Session) {
     }
     if done {
         session.delete();
+        context.request_repaint();
     }
 }
 

@@ -81,7 +81,8 @@ fn cover(session: &mut Session, key: &Key) -> bool {
     if session.shows_help {
         return false;
     }
-    let is_asked = session.saving.is_some() || session.browser.titling.is_some() || session.browser.deleting.is_some();
+    let is_asked =
+        session.saving.is_some() || session.browser.titling.is_some() || session.browser.deleting.is_some();
     match key.as_ref() {
         Key::Named(NamedKey::Escape) if is_asked => {
             (session.saving, session.browser.titling, session.browser.deleting) = (None, None, None);

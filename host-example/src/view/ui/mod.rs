@@ -28,6 +28,8 @@ use super::session::Session;
 
 /// Width of the panel in points.
 const PANEL: f32 = 348.0;
+/// The narrowest window, in points, that has room for more about a look beside all of them.
+const DETAILS: f32 = 940.0;
 /// The smallest window, in points, that has room for the panel and the bars.
 const ROOM: [f32; 2] = [620.0, 300.0];
 
@@ -38,22 +40,24 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     if has_room {
         bar(Panel::top("top")).show(ui, |ui| top::show(ui, session));
         bar(Panel::bottom("bottom")).show(ui, |ui| status::show(ui, session));
-        let has_panel = !session.settings.panel_hidden && session.comparison.is_none();
-        if session.has_picture() && (has_panel || session.browser.is_open) {
+        let has_panel = match session.browser.is_open {
+            true => size.x >= DETAILS,
+            false => !session.settings.panel_hidden && session.comparison.is_none(),
+        };
+        if session.has_picture() && has_panel {
             let frame = egui::Frame::new().fill(theme::PANEL).inner_margin(Margin {
                 left: 12,
                 right: 4,
                 top: 10,
                 bottom: 0,
             });
-            Panel::right("look")
-                .frame(frame)
-                .resizable(false)
-                .exact_size(PANEL)
-                .show(ui, |ui| match session.browser.is_open {
-                    true => details::show(ui, session),
-                    false => panel::show(ui, session),
-                });
+            Panel::right("look").frame(frame).resizable(false).exact_size(PANEL).show(ui, |ui| match session
+                .browser
+                .is_open
+            {
+                true => details::show(ui, session),
+                false => panel::show(ui, session),
+            });
         }
     }
     let rect = ui.available_rect_before_wrap();
