@@ -46,7 +46,7 @@ fn fields(ui: &mut Ui, words: &mut Words) -> bool {
 
 fn saving(context: &Context, session: &mut Session) {
     let Some(mut saving) = session.saving.take() else { return };
-    let (mut open, mut done, mut chooses) = (true, false, false);
+    let (mut open, mut closes, mut done, mut chooses) = (true, false, false, false);
     let title = if saving.is_present { "Save the look" } else { "Save a copy" };
     window(context, title, &mut open, |ui| {
         Grid::new("saving").num_columns(2).spacing([18.0, 8.0]).show(ui, |ui| {
@@ -75,12 +75,10 @@ fn saving(context: &Context, session: &mut Session) {
         ui.horizontal(|ui| {
             let text = if saving.asks { "Replace the file" } else { "Save" };
             done = ui.add(Button::new(text).fill(theme::CHOSEN)).clicked();
-            if ui.button("Cancel").clicked() {
-                ui.close();
-            }
+            closes = ui.button("Cancel").clicked();
         });
     });
-    if open {
+    if open && !closes {
         session.saving = Some(saving);
     }
     if chooses {
@@ -94,7 +92,7 @@ fn saving(context: &Context, session: &mut Session) {
 
 fn titling(context: &Context, session: &mut Session) {
     let Some(mut titling) = session.browser.titling.take() else { return };
-    let (mut open, mut done) = (true, false);
+    let (mut open, mut closes, mut done) = (true, false, false);
     window(context, "Name and tags", &mut open, |ui| {
         Grid::new("titling").num_columns(2).spacing([18.0, 8.0]).show(ui, |ui| {
             fields(ui, &mut titling.words);
@@ -102,12 +100,10 @@ fn titling(context: &Context, session: &mut Session) {
         file(ui, &titling.file);
         ui.horizontal(|ui| {
             done = ui.add(Button::new("Save").fill(theme::CHOSEN)).clicked();
-            if ui.button("Cancel").clicked() {
-                ui.close();
-            }
+            closes = ui.button("Cancel").clicked();
         });
     });
-    if open {
+    if open && !closes {
         session.browser.titling = Some(titling);
     }
     if done {
@@ -118,19 +114,17 @@ fn titling(context: &Context, session: &mut Session) {
 
 fn deleting(context: &Context, session: &mut Session) {
     let Some(path) = session.browser.deleting.take() else { return };
-    let (mut open, mut done) = (true, false);
+    let (mut open, mut closes, mut done) = (true, false, false);
     window(context, "Delete this look?", &mut open, |ui| {
         ui.set_max_width(FIELD + 90.0);
         ui.label("The file is deleted from the disk, which cannot be undone.");
         file(ui, &path);
         ui.horizontal(|ui| {
             done = ui.button(RichText::new("Delete the file").color(theme::BAD)).clicked();
-            if ui.button("Keep it").clicked() {
-                ui.close();
-            }
+            closes = ui.button("Keep it").clicked();
         });
     });
-    if open {
+    if open && !closes {
         session.browser.deleting = Some(path);
     }
     if done {
