@@ -305,6 +305,7 @@ fn the_help_names_the_keys() {
         "Space",
         "  f  ",
         "  c  ",
+        "  l  ",
         "  w  ",
         "hold",
         "q, Escape",

@@ -389,6 +389,12 @@ fn up_to_six_looks_are_compared_and_one_is_taken() {
     for name in names {
         assert!(harness.query_by_role_and_label(Role::Button, &format!("Take {name}")).is_some(), "{name}");
     }
+    // Another picture is seen by the same looks.
+    let other = folder.path().join("picture.png");
+    let document = Document::open(&other, &Options::default()).expect("a picture");
+    harness.state_mut().show_reel(Reel::new(document).expect("a picture"));
+    harness.run_ok();
+    assert!(harness.query_by_role_and_label(Role::Button, "Take Linocut").is_some());
     // Escape goes back to where it came from.
     ui::keys::press(harness.state_mut(), &Key::Named(NamedKey::Escape));
     assert!(harness.state().browser.is_open && harness.state().comparison.is_none());

@@ -265,9 +265,10 @@ impl App {
         ui::keys::press(session, &event.logical_key);
     }
 
-    /// Whether something is being typed, which keys belong to then.
+    /// Whether something is being typed or a menu is open, which keys belong to then.
     fn is_typing(&self) -> bool {
-        self.input.as_ref().is_some_and(|input| input.egui_ctx().text_edit_focused())
+        let context = self.input.as_ref().map(State::egui_ctx);
+        context.is_some_and(|context| context.text_edit_focused() || egui::Popup::is_any_open(context))
     }
 
     /// Lets the controls see an event first.

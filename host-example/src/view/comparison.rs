@@ -6,8 +6,8 @@ use super::canvas::Area;
 use super::easel::Compare;
 use super::look::Look;
 
-/// Pixels of the window between two panes.
-const GAP: f32 = 2.0;
+/// Pixels of the window between and around panes.
+const GAP: f32 = 8.0;
 
 /// Looks that are compared, two to six.
 #[derive(Clone, Debug)]
@@ -37,6 +37,9 @@ pub fn grid(count: usize, area: Area, aspect: f32) -> (usize, usize) {
 
 /// Where panes lie in an area, rows from the top; all are of the same size.
 pub fn areas(count: usize, area: Area, aspect: f32) -> Vec<Area> {
+    let side_within = |side: f32| (side - 2.0 * GAP).max(1.0);
+    let (width, height) = (side_within(area.width), side_within(area.height));
+    let area = Area { x: area.x + GAP, y: area.y + GAP, width, height };
     let (columns, rows) = grid(count, area, aspect);
     let side =
         |length: f32, parts: usize| ((length - GAP * (parts - 1) as f32) / parts as f32).floor().max(1.0);

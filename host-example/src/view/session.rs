@@ -318,8 +318,7 @@ impl Session {
             self.settings.remember(file);
         }
         (self.file, self.name) = (file, name);
-        (self.plan, self.saving) = (None, None);
-        self.end_comparison();
+        self.plan = None;
         self.previews.clear();
         self.easel.fit();
         self.easel.overlay = Overlay::None;

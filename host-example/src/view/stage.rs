@@ -238,7 +238,9 @@ impl Stage {
     /// [`Error::Failure`] when the device refuses.
     pub fn snapshot(&mut self, session: &Session) -> Result<Option<Frame>> {
         let taken = self.snapshots.answer();
-        let is_wanted = session.is_covered() && !session.is_playing() && !self.is_begun;
+        // Panes that are all but ready are more to look at than none while a scene is turned.
+        let waits = session.comparison.is_some() && session.previews.is_busy() && !self.is_software();
+        let is_wanted = session.is_covered() && !session.is_playing() && !self.is_begun && !waits;
         let made = self.made.as_ref().filter(|made| is_wanted && made.asked.scale == 1.0);
         let face = made.map(|made| (made.asked, made.source, made.scene));
         if let (Some(Source::Scene(source)), Some(scenery), Some(face)) =
@@ -340,7 +342,7 @@ impl Stage {
             ..Default::default()
         });
         let mut pass = pass.forget_lifetime();
-        if self.source.is_some() {
+        if self.source.is_some() && !session.is_covered() {
             self.canvas.draw(&mut pass, session.easel.area, size);
         }
         self.panel.draw(&mut pass, size);

@@ -219,7 +219,8 @@ fn grid(ui: &mut Ui, viewport: Rect, session: &mut Session) {
     if let Some((rect, _)) = selected
         && std::mem::take(&mut session.browser.scrolls)
     {
-        ui.scroll_to_rect(rect.translate(corner).expand(GAP), None);
+        let at = rect.translate(corner).expand(GAP);
+        ui.scroll_to_rect_animation(at, None, egui::style::ScrollAnimation::none());
     }
     if let Some(act) = act {
         perform(ui, session, act);

@@ -90,7 +90,9 @@ fn hint(response: Response, entry: &Entry) -> Response {
 /// The preview, or the dimmed picture while there is none.
 fn picture(ui: &mut Ui, place: Rect, session: &mut Session, entry: &Entry) {
     if let Content::Broken(problem) = &entry.content {
-        return wrapped(ui, place, problem);
+        // Which file it is stands below.
+        let file = format!("{}: ", entry.source.display());
+        return wrapped(ui, place, problem.strip_prefix(&file).unwrap_or(problem));
     }
     let card = Place::Card(entry.id);
     if let Some(problem) = session.previews.problem(card).map(str::to_owned) {
