@@ -60,7 +60,7 @@ mod tests {
     #[test]
     fn pictures_are_as_large_as_they_can_be() {
         for (count, aspect, wanted) in [
-            (2, 1.5, (1, 2)),
+            (2, 1.6, (1, 2)),
             (2, 0.7, (2, 1)),
             (4, 1.5, (2, 2)),
             (6, 1.0, (3, 2)),
