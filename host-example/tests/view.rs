@@ -217,6 +217,62 @@ fn a_slider_is_moved_and_taken_back_and_a_wipe_shows_the_original() {
     assert!(remembered.contains("cube.gltf") && remembered.contains("blueprint"), "{remembered}");
 }
 
+/// Within the picture of the first card of the browser in a window of 700x420 pixels.
+const CARD: [usize; 4] = [50, 215, 190, 285];
+/// The canvas without what is said at its lower border.
+const WHOLE: [usize; 4] = [10, 60, 340, 280];
+
+#[test]
+fn a_look_is_taken_from_the_grid_where_it_was_seen_on_the_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some((_server, display)) = display(folder.path()) else { return skipped() };
+    let looks = folder.path().join("looks");
+    std::fs::create_dir(&looks).unwrap();
+    std::fs::write(looks.join("plan.json"), r#"{"style": "blueprint", "lengths": "pixels"}"#).unwrap();
+    let settings = folder.path().join("view.json");
+    std::fs::write(&settings, format!(r#"{{"look_folders": [{looks:?}]}}"#)).unwrap();
+    let photo = folder.path().join("photo.png");
+    support::picture(240, 160).save(&photo).unwrap();
+    let mut command = support::isophote();
+    command.env("DISPLAY", &display).env("ISOPHOTE_SETTINGS", &settings).env_remove("WAYLAND_DISPLAY");
+    command.args(["view", "--size", "700x420", "--style", "none"]).arg(&photo);
+    let mut viewer = Running(command.stderr(Stdio::piped()).spawn().unwrap());
+    let started = Instant::now();
+    let mut wait_for = |what: &str, done: &mut dyn FnMut() -> bool| {
+        while !done() {
+            assert!(started.elapsed() < PATIENCE, "waited too long for {what}");
+            assert!(viewer.0.try_wait().unwrap().is_none(), "the window was closed before {what}");
+            std::thread::sleep(Duration::from_millis(100));
+        }
+    };
+    let window = || xdotool(&display, &["search", "--name", "photo.png"]).filter(|w| !w.is_empty());
+    wait_for("a window", &mut || window().is_some());
+    let id = window().unwrap();
+    let press = |key: &str| xdotool(&display, &["windowfocus", "--sync", &id, "key", key]).is_some();
+    let title = || xdotool(&display, &["getwindowname", &id]).unwrap_or_default();
+    let see = |part| screen(folder.path(), part);
+    wait_for("the picture", &mut || shown(&title()).is_some_and(|(style, _)| style == "none"));
+    let original = settled(&|| see(WHOLE), Duration::from_secs(2));
+    assert!(!is_blue(&original));
+    wait_for("a key", &mut || press("l"));
+    wait_for("the preview on the first card", &mut || is_blue(&see(CARD)));
+    let middle = ["mousemove", "--window", &id, "120", "250", "sleep", "0.2", "click", "1"];
+    wait_for("the pointer", &mut || xdotool(&display, &middle).is_some());
+    wait_for("the look", &mut || title().contains("- plan"));
+    wait_for("a key", &mut || press("Return"));
+    wait_for("the picture with the look", &mut || is_blue(&see(WHOLE)) && title().contains("- plan - frame"));
+    wait_for("undo", &mut || press("ctrl+z"));
+    wait_for("the picture of before", &mut || see(WHOLE) == original);
+    assert!(press("q"));
+    while viewer.0.try_wait().unwrap().is_none() {
+        assert!(started.elapsed() < PATIENCE, "the window does not close");
+        std::thread::sleep(Duration::from_millis(100));
+    }
+    assert!(viewer.0.wait().unwrap().success());
+    let errors = text(viewer.0.stderr.as_mut().unwrap());
+    assert!(!errors.contains("error:") && !errors.contains("warning:"), "{errors}");
+}
+
 /// What is seen when it has stayed the same for so long.
 fn settled(see: &dyn Fn() -> Vec<u8>, long: Duration) -> Vec<u8> {
     let (mut seen, mut since) = (see(), Instant::now());
@@ -249,6 +305,7 @@ fn the_help_names_the_keys() {
         "Space",
         "  f  ",
         "  c  ",
+        "  l  ",
         "  w  ",
         "hold",
         "q, Escape",

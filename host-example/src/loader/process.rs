@@ -3,8 +3,8 @@
 use std::ffi::c_void;
 
 use super::contract::{
-    self as c, IsophoteControl, IsophoteDevice, IsophoteImage, IsophoteInput, IsophotePassTime,
-    IsophoteReport, IsophoteRequest, IsophoteSample, IsophoteTarget,
+    self as c, IsophoteControl, IsophoteDevice, IsophoteImage, IsophoteInput, IsophotePassTime, IsophoteRect,
+    IsophoteReport, IsophoteRequest, IsophoteSample, IsophoteSupport, IsophoteTarget,
 };
 use super::device::Device;
 use super::graph::Graph;
@@ -30,7 +30,12 @@ pub struct Control<'a> {
     pub progress: Option<&'a mut dyn FnMut(f32)>,
     /// Receives what each pass took; on the CPU only.
     pub measured: Option<&'a mut Vec<PassTime>>,
+    /// Asked often, on any thread, whether to stop; the work then ends in a refusal.
+    pub cancelled: Option<&'a (dyn Fn() -> bool + Sync)>,
 }
+
+/// Pixels of a picture: columns and rows from the first, which is inside, to the last, which is outside.
+pub type Part = [[i32; 2]; 2];
 
 /// What one pass took on the CPU.
 #[derive(Clone, Debug)]
@@ -70,6 +75,58 @@ impl Graph {
         target: &mut Pixels,
         control: &mut Control<'_>,
     ) -> Answer<Report> {
+        let handle = device.map_or_else(IsophoteDevice::default, |d| d.handle);
+        self.run(handle, request, (inputs, [0; 2]), None, target, control)
+    }
+
+    /// Computes a part of the picture on the CPU, into `target`, which is as large. Inputs hold the picture from the pixel
+    /// `origin` on, at least what [`Graph::support`] names.
+    ///
+    /// # Errors
+    /// As [`Graph::process`].
+    pub fn process_part(
+        &mut self,
+        request: &IsophoteRequest,
+        inputs: &[Input<'_>],
+        origin: [i32; 2],
+        part: Part,
+        target: &mut Pixels,
+        control: &mut Control<'_>,
+    ) -> Answer<Report> {
+        self.run(IsophoteDevice::default(), request, (inputs, origin), Some(part), target, control)
+    }
+
+    /// The part of its inputs that a part of the result reads, cut at the picture's border.
+    ///
+    /// # Errors
+    /// [`super::Refusal`] when the request cannot be planned.
+    pub fn support(&self, request: &IsophoteRequest, part: Part) -> Answer<Part> {
+        let region = rect(part);
+        let mut support = IsophoteSupport::default();
+        // SAFETY: the handle is this object's; request and region are read and `support` is written during the call.
+        let status = unsafe {
+            (self.api.graph_support)(
+                self.handle,
+                request,
+                &raw const region,
+                std::ptr::null(),
+                &raw mut support,
+            )
+        };
+        self.check(status)?;
+        let IsophoteRect { x0, y0, x1, y1 } = support.window;
+        Ok([[x0, y0], [x1, y1]])
+    }
+
+    fn run(
+        &mut self,
+        device: IsophoteDevice,
+        request: &IsophoteRequest,
+        (inputs, [x, y]): (&[Input<'_>], [i32; 2]),
+        part: Option<Part>,
+        target: &mut Pixels,
+        control: &mut Control<'_>,
+    ) -> Answer<Report> {
         let mut names = Vec::with_capacity(inputs.len());
         for input in inputs {
             names.push(text::argument(input.name)?);
@@ -77,22 +134,27 @@ impl Graph {
         let images: Vec<IsophoteInput> = names
             .iter()
             .zip(inputs)
-            .map(|(name, input)| IsophoteInput { name: name.as_ptr(), image: image(input.pixels) })
+            .map(|(name, input)| {
+                let image = IsophoteImage { x, y, ..image(input.pixels) };
+                IsophoteInput { name: name.as_ptr(), image }
+            })
             .collect();
-        let target = self::target(target);
+        let region = part.map(rect);
+        let [left, top] = part.map_or([0; 2], |[first, _]| first);
+        let target = IsophoteTarget { x: left, y: top, ..self::target(target) };
         let control = self::control(control);
         let mut report = IsophoteReport::default();
         // SAFETY: the handles are their objects'. Images and target describe memory that is borrowed for the
-        // whole call, with strides and sizes that `Pixels` vouches for; the callbacks get the caller's control, borrowed
-        // for the call too.
+        // whole call, with strides and sizes that `Pixels` vouches for; the region, if there is one, lives as long. The
+        // callbacks get the caller's control, borrowed for the call too.
         let status = unsafe {
             (self.api.process)(
                 self.handle,
-                device.map_or_else(IsophoteDevice::default, |d| d.handle),
+                device,
                 request,
                 images.as_ptr(),
                 images.len() as u32,
-                std::ptr::null(),
+                region.as_ref().map_or(std::ptr::null(), std::ptr::from_ref),
                 &raw const target,
                 &raw const control,
                 &raw mut report,
@@ -106,11 +168,12 @@ impl Graph {
 /// The control as the contract has it; it gets `control`, which must stay for the whole call.
 pub(super) fn control(control: &mut Control<'_>) -> IsophoteControl {
     let (threads, wants_times) = (control.threads, control.measured.is_some());
+    let can_stop = control.cancelled.is_some();
     IsophoteControl {
         user: std::ptr::from_mut(control).cast(),
         run: None,
         progress: Some(progress),
-        cancelled: None,
+        cancelled: if can_stop { Some(cancelled) } else { None },
         measured: if wants_times { Some(measured) } else { None },
         threads,
     }
@@ -118,21 +181,29 @@ pub(super) fn control(control: &mut Control<'_>) -> IsophoteControl {
 
 /// Called on the thread that called `process`, while it does not return.
 unsafe extern "C" fn progress(user: *mut c_void, done: f32) {
-    // SAFETY: `user` is the control of the running call, which nothing else touches meanwhile.
-    let control = unsafe { &mut *user.cast::<Control<'_>>() };
-    if let Some(progress) = &mut control.progress {
+    // SAFETY: `user` is the control of the running call, of which this thread alone touches this field.
+    let progress = unsafe { &mut (*user.cast::<Control<'_>>()).progress };
+    if let Some(progress) = progress {
         progress(done);
     }
 }
 
+/// Called on any thread while the thread that called `process` does not return.
+unsafe extern "C" fn cancelled(user: *mut c_void) -> u32 {
+    // SAFETY: `user` is the control of the running call, whose field nothing writes to meanwhile; the function may be
+    // called on any thread.
+    let cancelled = unsafe { (&raw const (*user.cast::<Control<'_>>()).cancelled).read() };
+    u32::from(cancelled.is_some_and(|is_cancelled| is_cancelled()))
+}
+
 /// Called on the thread that called `process`, while it does not return.
 unsafe extern "C" fn measured(user: *mut c_void, pass: *const IsophotePassTime) {
-    // SAFETY: `user` is the control of the running call, which nothing else touches meanwhile; `pass` and the
+    // SAFETY: `user` is the control of the running call, of which this thread alone touches this field; `pass` and the
     // name that it points to live during this call.
     unsafe {
-        let control = &mut *user.cast::<Control<'_>>();
+        let measured = &mut (*user.cast::<Control<'_>>()).measured;
         let pass = &*pass;
-        if let Some(times) = &mut control.measured {
+        if let Some(times) = measured {
             times.push(PassTime {
                 kernel: text::kept(pass.kernel).to_owned(),
                 seconds: pass.seconds,
@@ -142,6 +213,10 @@ unsafe extern "C" fn measured(user: *mut c_void, pass: *const IsophotePassTime) 
             });
         }
     }
+}
+
+fn rect([[x0, y0], [x1, y1]]: Part) -> IsophoteRect {
+    IsophoteRect { x0, y0, x1, y1 }
 }
 
 fn sample(precision: Precision) -> IsophoteSample {

@@ -123,7 +123,10 @@ impl App {
             let context = egui::Context::default();
             ui::theme::apply(&context);
             // Where frames are slow, a click takes as long as two of them.
-            context.options_mut(|options| options.input_options.max_click_duration = f64::INFINITY);
+            context.options_mut(|options| {
+                options.input_options.max_click_duration = f64::INFINITY;
+                options.input_options.max_double_click_delay = 0.6;
+            });
             let scale = Some(window.scale_factor() as f32);
             let side = Some(stage.most_texels());
             let mut input = State::new(context, egui::ViewportId::ROOT, event_loop, scale, None, side);
@@ -132,6 +135,7 @@ impl App {
         } else if let Some(input) = &self.input {
             // The letters lived on the device that is gone.
             input.egui_ctx().set_fonts(egui::FontDefinitions::default());
+            self.session.previews.forget_textures();
         }
         window.set_visible(true);
         self.session.record.adapter = stage.adapter();
@@ -213,6 +217,10 @@ impl App {
             Drawn::Begun => self.due = Some(Instant::now()),
             Drawn::Controls => {}
         }
+        if let Some(frame) = stage.snapshot(session)? {
+            session.show_scene_frame(frame);
+            self.due = Some(Instant::now());
+        }
         if session.reel.as_ref().is_some_and(Reel::is_waiting) {
             let soon = Instant::now() + Duration::from_millis(20);
             self.due = Some(self.due.map_or(soon, |due| due.min(soon)));
@@ -247,8 +255,8 @@ impl App {
                 Key::Character("z" | "Z" | "y") => session.redo(),
                 Key::Character("e") => session.plan_export(),
                 Key::Character("o") => session.wishes.push(Wish::ChooseFile),
-                Key::Character("s") => session.wishes.push(Wish::SaveLook(self.modifiers.shift_key())),
-                Key::Character("S") => session.wishes.push(Wish::SaveLook(true)),
+                Key::Character("s") => session.save_look(self.modifiers.shift_key()),
+                Key::Character("S") => session.save_look(true),
                 Key::Character("q") => session.wishes.push(Wish::Quit),
                 _ => {}
             }
@@ -257,9 +265,10 @@ impl App {
         ui::keys::press(session, &event.logical_key);
     }
 
-    /// Whether something is being typed, which keys belong to then.
+    /// Whether something is being typed or a menu is open, which keys belong to then.
     fn is_typing(&self) -> bool {
-        self.input.as_ref().is_some_and(|input| input.egui_ctx().text_edit_focused())
+        let context = self.input.as_ref().map(State::egui_ctx);
+        context.is_some_and(|context| context.text_edit_focused() || egui::Popup::is_any_open(context))
     }
 
     /// Lets the controls see an event first.
@@ -267,8 +276,8 @@ impl App {
         let (Some(window), Some(input)) = (&self.window, &mut self.input) else { return };
         let tab = matches!(event, WindowEvent::KeyboardInput { event, .. }
             if event.logical_key == Key::Named(NamedKey::Tab));
-        // Tab goes from style to style, unless something is being typed.
-        if tab && !input.egui_ctx().text_edit_focused() {
+        // Tab goes from style to style, unless something is being typed or chosen.
+        if tab && !input.egui_ctx().text_edit_focused() && !self.session.is_covered() {
             return;
         }
         if input.on_window_event(window, event).repaint && !matches!(event, WindowEvent::RedrawRequested) {

@@ -11,9 +11,11 @@ use super::document::{Document, Options};
 use super::export::{self, Export, Progress, State};
 use super::idle::{self, Question};
 use super::look::Look;
+use super::look_work::LookWork;
 use super::pictures;
 use super::plan::What;
 use super::reel::Reel;
+use super::saving::Saving;
 use super::scenery::{Scenery, Staging};
 use super::session::{Session, Wish};
 use super::watch::Watch;
@@ -53,6 +55,7 @@ enum Opened {
 enum Dialog {
     File,
     Look,
+    LookFolder,
     Save,
     Surroundings,
     Export,
@@ -65,6 +68,7 @@ pub struct Desk {
     /// Reads looks again whose files have changed.
     reader: Worker<(Library, PathBuf), (PathBuf, Result<Look>)>,
     watch: Watch,
+    looks: LookWork,
     /// What the critic was asked last.
     asked: Option<(Look, Option<IsophoteRequest>)>,
     chosen: Receiver<(Dialog, Option<PathBuf>)>,
@@ -91,6 +95,7 @@ impl Desk {
                 (path, read)
             })?,
             watch: Watch::new(wake)?,
+            looks: LookWork::new(wake)?,
             asked: None,
             chosen,
             choose,
@@ -123,7 +128,15 @@ impl Desk {
                     self.opener.ask(Job::Look(session.library.clone(), path));
                 }
                 Dialog::Surroundings => self.opener.ask(Job::Surroundings(path)),
-                Dialog::Save => save(session, &path),
+                Dialog::LookFolder => {
+                    session.settings.add_look_folder(&path);
+                    session.browser.is_outdated = true;
+                }
+                Dialog::Save => {
+                    if let Some(saving) = &mut session.saving {
+                        saving.place(Some(&path));
+                    }
+                }
                 Dialog::Export => {
                     if let Some(plan) = &mut session.plan {
                         plan.path = path.display().to_string();
@@ -132,6 +145,7 @@ impl Desk {
             }
         }
         self.follow_export(session);
+        self.looks.collect(session);
         if let Some(opened) = self.opener.answer() {
             match opened {
                 Ok(opened) => take(session, opened),
@@ -184,15 +198,8 @@ impl Desk {
                 Wish::ChooseFile => self.choose(Dialog::File, session),
                 Wish::ChooseLook => self.choose(Dialog::Look, session),
                 Wish::ChooseSurroundings => self.choose(Dialog::Surroundings, session),
-                Wish::SaveLook(elsewhere) => {
-                    let own = session.look().source.clone();
-                    if elsewhere || !is_look(&own) {
-                        self.choose(Dialog::Save, session)
-                    } else {
-                        save(session, &own)
-                    }
-                }
-                Wish::TakeLook(path) => self.opener.ask(Job::Look(session.library.clone(), path)),
+                Wish::ChooseFolder => self.choose(Dialog::LookFolder, session),
+                Wish::ChooseLookFile => self.choose(Dialog::Save, session),
                 Wish::Export => self.export(session),
                 Wish::CancelExport => {
                     if let Some(export) = &mut self.export {
@@ -208,6 +215,9 @@ impl Desk {
         }
         if !files.is_empty() {
             self.opener.ask(Job::Files(session.library.clone(), files));
+        }
+        if let Err(error) = self.looks.grant(session) {
+            session.notes.complain(&error);
         }
         copied
     }
@@ -274,18 +284,20 @@ impl Desk {
 
     /// Asks for a file on a thread of its own: dialogs of the system may stay open for long.
     fn choose(&mut self, dialog: Dialog, session: &mut Session) {
-        if self.choosing || session.look().is_plain() && dialog == Dialog::Save {
+        if self.choosing {
             return;
         }
+        let saved = session.saving.as_ref().map(Saving::file);
         let folder = match dialog {
-            Dialog::Look | Dialog::Save => session.settings.look_folder.clone(),
+            Dialog::Save => saved.as_deref().and_then(Path::parent).map(Path::to_owned),
+            Dialog::Look | Dialog::LookFolder => session.settings.look_folder.clone(),
             Dialog::File | Dialog::Surroundings | Dialog::Export => session.settings.folder.clone(),
         };
         let name = match (dialog, &session.plan) {
             (Dialog::Export, Some(plan)) => {
                 Path::new(&plan.path).file_name().unwrap_or_default().to_string_lossy().into_owned()
             }
-            _ => format!("{}.json", session.look().name.to_lowercase().replace(' ', "-")),
+            _ => saved.unwrap_or_default().file_name().unwrap_or_default().to_string_lossy().into_owned(),
         };
         let (choose, wake) = (self.choose.clone(), Arc::clone(&self.wake));
         let asked = std::thread::Builder::new().name("dialog".into()).spawn(move || {
@@ -313,6 +325,7 @@ fn ask(dialog: Dialog, folder: Option<PathBuf>, name: &str) -> Option<PathBuf> {
     match dialog {
         Dialog::File => shown.set_title("Open").pick_file(),
         Dialog::Look => shown.set_title("Open a look").add_filter("Looks", &["json"]).pick_file(),
+        Dialog::LookFolder => shown.set_title("Add a folder of looks").pick_folder(),
         Dialog::Save => {
             let shown = shown.set_title("Save the look").set_file_name(name).add_filter("Looks", &["json"]);
             let path = shown.save_file()?;
@@ -411,24 +424,12 @@ fn take(session: &mut Session, opened: Opened) {
             session.show_scene(Scenery::new(*scene, staging, aspect), file, name);
         }
         Opened::Pictures(reel) => session.show_reel(*reel),
-        Opened::Look(look) => session.take(*look),
+        Opened::Look(look) => session.take(Arc::from(look)),
         Opened::Surroundings(background, path) => {
             session.relight("surroundings", |lighting| {
                 (lighting.background, lighting.surroundings) = (background, Some(path));
             });
             session.let_go();
         }
-    }
-}
-
-fn save(session: &mut Session, path: &Path) {
-    let mut look = session.look().clone();
-    match look.save(path) {
-        Ok(()) => {
-            session.settings.look_folder = path.parent().map(Path::to_owned);
-            session.notes.say(format!("Saved {}", path.display()));
-            session.saved(look);
-        }
-        Err(error) => session.notes.complain(&error),
     }
 }

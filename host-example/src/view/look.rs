@@ -220,6 +220,24 @@ impl Look {
         self.graph == other.graph
     }
 
+    /// Whether its file is a graph, which has no name of its own.
+    pub fn is_graph(&self) -> bool {
+        is_json(&self.source) && self.source.file_name().is_some_and(|file| *file == *self.opened.style)
+    }
+
+    /// Its file has this title from now on.
+    pub fn retitle(&mut self, title: &Title) {
+        self.preset.title = title.clone();
+        self.opened.title = title.clone();
+        self.name = self.shown_name();
+    }
+
+    /// What people call it: its own name, or that of the file.
+    fn shown_name(&self) -> String {
+        let stem = || self.source.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        self.preset.title.name.clone().unwrap_or_else(stem)
+    }
+
     /// Whether its graph is a part of it and no file.
     pub fn is_written_out(&self) -> bool {
         preset::is_written_out(&self.preset.style)
@@ -318,18 +336,16 @@ impl Look {
         Ok(Preset { style, ..self.preset.clone() })
     }
 
-    /// Writes the look as a preset, and is what is in that file from then on.
+    /// Writes the look as a preset with a title, and is what is in that file from then on.
     ///
     /// # Errors
     /// [`Error::Input`] for names that do not end in .json or that no preset can hold, [`Error::Failure`] when the disk
     /// refuses.
-    pub fn save(&mut self, file: &Path) -> Result<()> {
-        if !file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
+    pub fn save(&mut self, file: &Path, title: Title) -> Result<()> {
+        if !is_json(file) {
             return Err(Error::file(file, "is no name of a look", "end it in .json"));
         }
-        let mut preset = self.preset.clone();
-        // The name is that of the file from now on.
-        preset.title.name = None;
+        let mut preset = Preset { title, ..self.preset.clone() };
         if self.source.parent() != file.parent() {
             preset.style = self.whole()?.style;
         }
@@ -338,7 +354,7 @@ impl Look {
         self.opened = preset.clone();
         self.preset = preset;
         self.source = file.to_owned();
-        self.name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        self.name = self.shown_name();
         Ok(())
     }
 }

@@ -4,14 +4,17 @@
 //! |---|---|
 //! | the window's events, and when a frame is drawn | `app`, `pace` |
 //! | all that is known of what is shown, and steps back | `session`, `history`, `look`, `chain`, `value`, `scenery`, `reel`, `easel` |
-//! | work beside the window | `worker`, `desk`, `watch`, `idle`, `document`, `export` |
-//! | what lives on the device | `stage`, `source`, `pictures`, `lane`, `canvas`, `probe`, `panel` |
+//! | looks to choose from | `browser`, `preview`, `comparison`, `saving` |
+//! | work beside the window | `worker`, `desk`, `look_work`, `watch`, `idle`, `document`, `export` |
+//! | what lives on the device | `stage`, `source`, `pictures`, `snapshot`, `lane`, `canvas`, `probe`, `panel` |
 //! | the controls | `ui` |
 
 mod app;
+pub mod browser;
 mod canvas;
 pub mod chain;
 pub mod command;
+pub mod comparison;
 mod demo;
 mod desk;
 pub mod document;
@@ -21,17 +24,21 @@ mod history;
 mod idle;
 mod lane;
 pub mod look;
+mod look_work;
 mod notes;
 mod pace;
 mod panel;
 mod pictures;
 pub mod plan;
+pub mod preview;
 mod probe;
 pub mod record;
 pub mod reel;
+pub mod saving;
 pub mod scenery;
 pub mod session;
 pub mod settings;
+mod snapshot;
 mod source;
 mod stage;
 pub mod ui;

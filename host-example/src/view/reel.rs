@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::document::frame::{Frame, GuideImage};
-use super::document::{Document, Frames};
+use super::document::frame::Frame;
+use super::document::{Document, Frames, reduce};
 use crate::error::Result;
 
 /// Pixels of the small copy of a picture, which is shown while something moves where the processor draws.
@@ -134,45 +134,8 @@ impl Reel {
     }
 }
 
-/// A copy whose sides are shorter by a whole factor: colours are averaged, guides picked.
+/// A copy whose sides are shorter by a whole factor.
 fn reduced(frame: &Frame, factor: u32) -> Frame {
-    let (width, height) = ((frame.width / factor).max(1), (frame.height / factor).max(1));
-    let places = |x: u32, y: u32| {
-        let range = |at: u32, most: u32| (at * factor).min(most - 1)..((at + 1) * factor).min(most);
-        range(y, frame.height).flat_map(move |row| range(x, frame.width).map(move |column| (row, column)))
-    };
-    let straight = !frame.is_premultiplied();
-    let average = |x: u32, y: u32| {
-        let mut sum = [0.0_f32; 4];
-        let mut count = 0.0;
-        for (row, column) in places(x, y) {
-            let [r, g, b, a] = frame.color[(row * frame.width + column) as usize];
-            let weight = if straight { a } else { 1.0 };
-            for (sum, part) in sum.iter_mut().zip([r * weight, g * weight, b * weight, a]) {
-                *sum += part;
-            }
-            count += 1.0;
-        }
-        let [r, g, b, a] = sum;
-        let divisor = if straight { a.max(1e-12) } else { count };
-        [r / divisor, g / divisor, b / divisor, a / count]
-    };
-    let cells = || (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    let picked = |image: &GuideImage| {
-        let channels = image.channels as usize;
-        let middle = |x: u32, y: u32| {
-            let (row, column) = (y * factor + factor / 2, x * factor + factor / 2);
-            (row.min(frame.height - 1) * frame.width + column.min(frame.width - 1)) as usize * channels
-        };
-        let data =
-            cells().flat_map(|(x, y)| image.data[middle(x, y)..][..channels].iter().copied()).collect();
-        GuideImage { data, ..*image }
-    };
-    Frame {
-        width,
-        height,
-        color: cells().map(|(x, y)| average(x, y)).collect(),
-        guides: frame.guides.iter().map(picked).collect(),
-        ..*frame
-    }
+    let size = ((frame.width / factor).max(1), (frame.height / factor).max(1));
+    reduce::reduced(frame, size, reduce::whole(size))
 }

@@ -1,27 +1,33 @@
 //! What the window shows and what was done to it. All of it outlives a lost device.
 
+mod browsing;
+mod looks;
+mod steps;
+
 use std::borrow::Cow;
 use std::collections::HashSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::sync::Arc;
 
+use super::browser::Browser;
 use super::chain::{self, Chain, Watched};
+use super::comparison::Comparison;
 use super::document::kind::Kind;
 use super::easel::{Compare, Easel, Overlay};
 use super::history::History;
 use super::look::{Knob, Look};
 use super::notes::Notes;
 use super::plan::Plan;
+use super::preview::Previews;
 use super::record::Record;
 use super::reel::Reel;
+use super::saving::Saving;
 use super::scenery::{Lighting, Scenery};
 use super::settings::Settings;
-use super::value::Value;
 use crate::apply::exr::{Guide, Layer};
 use crate::error::Result;
 use crate::loader::Library;
 use crate::loader::catalogue::Node;
-use crate::stylize::lengths::Lengths;
-use crate::stylize::style::Setting;
 
 /// What only the window itself can do, asked for by its controls.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,10 +40,10 @@ pub enum Wish {
     OpenDemo,
     /// Show a dialog and take the look that is chosen.
     ChooseLook,
-    /// Take the look that is named so.
-    TakeLook(PathBuf),
-    /// Save the look, after a dialog if it has no file of its own yet or `true`.
-    SaveLook(bool),
+    /// Show a dialog and take the folder that is chosen among those of looks.
+    ChooseFolder,
+    /// Show a dialog and save the look to what is chosen.
+    ChooseLookFile,
     /// Show a dialog and take the picture that is chosen as what is around the scene.
     ChooseSurroundings,
     /// Show this layer of the file, and a view of it.
@@ -58,7 +64,7 @@ pub enum Wish {
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     current: usize,
-    look: Look,
+    looks: Vec<Arc<Look>>,
     lighting: Option<Lighting>,
 }
 
@@ -80,7 +86,7 @@ pub struct Session {
     /// The dynamic library.
     pub library: Library,
     /// Looks in the order of the keys 1, 2, ...
-    pub looks: Vec<Look>,
+    pub looks: Vec<Arc<Look>>,
     /// Parameters of the present look.
     pub knobs: Vec<Knob>,
     /// The list of nodes that the present look is, if it is one.
@@ -105,6 +111,14 @@ pub struct Session {
     pub name: String,
     /// Where pictures lie.
     pub easel: Easel,
+    /// The browser of looks.
+    pub browser: Browser,
+    /// The looks that are seen beside each other, if any.
+    pub comparison: Option<Comparison>,
+    /// A look that is about to be saved.
+    pub saving: Option<Saving>,
+    /// What looks make of the picture, small.
+    pub previews: Previews,
     /// What there is to say.
     pub notes: Notes,
     /// Frames and times.
@@ -142,7 +156,7 @@ impl Session {
         Ok(Self {
             fitting: chain::fitting(&library),
             library,
-            looks,
+            looks: looks.into_iter().map(Arc::new).collect(),
             knobs,
             chain,
             watched: None,
@@ -154,6 +168,10 @@ impl Session {
             file: None,
             name: String::new(),
             easel: Easel::default(),
+            browser: Browser::default(),
+            comparison: None,
+            saving: None,
+            previews: Previews::default(),
             notes: Notes::default(),
             record: Record::default(),
             settings,
@@ -244,226 +262,15 @@ impl Session {
         self.reel.as_ref().map_or((half.width as u32, half.height as u32), Reel::size)
     }
 
-    /// The look was saved.
-    pub fn saved(&mut self, look: Look) {
-        let current = self.current;
-        self.looks[current] = look;
-        self.turn_to(current);
-    }
-
     /// The pictures on the left and on the right of the split.
     pub fn shown(&self) -> [Which; 2] {
         let look = if self.easel.overlay == Overlay::None { Which::Look } else { Which::Overlay };
         let other = if self.compared.is_some() { Which::Compared } else { Which::Original };
         match self.easel.compare {
-            _ if self.easel.peek => [Which::Original; 2],
+            _ if self.easel.peek || self.is_covered() => [Which::Original; 2],
             Compare::Off => [look; 2],
             Compare::Wipe | Compare::Side => [other, look],
         }
-    }
-
-    /// What undo would bring back.
-    fn state(&self) -> State {
-        State {
-            current: self.current,
-            look: self.look().clone(),
-            lighting: self.scenery.as_ref().map(|scenery| scenery.lighting.clone()),
-        }
-    }
-
-    fn restore(&mut self, state: State) {
-        let State { current, look, lighting } = state;
-        if current < self.looks.len() {
-            self.looks[current] = look;
-            self.turn_to(current);
-        }
-        if let (Some(scenery), Some(lighting)) = (&mut self.scenery, lighting) {
-            scenery.lighting = lighting;
-            scenery.relight();
-        }
-    }
-
-    fn turn_to(&mut self, index: usize) {
-        if index != self.current {
-            self.record.begin();
-            (self.watched, self.selected) = (None, None);
-        }
-        self.current = index;
-        self.chain = self.look().chain(&self.library).unwrap_or_default();
-        let is_there = |name: &str| self.chain.as_ref().is_some_and(|chain| chain.has(name));
-        self.selected = self.selected.take().filter(|name| is_there(name));
-        self.watched = self.watched.take().filter(|watched| is_there(watched.node()));
-        match self.look().knobs(&self.library) {
-            Ok(knobs) => self.knobs = knobs,
-            Err(error) => self.notes.complain(&error),
-        }
-        self.idle.clear();
-    }
-
-    /// Changes the look; changes of the same thing are one step until [`Session::let_go`].
-    pub fn edit(&mut self, what: &str, change: impl FnOnce(&mut Look)) {
-        let before = self.state();
-        let current = self.current;
-        change(&mut self.looks[current]);
-        if *self.look() != before.look {
-            self.edits.record(what, &before);
-        }
-    }
-
-    /// Changes the list of nodes.
-    pub fn relink(&mut self, change: impl FnOnce(&mut Chain, &Library) -> Result<()>) {
-        let Some(mut chain) = self.chain.clone() else { return };
-        let changed = change(&mut chain, &self.library);
-        match changed.and_then(|()| self.look().with_chain(&self.library, &chain)) {
-            Ok(look) => {
-                self.let_go();
-                self.edit("nodes", |old| *old = look);
-                self.let_go();
-                self.turn_to(self.current);
-            }
-            Err(error) => self.notes.complain(&error),
-        }
-    }
-
-    /// Gives a parameter a value.
-    pub fn set(&mut self, knob: &Knob, value: &Value) {
-        self.edit(&knob.name, |look| look.set(knob, value));
-    }
-
-    /// Gives a parameter its default.
-    pub fn reset(&mut self, knob: &Knob) {
-        self.let_go();
-        self.edit(&knob.name, |look| look.reset(knob));
-        self.let_go();
-    }
-
-    /// Gives all parameters their defaults.
-    pub fn reset_all(&mut self) {
-        self.let_go();
-        self.edit("all", |look| look.preset.params.clear());
-        self.let_go();
-    }
-
-    /// Shows the look of an index.
-    pub fn choose(&mut self, index: usize) {
-        if index >= self.looks.len() || index == self.current {
-            return;
-        }
-        self.let_go();
-        let before = self.state();
-        self.edits.record("look", &before);
-        self.turn_to(index);
-        self.let_go();
-    }
-
-    /// Shows the next look.
-    pub fn choose_next(&mut self) {
-        self.choose((self.current + 1) % self.looks.len());
-    }
-
-    /// Shows a look that may be new here.
-    pub fn take(&mut self, look: Look) {
-        let known = self.looks.iter().position(|known| known.source == look.source);
-        let index = known.unwrap_or(self.looks.len());
-        match known {
-            Some(index) if index != self.current => self.looks[index] = look,
-            Some(_) => {
-                self.let_go();
-                self.edit("look", |old| *old = look);
-                self.let_go();
-                self.turn_to(self.current);
-            }
-            None => self.looks.push(look),
-        }
-        self.choose(index);
-    }
-
-    /// The files of the look that is shown may say something else now: this is what can be read of them.
-    pub fn reload(&mut self, source: &Path, read: Result<Look>) {
-        if self.look().source != source {
-            return;
-        }
-        let name = source.file_name().unwrap_or_default().to_string_lossy();
-        match read {
-            // What the window has written itself is known.
-            Ok(look) if look.has_origin_of(self.look()) => {}
-            Ok(look) => {
-                let lost = self.look().is_changed();
-                self.let_go();
-                self.edit("file", |old| *old = look);
-                self.let_go();
-                self.turn_to(self.current);
-                let rest = if lost { "; undo brings your changes back" } else { "" };
-                self.notes.say(format!("{name} has changed and was read again{rest}"));
-            }
-            Err(error) => self.notes.complain(&error),
-        }
-    }
-
-    /// Settings of the command line, for all looks that have such parameters, and what lengths mean.
-    pub fn prepare(&mut self, settings: &[Setting], lengths: Option<Lengths>) {
-        for look in self.looks.iter_mut().filter(|look| !look.is_plain()) {
-            if lengths.is_some() {
-                look.preset.lengths = lengths;
-            }
-            let knobs = look.knobs(&self.library).unwrap_or_default();
-            settings.iter().for_each(|setting| look.take(&knobs, setting));
-        }
-    }
-
-    /// Shows the look that was shown last, if it is still there.
-    pub fn resume(&mut self, last: Option<&Path>) {
-        let Some(last) = last else { return };
-        let known = self.looks.iter().position(|look| look.source == last);
-        match known {
-            Some(index) => self.turn_to(index),
-            None => {
-                if let Ok(look) = Look::open(&self.library, last) {
-                    self.looks.push(look);
-                    self.turn_to(self.looks.len() - 1);
-                }
-            }
-        }
-    }
-
-    /// Changes the light.
-    pub fn relight(&mut self, what: &str, change: impl FnOnce(&mut Lighting)) {
-        let before = self.state();
-        let Some(scenery) = &mut self.scenery else { return };
-        change(&mut scenery.lighting);
-        if Some(&scenery.lighting) != before.lighting.as_ref() {
-            scenery.relight();
-            self.edits.record(what, &before);
-        }
-    }
-
-    /// Whatever was being changed is let go of.
-    pub fn let_go(&mut self) {
-        if self.edits.is_open() {
-            let now = self.state();
-            self.edits.close(&now);
-        }
-    }
-
-    /// Takes the last step back.
-    pub fn undo(&mut self) {
-        let now = self.state();
-        if let Some(before) = self.edits.undo(&now) {
-            self.restore(before);
-        }
-    }
-
-    /// Takes the last step that was taken back again.
-    pub fn redo(&mut self) {
-        let now = self.state();
-        if let Some(after) = self.edits.redo(&now) {
-            self.restore(after);
-        }
-    }
-
-    /// Whether there are steps to take back, and to take again.
-    pub fn can(&self) -> [bool; 2] {
-        [self.edits.can_undo(), self.edits.can_redo()]
     }
 
     /// A scene is open from now on.
@@ -512,6 +319,7 @@ impl Session {
         }
         (self.file, self.name) = (file, name);
         self.plan = None;
+        self.previews.clear();
         self.easel.fit();
         self.easel.overlay = Overlay::None;
         self.record.begin();

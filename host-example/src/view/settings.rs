@@ -12,6 +12,8 @@ use crate::files;
 const PLACE: &str = "ISOPHOTE_SETTINGS";
 /// Most recent files.
 const MOST_RECENT: usize = 12;
+/// Most folders of looks.
+const MOST_FOLDERS: usize = 64;
 /// Most bytes of the file.
 const MOST_BYTES: u64 = 1 << 20;
 
@@ -27,6 +29,8 @@ pub struct Settings {
     pub folder: Option<PathBuf>,
     /// Where looks were chosen last.
     pub look_folder: Option<PathBuf>,
+    /// Folders whose looks are offered.
+    pub look_folders: Vec<PathBuf>,
     /// The look that was shown last.
     pub look: Option<PathBuf>,
     /// Whether the panel is hidden.
@@ -77,6 +81,26 @@ impl Settings {
         files::write(place, |out| std::io::Write::write_all(out, text.as_bytes()).map_err(|e| e.to_string()))
     }
 
+    /// Offers the looks of a folder from now on.
+    pub fn add_look_folder(&mut self, folder: &Path) {
+        let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+        if !self.look_folders.contains(&folder) {
+            self.look_folders.push(folder);
+            self.look_folders.truncate(MOST_FOLDERS);
+        }
+    }
+
+    /// Offers them no more; the files stay.
+    pub fn remove_look_folder(&mut self, folder: &Path) {
+        self.look_folders.retain(|known| known != folder);
+    }
+
+    /// Where looks are saved: where one was last, or beside this file.
+    pub fn place_for_looks(&self) -> PathBuf {
+        let own = || Some(self.place.as_deref()?.parent()?.join("looks"));
+        self.look_folder.clone().or_else(own).unwrap_or_default()
+    }
+
     /// A file was opened.
     pub fn remember(&mut self, file: &Path) {
         let file = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
@@ -115,6 +139,11 @@ mod tests {
         let place = folder.path().join("deep").join("view.json");
         let mut settings = Settings { place: Some(place.clone()), ..Settings::default() };
         settings.window = Some((900, 500));
+        for folder in ["/looks", "/more", "/looks"] {
+            settings.add_look_folder(Path::new(folder));
+        }
+        settings.remove_look_folder(Path::new("/more"));
+        assert_eq!(settings.place_for_looks(), place.with_file_name("looks"));
         for number in 0..20 {
             settings.remember(Path::new(&format!("/pictures/{number}.png")));
         }
@@ -123,6 +152,7 @@ mod tests {
         let read = Settings::read_from(&place).unwrap();
         assert_eq!((read.window, read.recent.len()), (Some((900, 500)), MOST_RECENT));
         assert_eq!(read.recent[0], Path::new("/pictures/12.png"));
+        assert_eq!(read.look_folders, [Path::new("/looks")]);
         assert_eq!(read.folder.as_deref(), Some(Path::new("/pictures")));
         for broken in ["", "{", r#"{"window": "large"}"#] {
             fs::write(&place, broken).unwrap();

@@ -13,6 +13,7 @@ use crate::loader::contract::{
 use crate::render::Renderer;
 use crate::render::background::Background;
 use crate::render::gpu::Gpu;
+use crate::render::targets::Targets;
 use crate::scene::Scene;
 use crate::stylize::Stylizer;
 
@@ -84,6 +85,11 @@ impl SceneSource {
         let is_new = self.renderer.targets().rest.is_none();
         self.renderer.add_rest_positions();
         is_new
+    }
+
+    /// What the last frame was rendered into.
+    pub fn targets(&self) -> &Targets {
+        self.renderer.targets()
     }
 
     /// Records a frame.

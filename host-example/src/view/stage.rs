@@ -10,6 +10,7 @@ use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
 use super::canvas::{Arrangement, Canvas, Numbers, SURROUND, Shown};
+use super::document::frame::Frame;
 use super::easel::Overlay;
 use super::lane::{Lane, Part};
 use super::look::Look;
@@ -17,6 +18,7 @@ use super::panel::Panel;
 use super::pictures::{PictureSource, numbers};
 use super::probe::Probe;
 use super::session::{Session, Which};
+use super::snapshot::Snapshots;
 use super::source::{SceneSource, Source};
 use super::worker::Wake;
 use crate::error::{Error, Result};
@@ -35,6 +37,7 @@ pub struct Stage {
     source: Option<Source>,
     canvas: Canvas,
     probe: Probe,
+    snapshots: Snapshots<Face>,
     /// Colours under the pointer, before and after, as of the last frame.
     pub probed: Option<[[f32; 4]; 2]>,
     /// Draws the controls.
@@ -77,6 +80,9 @@ struct Made {
     scene: Option<(View, Light, f32)>,
 }
 
+/// What a frame of a scene shows, looks apart.
+type Face = (IsophoteRequest, u64, Option<(View, Light, f32)>);
+
 /// What recording a part of a picture may take.
 const GOAL: [Duration; 2] = [Duration::from_millis(15), Duration::from_millis(40)];
 
@@ -115,6 +121,7 @@ impl Stage {
             source: None,
             canvas,
             probe,
+            snapshots: Snapshots::new(wake)?,
             probed: None,
             panel,
             surface,
@@ -154,6 +161,10 @@ impl Stage {
     /// [`Error::Failure`] when the device fails, [`Error::Input`] for a scene beyond its limits.
     pub fn follow(&mut self, session: &Session, scale: f32) -> Result<Vec<Error>> {
         self.follow_source(session, scale)?;
+        // What is covered is built when it is seen, where that takes the processor's time.
+        if session.is_covered() && self.is_software() {
+            return Ok(Vec::new());
+        }
         let Some(source) = &mut self.source else { return Ok(Vec::new()) };
         let overlay = session.easel.overlay.node().map(|node| Look::open(&session.library, node.as_ref()));
         let overlay = overlay.transpose()?.unwrap_or_else(Look::plain);
@@ -218,6 +229,33 @@ impl Stage {
             self.sources += 1;
         }
         Ok(())
+    }
+
+    /// The frame of a scene that was copied since the last call, for previews. Copies the present one where it stands still and
+    /// is covered by them.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the device refuses.
+    pub fn snapshot(&mut self, session: &Session) -> Result<Option<Frame>> {
+        let taken = self.snapshots.answer();
+        // Panes that are all but ready are more to look at than none while a scene is turned.
+        let waits = session.comparison.is_some() && session.previews.is_busy() && !self.is_software();
+        let is_wanted = session.is_covered() && !session.is_playing() && !self.is_begun && !waits;
+        let made = self.made.as_ref().filter(|made| is_wanted && made.asked.scale == 1.0);
+        let face = made.map(|made| (made.asked, made.source, made.scene));
+        if let (Some(Source::Scene(source)), Some(scenery), Some(face)) =
+            (&mut self.source, &session.scenery, face)
+            && !self.snapshots.shows(&face)
+        {
+            if source.add_rest_positions() {
+                self.lanes.iter_mut().for_each(Lane::unbind);
+                let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+                source.encode(&mut encoder, scenery);
+                self.gpu.queue.submit([encoder.finish()]);
+            }
+            self.snapshots.take(&self.gpu, source, face);
+        }
+        taken.transpose()
     }
 
     /// Whether a look is being built.
@@ -304,7 +342,7 @@ impl Stage {
             ..Default::default()
         });
         let mut pass = pass.forget_lifetime();
-        if self.source.is_some() {
+        if self.source.is_some() && !session.is_covered() {
             self.canvas.draw(&mut pass, session.easel.area, size);
         }
         self.panel.draw(&mut pass, size);

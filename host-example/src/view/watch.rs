@@ -142,4 +142,19 @@ mod tests {
         fs::write(&file, "333").unwrap();
         assert!(waits_for_change(&watch));
     }
+
+    #[test]
+    fn a_folder_changes_with_the_files_in_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("look.json");
+        fs::write(&file, "1").unwrap();
+        let mut watch = Watch::new(&(Arc::new(|| ()) as Wake)).unwrap();
+        watch.follow(vec![folder.path().to_owned()]);
+        std::thread::sleep(Duration::from_millis(50));
+        fs::remove_file(&file).unwrap();
+        assert!(waits_for_change(&watch));
+        std::thread::sleep(Duration::from_millis(50));
+        fs::write(folder.path().join("other.json"), "1").unwrap();
+        assert!(waits_for_change(&watch));
+    }
 }

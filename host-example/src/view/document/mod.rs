@@ -8,6 +8,7 @@ pub mod frame;
 pub mod kind;
 pub mod loading;
 mod player;
+pub mod reduce;
 mod source;
 mod store;
 

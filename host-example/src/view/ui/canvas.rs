@@ -41,7 +41,8 @@ fn pixels(ui: &Ui, at: Pos2) -> [f32; 2] {
     [at.x * ui.pixels_per_point(), at.y * ui.pixels_per_point()]
 }
 
-fn drag(ui: &Ui, response: &egui::Response, session: &mut Session) {
+/// Turns the scene or moves the picture, by what was dragged.
+pub fn drag(ui: &Ui, response: &egui::Response, session: &mut Session) {
     let by = response.drag_delta();
     if by == egui::Vec2::ZERO {
         return;
@@ -64,7 +65,8 @@ fn drag(ui: &Ui, response: &egui::Response, session: &mut Session) {
     }
 }
 
-fn scroll(ui: &Ui, pointer: Option<Pos2>, session: &mut Session) {
+/// Goes nearer or magnifies about a place, by the wheel.
+pub fn scroll(ui: &Ui, pointer: Option<Pos2>, session: &mut Session) {
     let mut notches = 0.0;
     let mut magnifies = session.scenery.is_none();
     ui.input(|input| {
@@ -141,7 +143,7 @@ fn names(ui: &Ui, rect: Rect, session: &Session) {
 }
 
 /// A few words on the picture.
-fn tag(ui: &Ui, at: Pos2, align: Align2, text: &str) {
+pub fn tag(ui: &Ui, at: Pos2, align: Align2, text: &str) {
     let font = FontId::proportional(12.0);
     let galley = ui.painter().layout_no_wrap(text.to_owned(), font, theme::TEXT);
     let rect = align.anchor_size(at, galley.size() + vec2(16.0, 8.0));

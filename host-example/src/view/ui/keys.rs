@@ -2,11 +2,12 @@
 
 use winit::keyboard::{Key, NamedKey};
 
+use crate::view::browser::Step;
 use crate::view::easel::Compare;
 use crate::view::session::{Session, Wish};
 
 /// Keys and what they do, for the help of the program and of the window.
-pub const KEYS: [(&str, &str); 24] = [
+pub const KEYS: [(&str, &str); 27] = [
     ("drag", "turns the scene; moves a picture"),
     ("Shift+drag", "pans, as other buttons do"),
     ("wheel", "zooms"),
@@ -14,6 +15,9 @@ pub const KEYS: [(&str, &str); 24] = [
     ("Ctrl+drag", "moves what is magnified"),
     ("1, 2, ...", "show the style of that number"),
     ("Tab", "shows the next style"),
+    ("l", "shows all looks as they make this picture, and the picture again"),
+    ("arrows, Enter", "among the looks: go from card to card; take one"),
+    ("m, c", "among the looks: marks one; compares those that are marked"),
     ("\\ (hold)", "shows the original while it is held"),
     ("w", "compares by a wipe"),
     ("e", "compares side by side"),
@@ -35,6 +39,9 @@ pub const KEYS: [(&str, &str); 24] = [
 
 /// A key was pressed, without Ctrl.
 pub fn press(session: &mut Session, key: &Key) {
+    if session.is_covered() && cover(session, key) {
+        return;
+    }
     let toggled = |now: Compare, wanted: Compare| if now == wanted { Compare::Off } else { wanted };
     match key.as_ref() {
         Key::Named(NamedKey::Escape) if session.shows_help => session.shows_help = false,
@@ -47,6 +54,7 @@ pub fn press(session: &mut Session, key: &Key) {
             }
         }
         Key::Named(NamedKey::F1) | Key::Character("?") => session.shows_help = !session.shows_help,
+        Key::Character("l") => session.toggle_browser(),
         Key::Character("f") => session.frame_all(),
         Key::Character("c") => {
             if let Some(scenery) = &mut session.scenery {
@@ -66,4 +74,40 @@ pub fn press(session: &mut Session, key: &Key) {
         }
         _ => {}
     }
+}
+
+/// What a key does where looks are shown instead of the picture; says whether it does anything there.
+fn cover(session: &mut Session, key: &Key) -> bool {
+    if session.shows_help {
+        return false;
+    }
+    let is_asked =
+        session.saving.is_some() || session.browser.titling.is_some() || session.browser.deleting.is_some();
+    match key.as_ref() {
+        Key::Named(NamedKey::Escape) if is_asked => {
+            (session.saving, session.browser.titling, session.browser.deleting) = (None, None, None);
+        }
+        _ if is_asked => {}
+        Key::Named(NamedKey::Escape) if session.comparison.is_some() => session.end_comparison(),
+        Key::Named(NamedKey::Escape) => session.browser.is_open = false,
+        Key::Named(NamedKey::Tab) => {}
+        Key::Character("c") if session.comparison.is_none() => session.compare_marked(),
+        _ if session.comparison.is_some() => return false,
+        Key::Named(NamedKey::ArrowLeft) => session.browser.step(Step::Left),
+        Key::Named(NamedKey::ArrowRight) => session.browser.step(Step::Right),
+        Key::Named(NamedKey::ArrowUp) => session.browser.step(Step::Up),
+        Key::Named(NamedKey::ArrowDown) => session.browser.step(Step::Down),
+        Key::Named(NamedKey::Enter) => {
+            if let Some(id) = session.browser.selected {
+                session.apply(id, true);
+            }
+        }
+        Key::Character("m") => {
+            if let Some(id) = session.browser.selected {
+                session.mark(id);
+            }
+        }
+        _ => return false,
+    }
+    true
 }

@@ -3,9 +3,8 @@
 use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
 use super::{chain, control, layers, lighting, theme};
-use crate::looks;
 use crate::view::look::Knob;
-use crate::view::session::{Session, Wish};
+use crate::view::session::Session;
 
 /// Headings that are open at first.
 const OPEN: [&str; 2] = ["look", ""];
@@ -63,36 +62,15 @@ fn chooser(ui: &mut Ui, session: &mut Session) {
         if let Some(index) = chosen {
             session.choose(index);
         }
-        shipped(ui, session);
+        if ui.button("Looks").on_hover_text("All looks, as they make this picture (l)").clicked() {
+            session.toggle_browser();
+        }
         let changed = session.knobs.iter().any(|knob| session.look().differs(knob));
         let reset = ui.add_enabled(changed, egui::Button::new("Reset all"));
         if reset.on_hover_text("Set everything back to the style's defaults (r)").clicked() {
             session.reset_all();
         }
     });
-}
-
-/// Looks that ship with the program, by their styles.
-fn shipped(ui: &mut Ui, session: &mut Session) {
-    let menu = ui.menu_button("Looks", |ui| {
-        let looks = looks::all().unwrap_or_default();
-        let mut styles: Vec<&str> = looks.iter().map(|look| look.preset.style.as_str()).collect();
-        styles.dedup();
-        for style in styles {
-            ui.menu_button(theme::capital(&style.replace('_', " ")), |ui| {
-                for look in looks.iter().filter(|look| look.preset.style == style) {
-                    let title = &look.preset.title;
-                    let name = title.name.as_deref().unwrap_or(look.id);
-                    let about = title.about.as_deref().unwrap_or_default();
-                    if ui.button(name).on_hover_text(about).clicked() {
-                        session.wishes.push(Wish::TakeLook(look.style().into()));
-                        ui.close();
-                    }
-                }
-            });
-        }
-    });
-    menu.response.on_hover_text("Looks that ship with the program");
 }
 
 /// Parameters of the node that is selected, or of all.

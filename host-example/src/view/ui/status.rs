@@ -18,7 +18,9 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         if session.has_picture() {
             timeline(ui, session);
             frames(ui, session);
-            probe(ui, session);
+            if !session.is_covered() {
+                probe(ui, session);
+            }
         } else {
             ui.label(RichText::new(&session.record.adapter).small().color(theme::FAINT));
         }
@@ -98,8 +100,24 @@ fn probe(ui: &mut Ui, session: &Session) {
 }
 
 fn magnification(ui: &mut Ui, session: &mut Session) {
-    let size = session.nominal_size();
-    let scale = session.easel.scale(size);
+    if !session.browser.is_open {
+        size(ui, session);
+        ui.add_space(8.0);
+    }
+    let stops = DragValue::new(&mut session.easel.exposure).range(-10.0..=10.0).speed(0.02).max_decimals(2);
+    let label = ui.label(RichText::new("Exposure").color(theme::FAINT));
+    let stops = ui.add(stops.suffix(" stops")).labelled_by(label.id);
+    if stops
+        .on_hover_text("Brightness of what is shown, not of what is saved; a double click sets it back")
+        .double_clicked()
+    {
+        session.easel.exposure = 0.0;
+    }
+}
+
+/// How large the picture is shown.
+fn size(ui: &mut Ui, session: &mut Session) {
+    let scale = session.easel.scale(session.nominal_size());
     if ui
         .add(Button::new("Fit").selected(session.easel.is_fitting()))
         .on_hover_text("All of the picture (0)")
@@ -110,15 +128,5 @@ fn magnification(ui: &mut Ui, session: &mut Session) {
     let percent = format!("{:.0} %", scale * 100.0);
     if ui.add(Button::new(percent)).on_hover_text("Pixels as large as the screen's (z)").clicked() {
         session.easel.toggle_actual();
-    }
-    ui.add_space(8.0);
-    let stops = DragValue::new(&mut session.easel.exposure).range(-10.0..=10.0).speed(0.02).max_decimals(2);
-    let label = ui.label(RichText::new("Exposure").color(theme::FAINT));
-    let stops = ui.add(stops.suffix(" stops")).labelled_by(label.id);
-    if stops
-        .on_hover_text("Brightness of what is shown, not of what is saved; a double click sets it back")
-        .double_clicked()
-    {
-        session.easel.exposure = 0.0;
     }
 }

@@ -8,12 +8,24 @@ pub const ACCENT: Color32 = Color32::from_rgb(112, 152, 196);
 pub const FAINT: Color32 = Color32::from_gray(138);
 /// Text that matters.
 pub const TEXT: Color32 = Color32::from_gray(206);
+/// Text that names things.
+pub const BRIGHT: Color32 = Color32::from_gray(232);
 /// What went wrong.
 pub const BAD: Color32 = Color32::from_rgb(226, 132, 110);
 /// Behind text that lies on the picture.
 pub const VEIL: Color32 = Color32::from_rgba_premultiplied(14, 14, 14, 190);
 /// Panels.
 pub const PANEL: Color32 = Color32::from_gray(34);
+/// What surrounds pictures.
+pub const SURROUND: Color32 = Color32::from_gray(27);
+/// Cards.
+pub const CARD: Color32 = Color32::from_gray(38);
+/// Cards under the pointer, and the selected one.
+pub const CARD_ABOVE: Color32 = Color32::from_gray(50);
+/// Where there is no picture yet.
+pub const EMPTY: Color32 = Color32::from_gray(22);
+/// Behind the text of a button that goes on with something.
+pub const CHOSEN: Color32 = Color32::from_rgb(62, 88, 116);
 
 /// Gives a context this look.
 pub fn apply(context: &egui::Context) {
@@ -56,7 +68,7 @@ fn visuals() -> Visuals {
     visuals.handle_shape = egui::style::HandleShape::Circle;
     visuals.indent_has_left_vline = false;
     visuals.disabled_alpha = 0.4;
-    visuals.selection.bg_fill = Color32::from_rgb(62, 88, 116);
+    visuals.selection.bg_fill = CHOSEN;
     visuals.selection.stroke = Stroke::new(1.0, Color32::from_gray(236));
     let widgets = &mut visuals.widgets;
     widgets.noninteractive.bg_stroke = Stroke::new(1.0, Color32::from_gray(50));

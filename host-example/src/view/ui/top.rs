@@ -25,9 +25,12 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
             session.redo();
         }
         ui.add_space(10.0);
-        compare(ui, session);
-        ui.add_space(10.0);
-        overlays(ui, session);
+        looks(ui, session);
+        if !session.is_covered() {
+            compare(ui, session);
+            ui.add_space(10.0);
+            overlays(ui, session);
+        }
         right(ui, session);
     });
 }
@@ -40,8 +43,14 @@ fn file_menu(ui: &mut Ui, session: &mut Session) {
         ui.separator();
         item(ui, session, "Open a look…", "", Wish::ChooseLook, true);
         let has_look = !session.look().is_plain();
-        item(ui, session, "Save the look", "Ctrl+S", Wish::SaveLook(false), has_look);
-        item(ui, session, "Save the look as…", "Ctrl+Shift+S", Wish::SaveLook(true), has_look);
+        for (text, keys, elsewhere) in
+            [("Save the look", "Ctrl+S", false), ("Save the look as…", "Ctrl+Shift+S", true)]
+        {
+            if ui.add_enabled(has_look, Button::new(text).shortcut_text(keys)).clicked() {
+                session.save_look(elsewhere);
+                ui.close();
+            }
+        }
         ui.separator();
         let can_export = session.file.is_some() && (has_look || session.scenery.is_some());
         item(ui, session, "Copy the command line", "", Wish::CopyCommand, session.file.is_some());
@@ -77,6 +86,21 @@ fn item(ui: &mut Ui, session: &mut Session, text: &str, keys: &str, wish: Wish, 
     }
 }
 
+/// The way to the browser of looks, and back.
+fn looks(ui: &mut Ui, session: &mut Session) {
+    let browser = Button::selectable(session.browser.is_open, "Browse looks").frame_when_inactive(true);
+    if ui.add(browser).on_hover_text("All looks, as they make this picture (l)").clicked() {
+        session.toggle_browser();
+    }
+    if session.comparison.is_some() {
+        ui.label(RichText::new("A click takes a look").color(theme::FAINT));
+        if ui.button("End the comparison").on_hover_text("Esc").clicked() {
+            session.end_comparison();
+        }
+    }
+    ui.add_space(10.0);
+}
+
 /// How pictures are compared, and with what.
 fn compare(ui: &mut Ui, session: &mut Session) {
     ui.spacing_mut().item_spacing.x = 3.0;
@@ -107,8 +131,8 @@ fn compare(ui: &mut Ui, session: &mut Session) {
                 session.compared = Some(look);
             }
             for look in session.looks.iter().filter(|look| !look.is_plain()) {
-                if ui.selectable_label(session.compared.as_ref() == Some(look), &look.name).clicked() {
-                    session.compared = Some(look.clone());
+                if ui.selectable_label(session.compared.as_ref() == Some(&**look), &look.name).clicked() {
+                    session.compared = Some((**look).clone());
                 }
             }
         })
@@ -153,7 +177,7 @@ fn right(ui: &mut Ui, session: &mut Session) {
         }
         let has_look = !session.look().is_plain();
         if ui.add_enabled(has_look, Button::new("Save look")).on_hover_text("Ctrl+S").clicked() {
-            session.wishes.push(Wish::SaveLook(false));
+            session.save_look(false);
         }
     });
 }
