@@ -2,18 +2,20 @@
 //!
 //! | what | where |
 //! |---|---|
-//! | the window's events, and when a frame is drawn | `app`, `pace` |
+//! | the window's events, and when a frame is drawn | `app`, `clicks`, `pace` |
 //! | all that is known of what is shown, and steps back | `session`, `history`, `look`, `chain`, `value`, `scenery`, `reel`, `easel` |
-//! | work beside the window | `worker`, `desk`, `watch`, `idle`, `document`, `export` |
-//! | what lives on the device | `stage`, `source`, `pictures`, `lane`, `canvas`, `probe`, `panel` |
+//! | work beside the window | `worker`, `desk`, `dialogs`, `watch`, `idle`, `document`, `export` |
+//! | what lives on the device | `stage`, `screen`, `sources`, `source`, `pictures`, `lane`, `canvas`, `probe`, `panel` |
 //! | the controls | `ui` |
 
-mod app;
+pub mod app;
 mod canvas;
 pub mod chain;
+mod clicks;
 pub mod command;
 mod demo;
 mod desk;
+mod dialogs;
 pub mod document;
 mod easel;
 pub mod export;
@@ -30,9 +32,11 @@ mod probe;
 pub mod record;
 pub mod reel;
 pub mod scenery;
+mod screen;
 pub mod session;
 pub mod settings;
 mod source;
+mod sources;
 mod stage;
 pub mod ui;
 pub mod value;
@@ -60,12 +64,13 @@ pub fn keys() -> String {
 ///
 /// # Errors
 /// [`Error::Failure`] without a display or a graphics device.
-pub fn show(session: Session, size: Option<(u32, u32)>, with_report: bool) -> Result<()> {
+pub fn show(mut session: Session, size: Option<(u32, u32)>, with_report: bool) -> Result<()> {
     let failed = |e: &EventLoopError| {
         let problem = reason(&e.to_string()).to_owned();
         Error::failure(format!("no window can be opened: {problem}"), "start the viewer in a desktop session")
     };
     let event_loop = EventLoop::<Event>::with_user_event().build().map_err(|e| failed(&e))?;
+    session.record.is_wanted = with_report;
     let mut app = App::new(session, size, event_loop.create_proxy())?;
     event_loop.run_app(&mut app).map_err(|e| failed(&e))?;
     if with_report {
