@@ -77,6 +77,7 @@ impl Gpu {
         let record = Arc::clone(&faults);
         // When the last clone is dropped this is called, too, and nobody is left to read it.
         device.set_device_lost_callback(move |_, message| {
+            let message = if message.is_empty() { "its driver does not say why".into() } else { message };
             record.lock().unwrap_or_else(PoisonError::into_inner).lost = Some(message);
         });
         Ok(Self { instance, adapter, device, queue, faults })

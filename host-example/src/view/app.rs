@@ -71,6 +71,7 @@ pub struct App {
     /// Ended the window, when something did.
     pub failure: Option<Error>,
     revivals: u32,
+    devices: usize,
     /// When a device is to be opened anew.
     revival: Option<Instant>,
     modifiers: ModifiersState,
@@ -100,6 +101,7 @@ impl App {
             wake,
             failure: None,
             revivals: 0,
+            devices: 0,
             revival: None,
             modifiers: ModifiersState::empty(),
             hidden: false,
@@ -123,6 +125,11 @@ impl App {
     /// The device, while there is one.
     pub fn gpu(&self) -> Option<&Gpu> {
         self.stage.as_ref().map(Stage::gpu)
+    }
+
+    /// Devices that have been opened so far: each but the first took the place of one that was lost.
+    pub fn devices(&self) -> usize {
+        self.devices
     }
 
     /// What was made on the device for the look.
@@ -173,12 +180,13 @@ impl App {
         }
         // What letters look like was on the device that is gone.
         stage.panel.restore(&self.textures);
-        if self.session.record.adapter.is_empty() {
+        if self.devices == 0 {
             window.set_visible(true);
         }
         self.session.record.adapter = stage.adapter();
         self.pace.is_software = stage.is_software();
         self.stage = Some(stage);
+        self.devices += 1;
         self.due = Some(Instant::now());
         Ok(())
     }

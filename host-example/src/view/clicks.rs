@@ -1,12 +1,18 @@
-//! Clicks that are faster than frames.
+//! Clicks and drags that are faster than frames.
 
-/// Leaves at most one press or release of a button among the events, those of before first, and returns the rest: controls
-/// do not see a click that begins and ends within one frame, as clicks do where frames are slow.
-pub fn one_at_a_time(events: &mut Vec<egui::Event>, before: Vec<egui::Event>) -> Vec<egui::Event> {
+use egui::Event;
+
+/// Ends the events of a frame, those of before first, with the first press or release of a button, and returns the rest:
+/// controls do not see a click that begins and ends within one frame, as clicks do where frames are slow, and take a press
+/// for one where the pointer is at the end of the frame.
+pub fn one_at_a_time(events: &mut Vec<Event>, before: Vec<Event>) -> Vec<Event> {
     events.splice(..0, before);
-    let is_button = |event: &egui::Event| matches!(event, egui::Event::PointerButton { .. });
-    let second = events.iter().enumerate().filter(|(_, event)| is_button(event)).nth(1);
-    second.map(|(at, _)| at).map_or_else(Vec::new, |at| events.split_off(at))
+    let is_button = |event: &Event| matches!(event, Event::PointerButton { .. });
+    let is_pointer = |event: &Event| is_button(event) || matches!(event, Event::PointerMoved(_));
+    match events.iter().position(is_button) {
+        Some(first) if events[first + 1..].iter().any(is_pointer) => events.split_off(first + 1),
+        _ => Vec::new(),
+    }
 }
 
 #[cfg(test)]
@@ -14,19 +20,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_fast_click_lasts_two_frames() {
-        let button = |pressed| egui::Event::PointerButton {
+    fn a_fast_click_lasts_two_frames_and_stays_where_it_is() {
+        let button = |pressed| Event::PointerButton {
             pos: egui::pos2(1.0, 2.0),
             button: egui::PointerButton::Primary,
             pressed,
             modifiers: egui::Modifiers::NONE,
         };
-        let moved = egui::Event::PointerMoved(egui::pos2(1.0, 2.0));
-        let mut events = vec![moved.clone(), button(true), button(false), moved.clone()];
+        let moved = |x| Event::PointerMoved(egui::pos2(x, 2.0));
+        let mut events = vec![moved(1.0), button(true), moved(5.0), button(false), moved(9.0)];
         let late = one_at_a_time(&mut events, Vec::new());
-        assert_eq!(events, [moved.clone(), button(true)]);
-        let mut next = vec![moved.clone()];
-        assert!(one_at_a_time(&mut next, late).is_empty());
-        assert_eq!(next, [button(false), moved.clone(), moved]);
+        assert_eq!(events, [moved(1.0), button(true)]);
+        let mut next = vec![Event::Copy];
+        let late = one_at_a_time(&mut next, late);
+        assert_eq!(next, [moved(5.0), button(false)]);
+        let mut last = vec![Event::Copy];
+        assert!(one_at_a_time(&mut last, late).is_empty());
+        assert_eq!(last, [moved(9.0), Event::Copy, Event::Copy]);
+        let mut alone = vec![button(true), Event::Copy];
+        assert!(one_at_a_time(&mut alone, Vec::new()).is_empty());
+        assert_eq!(alone.len(), 2);
     }
 }

@@ -7,6 +7,8 @@ use crate::error::{Error, Result};
 
 /// Where that crate's messages come from.
 const SHOWS: &str = "rfd";
+/// What it tries last, after which there is no dialog.
+const LAST: &str = "zenity";
 
 thread_local! {
     /// What went wrong with the dialog of this thread.
@@ -22,8 +24,9 @@ impl log::Log for Listener {
     }
 
     fn log(&self, record: &log::Record<'_>) {
-        if self.enabled(record.metadata()) {
-            PROBLEM.set(Some(record.args().to_string()));
+        let text = record.args().to_string();
+        if self.enabled(record.metadata()) && text.contains(LAST) {
+            PROBLEM.set(Some(text));
         }
     }
 
@@ -59,12 +62,17 @@ mod tests {
     #[test]
     fn what_was_not_shown_is_no_answer() {
         let refused = || {
-            log::error!(target: "rfd::backend", "no program for it");
+            log::error!(target: "rfd::backend", "no bus");
+            log::error!(target: "rfd::backend", "no zenity");
             None::<u8>
         };
         let error = shown(refused, "drop the file").unwrap_err().to_string();
-        assert!(error.contains("no program for it") && error.ends_with("; drop the file"), "{error}");
-        assert_eq!(shown(|| Some(1), "").unwrap(), Some(1));
+        assert!(error.contains("no zenity") && error.ends_with("; drop the file"), "{error}");
+        let fallback = || {
+            log::error!(target: "rfd::backend", "no bus");
+            Some(1)
+        };
+        assert_eq!(shown(fallback, "").unwrap(), Some(1));
         assert_eq!(shown(|| None::<u8>, "").unwrap(), None, "it was closed");
     }
 }

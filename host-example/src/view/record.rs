@@ -98,8 +98,12 @@ impl Record {
 
     /// Whether all frames that were asked for have been shown.
     pub fn is_finished(&self) -> bool {
-        let shown: usize = self.stretches.iter().map(|s| s.times.len()).sum();
-        self.limit.is_some_and(|limit| shown >= limit as usize)
+        self.limit.is_some_and(|limit| self.shown() >= limit as usize)
+    }
+
+    /// Frames that have been shown, as far as they are kept.
+    pub fn shown(&self) -> usize {
+        self.stretches.iter().map(|stretch| stretch.times.len()).sum()
     }
 
     /// Prints the adapter, the frames and milliseconds of each look, the longest time that the window answered nobody, and what
