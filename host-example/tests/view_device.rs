@@ -27,7 +27,7 @@ use winit::window::WindowId;
 use support::window::{Display, Part, screen};
 
 /// This only ends a test that hangs.
-const PATIENCE: Duration = Duration::from_secs(240);
+const PATIENCE: Duration = Duration::from_secs(600);
 const TICK: Duration = Duration::from_millis(2);
 /// Names the folder of the screen to the process that has the window.
 const FOLDER: &str = "ISOPHOTE_TEST_SCREEN";
@@ -325,26 +325,28 @@ fn repeat(
     })
 }
 
-/// What allocators and drivers keep back of what was freed differs from one time to the next by less than this; a thousand
-/// of anything that a slider or a switch left behind, of a picture's size or a plan's, would be more.
-const SLACK: u64 = 24 << 20;
+/// What a move may leave behind in the mean. Software drivers keep some kilobytes of every pass that they have recorded, also
+/// where the same picture is drawn again and again; a picture of this size has 96 KiB, and its plan a texture or more.
+const OF_A_MOVE: u64 = 40 << 10;
+/// What a switch may leave behind in the mean, of styles with ten times as many passes and textures of 96 KiB each.
+const OF_A_SWITCH: u64 = 400 << 10;
 
 #[test]
 fn a_thousand_moves_of_a_slider_and_two_hundred_switches_of_the_style_leave_nothing_behind() {
     let name = "a_thousand_moves_of_a_slider_and_two_hundred_switches_of_the_style_leave_nothing_behind";
     alone(name, |folder| {
-        let session = session(folder, &["cartoon", "blueprint", "ink"], (96, 64));
+        let session = session(folder, &["gaussian", "cartoon", "blueprint", "ink"], (96, 64));
         let moves = repeat(
             1000,
             100,
-            |app, step| set(app, "line_amount", 0.2 + (step % 50) as f32 / 100.0),
+            |app, step| set(app, "mix", 0.2 + (step % 50) as f32 / 100.0),
             |warm, end| {
                 assert_eq!(warm.objects, end.objects, "nothing is made for a move");
                 assert_eq!(warm.made, end.made);
                 assert!(end.uploads >= warm.uploads + 800, "{} to {}", warm.uploads, end.uploads);
                 let grown = end.memory.saturating_sub(warm.memory);
                 eprintln!("1000 moves: {} KiB more of {} MiB", grown >> 10, end.memory >> 20);
-                assert!(grown < SLACK, "{} MiB to {} MiB", warm.memory >> 20, end.memory >> 20);
+                assert!(grown < 900 * OF_A_MOVE, "{} MiB to {} MiB", warm.memory >> 20, end.memory >> 20);
             },
         );
         let switches = repeat(
@@ -354,7 +356,7 @@ fn a_thousand_moves_of_a_slider_and_two_hundred_switches_of_the_style_leave_noth
             |warm, end| {
                 let grown = end.memory.saturating_sub(warm.memory);
                 eprintln!("200 switches: {} KiB more of {} MiB", grown >> 10, end.memory >> 20);
-                assert!(grown < SLACK, "{} MiB to {} MiB", warm.memory >> 20, end.memory >> 20);
+                assert!(grown < 188 * OF_A_SWITCH, "{} MiB to {} MiB", warm.memory >> 20, end.memory >> 20);
                 for ((kind, warm), (_, end)) in warm.objects.iter().zip(&end.objects) {
                     // The styles have different numbers of them, which are 188 switches apart.
                     assert!(*end < warm + 188, "{kind}: {warm} to {end}");

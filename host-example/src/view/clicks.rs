@@ -2,16 +2,22 @@
 
 use egui::Event;
 
-/// Ends the events of a frame, those of before first, with the first press or release of a button, and returns the rest:
-/// controls do not see a click that begins and ends within one frame, as clicks do where frames are slow, and take a press
-/// for one where the pointer is at the end of the frame.
+/// Ends the events of a frame, those of before first, with the first press or release of a button, and before a release that
+/// follows a move; returns the rest. Controls do not see a click that begins and ends within one frame, as clicks do where
+/// frames are slow; they take a press for one where the pointer is at the end of the frame; and what is dragged does not go
+/// where it is let go of in the same frame.
 pub fn one_at_a_time(events: &mut Vec<Event>, before: Vec<Event>) -> Vec<Event> {
     events.splice(..0, before);
+    let is_move = |event: &Event| matches!(event, Event::PointerMoved(_));
     let is_button = |event: &Event| matches!(event, Event::PointerButton { .. });
-    let is_pointer = |event: &Event| is_button(event) || matches!(event, Event::PointerMoved(_));
-    match events.iter().position(is_button) {
-        Some(first) if events[first + 1..].iter().any(is_pointer) => events.split_off(first + 1),
-        _ => Vec::new(),
+    let Some(first) = events.iter().position(is_button) else { return Vec::new() };
+    let is_release = matches!(events[first], Event::PointerButton { pressed: false, .. });
+    if is_release && events[..first].iter().any(is_move) {
+        return events.split_off(first);
+    }
+    match events[first + 1..].iter().any(|event| is_button(event) || is_move(event)) {
+        true => events.split_off(first + 1),
+        false => Vec::new(),
     }
 }
 
@@ -33,7 +39,10 @@ mod tests {
         assert_eq!(events, [moved(1.0), button(true)]);
         let mut next = vec![Event::Copy];
         let late = one_at_a_time(&mut next, late);
-        assert_eq!(next, [moved(5.0), button(false)]);
+        assert_eq!(next, [moved(5.0)]);
+        let mut after = Vec::new();
+        let late = one_at_a_time(&mut after, late);
+        assert_eq!(after, [button(false)]);
         let mut last = vec![Event::Copy];
         assert!(one_at_a_time(&mut last, late).is_empty());
         assert_eq!(last, [moved(9.0), Event::Copy, Event::Copy]);

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// Software rendering on a busy machine takes its time; this only ends a test that hangs.
-const PATIENCE: Duration = Duration::from_secs(100);
+const PATIENCE: Duration = Duration::from_secs(240);
 const TICK: Duration = Duration::from_millis(50);
 
 /// A child that does not outlive its test.
@@ -96,7 +96,6 @@ pub struct Window<'d> {
     /// Its number, as xdotool has it.
     pub id: String,
     said: Arc<Mutex<String>>,
-    started: Instant,
 }
 
 impl<'d> Window<'d> {
@@ -117,7 +116,7 @@ impl<'d> Window<'d> {
                 *own.lock().expect("the test goes on") += &format!("{line}\n");
             }
         });
-        let mut window = Self { display, viewer, id: String::new(), said, started: Instant::now() };
+        let mut window = Self { display, viewer, id: String::new(), said };
         window.wait_for("a window", |window| {
             let found = window.display.xdotool(&["search", "--onlyvisible", "--name", ".+"]);
             window.id = found.and_then(|ids| ids.lines().next().map(str::to_owned)).unwrap_or_default();
@@ -128,8 +127,9 @@ impl<'d> Window<'d> {
 
     /// Waits until something is so, while the program goes on.
     pub fn wait_for(&mut self, what: &str, mut is_so: impl FnMut(&mut Self) -> bool) {
+        let started = Instant::now();
         while !is_so(self) {
-            assert!(self.started.elapsed() < PATIENCE, "waited too long for {what}: {}", self.state());
+            assert!(started.elapsed() < PATIENCE, "waited too long for {what}: {}", self.state());
             let ended = self.viewer.0.try_wait().expect("the program's state");
             assert!(ended.is_none(), "the program ended before {what}: {}", self.state());
             std::thread::sleep(TICK);
@@ -150,9 +150,9 @@ impl<'d> Window<'d> {
         self.display.xdotool(&["getwindowname", &self.id]).unwrap_or_default()
     }
 
-    /// Waits until the title begins with what is open and the look, and a frame of it has been shown.
+    /// Waits until the title begins with what is open and the look.
     pub fn shows(&mut self, file: &str, look: &str) {
-        let wanted = format!("{file} - {look} - frame ");
+        let wanted = format!("{file} - {look}");
         self.wait_for(&wanted, |window| window.title().starts_with(&wanted));
     }
 
@@ -218,6 +218,12 @@ impl<'d> Window<'d> {
         self.wait_for(what, |_| screen(&folder, part) != before);
     }
 
+    /// Waits until a part of the screen is as it was.
+    pub fn becomes(&mut self, what: &str, part: Part, before: &[u8]) {
+        let folder = self.display.folder().to_owned();
+        self.wait_for(what, |_| screen(&folder, part) == before);
+    }
+
     /// Number of the program's process.
     pub fn process(&self) -> u32 {
         self.viewer.0.id()
@@ -225,11 +231,12 @@ impl<'d> Window<'d> {
 
     /// Waits until it ends; returns how, and what it printed.
     pub fn ended(&mut self) -> (ExitStatus, String) {
+        let started = Instant::now();
         let status = loop {
             if let Some(status) = self.viewer.0.try_wait().expect("the program's state") {
                 break status;
             }
-            assert!(self.started.elapsed() < PATIENCE, "the window does not close: {}", self.state());
+            assert!(started.elapsed() < PATIENCE, "the window does not close: {}", self.state());
             std::thread::sleep(TICK);
         };
         let mut report = String::new();
@@ -261,7 +268,10 @@ pub fn program(folder: &Path, name: &str, script: &str) -> PathBuf {
     let programs = folder.join("programs");
     fs::create_dir_all(&programs).expect("the folder is writable");
     let file = programs.join(name);
-    fs::write(&file, script).expect("the folder is writable");
-    fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).expect("it is ours");
+    // One that runs cannot be written, but replaced.
+    let new = folder.join("program");
+    fs::write(&new, script).expect("the folder is writable");
+    fs::set_permissions(&new, fs::Permissions::from_mode(0o755)).expect("it is ours");
+    fs::rename(&new, &file).expect("the folder is writable");
     programs
 }
