@@ -1,6 +1,7 @@
 //! Opening the GPU: an adapter, a device with nothing but default limits, and a record of its errors, so that
 //! they end in results and not in panics.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::error::{Error, Result};
@@ -74,11 +75,10 @@ impl Gpu {
             faults.first.get_or_insert_with(|| error.to_string());
         }));
         let record = Arc::clone(&faults);
-        device.set_device_lost_callback(move |reason, message| {
-            // Dropping the device at the end also arrives here.
-            if reason != wgpu::DeviceLostReason::Destroyed {
-                record.lock().unwrap_or_else(PoisonError::into_inner).lost = Some(message);
-            }
+        // When the last clone is dropped this is called, too, and nobody is left to read it.
+        device.set_device_lost_callback(move |_, message| {
+            let message = if message.is_empty() { "its driver does not say why".into() } else { message };
+            record.lock().unwrap_or_else(PoisonError::into_inner).lost = Some(message);
         });
         Ok(Self { instance, adapter, device, queue, faults })
     }
@@ -105,9 +105,12 @@ impl Gpu {
         }
     }
 
-    /// Whether the device is gone and has to be opened anew.
-    pub fn is_lost(&self) -> bool {
-        self.faults.lock().unwrap_or_else(PoisonError::into_inner).lost.is_some()
+    /// Lets the device tell what has become of it: that it is gone is only told to those who ask.
+    ///
+    /// # Errors
+    /// As [`Gpu::wait`].
+    pub fn poll(&self) -> Result<()> {
+        self.ask(wgpu::PollType::Poll)
     }
 
     /// Waits until everything submitted is done.
@@ -115,10 +118,18 @@ impl Gpu {
     /// # Errors
     /// [`Error::Failure`] when the device is lost or has reported an error.
     pub fn wait(&self) -> Result<()> {
-        let waited = self.device.poll(wgpu::PollType::Wait { submission_index: None, timeout: None });
+        self.ask(wgpu::PollType::Wait { submission_index: None, timeout: None })
+    }
+
+    fn ask(&self, how: wgpu::PollType) -> Result<()> {
+        // wgpu panics where a device is lost while it is waited for. It has noted the loss before.
+        let answer = catch_unwind(AssertUnwindSafe(|| self.device.poll(how)));
         self.check()?;
-        waited.map(|_| ()).map_err(|e| {
-            Error::failure(format!("waiting for the graphics device failed: {e}"), "start again")
-        })
+        let problem = match answer {
+            Ok(Ok(_)) => return Ok(()),
+            Ok(Err(e)) => e.to_string(),
+            Err(_) => "it does not answer".to_owned(),
+        };
+        Err(Error::failure(format!("waiting for the graphics device failed: {problem}"), "start again"))
     }
 }

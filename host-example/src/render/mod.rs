@@ -19,6 +19,7 @@ pub mod targets;
 #[cfg(test)]
 mod tests;
 mod textures;
+pub mod timestamps;
 mod tone_map;
 mod uniforms;
 pub(crate) mod upload;

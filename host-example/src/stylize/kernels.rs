@@ -177,7 +177,10 @@ pub(super) fn texture_format(format: Format) -> wgpu::TextureFormat {
 
 /// What `make` makes, or what the device has to say against it: wgpu reports errors to scopes, and panics where
 /// nobody listens.
-pub(super) fn checked<T>(device: &wgpu::Device, make: impl FnOnce() -> Result<T>) -> Result<T> {
+///
+/// # Errors
+/// Those of `make`, or [`Error::Failure`].
+pub fn checked<T>(device: &wgpu::Device, make: impl FnOnce() -> Result<T>) -> Result<T> {
     use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
     let scopes = [Validation, Internal, OutOfMemory].map(|filter| device.push_error_scope(filter));
     let made = make();

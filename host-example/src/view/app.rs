@@ -11,17 +11,26 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
 use winit::keyboard::{Key, ModifiersState, NamedKey};
 use winit::window::{Window, WindowId};
 
+use super::clicks;
 use super::desk::Desk;
 use super::pace::Pace;
+use super::panel::Textures;
+use super::record::Hold;
 use super::reel::Reel;
 use super::session::{Session, Wish};
 use super::stage::{Drawn, Stage};
 use super::ui;
 use super::worker::Wake;
 use crate::error::{Error, Result};
+use crate::render::gpu::Gpu;
+use crate::stylize::plan_runner::Counts;
 
-/// How often a lost device is opened anew before the window gives up.
+/// How often a device is opened anew, in vain, before what is open is put away, and then before the window gives up.
 const REVIVALS: u32 = 3;
+/// Time until the next attempt, where none can be opened: a driver that starts again takes a while.
+const PAUSE: Duration = Duration::from_secs(1);
+/// Time between two looks at whether what is to end with the window has ended.
+const CLOSING: Duration = Duration::from_millis(20);
 /// Time between two updates of the title.
 const TITLE: Duration = Duration::from_millis(250);
 /// Size of the window in pixels where nobody says anything else.
@@ -32,6 +41,8 @@ const SIZE: (u32, u32) = (1440, 900);
 pub enum Event {
     /// Something was done beside the window.
     Done,
+    /// The device has done what it was given.
+    Landed,
     /// A program for people with impairments asks for something.
     Access(egui_winit::accesskit_winit::Event),
 }
@@ -50,13 +61,19 @@ pub struct App {
     size: Option<(u32, u32)>,
     // Dropped in order: the device before the window.
     stage: Option<Stage>,
+    /// What the controls have on the device.
+    textures: Textures,
     input: Option<State>,
     window: Option<Arc<Window>>,
     proxy: EventLoopProxy<Event>,
     wake: Wake,
+    landed: Wake,
     /// Ended the window, when something did.
     pub failure: Option<Error>,
     revivals: u32,
+    devices: usize,
+    /// When a device is to be opened anew.
+    revival: Option<Instant>,
     modifiers: ModifiersState,
     hidden: bool,
     /// When the next frame is wanted, if nothing happens before.
@@ -69,23 +86,23 @@ pub struct App {
 impl App {
     /// A window that opens once the event loop runs, with a size in pixels if it is to have a certain one.
     pub fn new(session: Session, size: Option<(u32, u32)>, proxy: EventLoopProxy<Event>) -> Result<Self> {
-        let waker = proxy.clone();
-        let wake: Wake = Arc::new(move || {
-            // Nobody is to be woken once the window is closed.
-            let _ = waker.send_event(Event::Done);
-        });
+        let wake = waker(&proxy, || Event::Done);
         Ok(Self {
             desk: Desk::new(&wake)?,
             pace: Pace::default(),
             session,
             size,
             stage: None,
+            textures: Textures::default(),
             input: None,
             window: None,
+            landed: waker(&proxy, || Event::Landed),
             proxy,
             wake,
             failure: None,
             revivals: 0,
+            devices: 0,
+            revival: None,
             modifiers: ModifiersState::empty(),
             hidden: false,
             due: Some(Instant::now()),
@@ -94,9 +111,37 @@ impl App {
         })
     }
 
-    /// What was shown, for whoever asked for a report.
+    /// What is shown, for whoever asked for a report.
     pub fn session(&self) -> &Session {
         &self.session
+    }
+
+    /// What is shown, to be changed as the controls do. The window sees it with the next event.
+    pub fn session_mut(&mut self) -> &mut Session {
+        self.due = Some(Instant::now());
+        &mut self.session
+    }
+
+    /// The device, while there is one.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        self.stage.as_ref().map(Stage::gpu)
+    }
+
+    /// Devices that have been opened so far: each but the first took the place of one that was lost.
+    pub fn devices(&self) -> usize {
+        self.devices
+    }
+
+    /// What was made on the device for the look.
+    pub fn counts(&self) -> Option<Counts> {
+        self.stage.as_ref().map(Stage::counts)
+    }
+
+    /// Whether nothing is left to be drawn, built, opened or uploaded.
+    pub fn is_idle(&self) -> bool {
+        let is_due = self.due.is_some_and(|due| due <= Instant::now());
+        let is_at_work = self.stage.as_ref().is_none_or(|stage| stage.is_waiting() || stage.is_busy());
+        !is_due && !is_at_work && self.desk.busy().is_none()
     }
 
     fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
@@ -118,7 +163,10 @@ impl App {
                 Arc::clone(self.window.insert(Arc::new(window)))
             }
         };
-        let stage = Stage::new(&window, event_loop.owned_display_handle(), &self.wake)?;
+        let mut stage = Stage::new(&window, event_loop.owned_display_handle(), &self.wake, &self.landed)?;
+        if self.session.record.is_wanted {
+            stage.measure();
+        }
         if self.input.is_none() {
             let context = egui::Context::default();
             ui::theme::apply(&context);
@@ -132,35 +180,53 @@ impl App {
             let mut input = State::new(context, egui::ViewportId::ROOT, event_loop, scale, None, side);
             input.init_accesskit(event_loop, &window, self.proxy.clone());
             self.input = Some(input);
-        } else if let Some(input) = &self.input {
-            // The letters lived on the device that is gone.
-            input.egui_ctx().set_fonts(egui::FontDefinitions::default());
+        } else {
             self.session.previews.forget_textures();
         }
-        window.set_visible(true);
+        // What letters look like was on the device that is gone.
+        stage.panel.restore(&self.textures);
+        if self.devices == 0 {
+            window.set_visible(true);
+        }
         self.session.record.adapter = stage.adapter();
         self.pace.is_software = stage.is_software();
         self.stage = Some(stage);
+        self.devices += 1;
         self.due = Some(Instant::now());
         Ok(())
     }
 
-    /// Ends the window on an error, unless a new device may help.
+    /// Goes on after an error with a new device, and with nothing open where that does not help. Ends the window where even
+    /// that does not, and where there was no device yet.
     fn handle(&mut self, event_loop: &ActiveEventLoop, result: Result<()>) {
         let Err(error) = result else { return };
-        let lost = self.stage.as_ref().is_some_and(Stage::is_lost);
-        self.stage = None;
-        if lost && self.revivals < REVIVALS {
-            self.revivals += 1;
-            self.session.notes.complain(&error);
-            match self.open(event_loop) {
-                Ok(()) => return,
-                Err(error) => self.failure = Some(error),
-            }
-        } else {
-            self.failure = Some(error);
+        let was_open = self.stage.take().is_some() || self.revival.is_some();
+        if self.revivals >= REVIVALS && self.session.has_picture() {
+            self.session.close();
+            self.revivals = 0;
         }
-        event_loop.exit();
+        if !was_open || self.revivals >= REVIVALS {
+            self.failure = Some(error);
+            return event_loop.exit();
+        }
+        self.session.notes.complain(&error);
+        let pause = if self.revivals == 0 { Duration::ZERO } else { PAUSE };
+        self.revivals += 1;
+        self.revival = Some(Instant::now() + pause);
+    }
+
+    /// Opens a device in the place of the one that is gone, when it is time; says when that is otherwise.
+    fn revive(&mut self, event_loop: &ActiveEventLoop) -> Option<Instant> {
+        let at = self.revival?;
+        if at > Instant::now() {
+            return Some(at);
+        }
+        let opened = self.open(event_loop);
+        if opened.is_ok() {
+            self.revival = None;
+        }
+        self.handle(event_loop, opened);
+        self.revival
     }
 
     fn draw(&mut self) -> Result<()> {
@@ -168,72 +234,98 @@ impl App {
         else {
             return Ok(());
         };
+        if stage.is_waiting() {
+            // It is drawn as soon as the device is there for it.
+            self.due = Some(Instant::now());
+            return Ok(());
+        }
+        let started = Instant::now();
         self.due = None;
         let session = &mut self.session;
         self.desk.collect(session);
         let context = input.egui_ctx().clone();
         let mut raw = input.take_egui_input(window);
-        self.late = one_click(&mut raw.events, std::mem::take(&mut self.late));
+        self.late = clicks::one_at_a_time(&mut raw.events, std::mem::take(&mut self.late));
         let output = context.run_ui(raw, |ui| ui::show(ui, session));
         input.handle_platform_output(window, output.platform_output);
         let delay =
             output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay);
         let shapes = context.tessellate(output.shapes, output.pixels_per_point);
+        self.textures.follow(&output.textures_delta);
         stage.panel.set(shapes, output.textures_delta, output.pixels_per_point);
+        let controls = started.elapsed();
         if !context.egui_is_using_pointer() && !context.text_edit_focused() {
             session.let_go();
         }
         let copied = self.desk.grant(session);
         copied.into_iter().for_each(|text| input.set_clipboard_text(text));
-        session.frame_first();
-        if let Some(scenery) = &mut session.scenery {
-            scenery.advance();
-        }
-        if let Some(Err(error)) = session.reel.as_mut().map(Reel::advance) {
-            session.notes.complain(&error);
-        }
+        session.advance();
         let scale = self.pace.scale(session);
         let problems = stage.follow(session, scale)?;
         problems.iter().for_each(|problem| session.notes.complain(problem));
         let was_busy = session.busy;
         session.busy = stage.is_busy().then_some("Preparing the look").or(self.desk.busy());
-        let started = Instant::now();
+        let looks = started.elapsed() - controls;
         let always =
             session.record.limit.is_some() || session.scenery.as_ref().is_some_and(|scenery| scenery.playing);
         let drawn = stage.draw(window, session, always)?;
+        session.record.hold(Hold { controls, looks, drawing: started.elapsed() - controls - looks });
+        let delay = delay.filter(|delay| *delay < Duration::from_secs(3600));
+        self.due = delay.map(|delay| Instant::now() + delay);
+        if drawn == Drawn::Skipped {
+            self.want(Duration::from_millis(10));
+        }
+        if self.session.reel.as_ref().is_some_and(Reel::is_waiting) {
+            self.want(Duration::from_millis(20));
+        }
+        if !problems.is_empty() || !self.late.is_empty() || self.session.busy != was_busy {
+            self.want(Duration::ZERO);
+        }
+        Ok(())
+    }
+
+    /// Draws so much later at the latest.
+    fn want(&mut self, delay: Duration) {
+        let at = Instant::now() + delay;
+        self.due = Some(self.due.map_or(at, |due| due.min(at)));
+    }
+
+    /// Takes over what the device has done.
+    fn land(&mut self) -> Result<()> {
+        let (Some(window), Some(stage)) = (&self.window, &mut self.stage) else { return Ok(()) };
+        let started = Instant::now();
+        let Some((drawn, took)) = stage.land(window)? else { return Ok(()) };
+        self.session.record.hold(Hold { drawing: started.elapsed(), ..Hold::default() });
+        let session = &mut self.session;
+        if matches!(drawn, Drawn::Part | Drawn::Begun) && stage.go_on(session)? {
+            return Ok(());
+        }
+        if drawn == Drawn::Part {
+            self.want(Duration::ZERO);
+            return Ok(());
+        }
+        stage.panel_time.take().into_iter().for_each(|time| session.record.count_panel(time));
         let is_probed = session.probed != stage.probed;
         session.probed = stage.probed;
-        let again = self.pace.next(drawn, started.elapsed());
-        let delay = delay.filter(|delay| *delay < Duration::from_secs(3600));
-        let delay = delay.into_iter().chain(again).min();
-        self.due = delay.map(|delay| Instant::now() + delay);
-        match drawn {
-            Drawn::Skipped => self.due = Some(Instant::now() + Duration::from_millis(10)),
-            Drawn::Picture => {
-                let look = session.look().source.display().to_string();
-                let size = window.inner_size();
-                session.record.count(&look, (size.width, size.height), started.elapsed());
-            }
-            Drawn::Begun => self.due = Some(Instant::now()),
-            Drawn::Controls => {}
-        }
         if let Some(frame) = stage.snapshot(session)? {
             session.show_scene_frame(frame);
             self.due = Some(Instant::now());
         }
-        if session.reel.as_ref().is_some_and(Reel::is_waiting) {
-            let soon = Instant::now() + Duration::from_millis(20);
-            self.due = Some(self.due.map_or(soon, |due| due.min(soon)));
-        }
-        if !problems.is_empty() || is_probed || !self.late.is_empty() || session.busy != was_busy {
-            self.due = Some(Instant::now());
-        }
-        if drawn != Drawn::Skipped {
-            self.revivals = 0;
+        if drawn == Drawn::Picture {
+            let look = session.look().source.display().to_string();
+            let size = window.inner_size();
+            session.record.count(&look, (size.width, size.height), took);
         }
         if self.titled.is_none_or(|at| at.elapsed() > TITLE) {
             self.titled = Some(Instant::now());
             window.set_title(&session.title());
+        }
+        self.revivals = 0;
+        if let Some(delay) = self.pace.next(drawn, took) {
+            self.want(delay);
+        }
+        if is_probed || drawn == Drawn::Begun {
+            self.want(Duration::ZERO);
         }
         Ok(())
     }
@@ -298,7 +390,11 @@ impl ApplicationHandler<Event> for App {
         self.stage = None;
     }
 
-    fn user_event(&mut self, _: &ActiveEventLoop, event: Event) {
+    fn user_event(&mut self, event_loop: &ActiveEventLoop, event: Event) {
+        if matches!(event, Event::Landed) {
+            let landed = self.land();
+            return self.handle(event_loop, landed);
+        }
         self.due = Some(Instant::now());
         if let (Event::Access(event), Some(input)) = (event, &mut self.input)
             && let egui_winit::accesskit_winit::WindowEvent::ActionRequested(request) = event.window_event
@@ -312,20 +408,18 @@ impl ApplicationHandler<Event> for App {
         self.pass_on(&event);
         let result = match event {
             WindowEvent::CloseRequested => {
-                event_loop.exit();
+                self.session.wishes.push(Wish::Quit);
+                self.desk.grant(&mut self.session);
                 Ok(())
             }
             WindowEvent::Resized(size) => {
                 self.hidden = size.width == 0 || size.height == 0;
                 self.due = Some(Instant::now());
                 self.session.record.begin();
-                match &mut self.stage {
-                    Some(stage) if !self.hidden => {
-                        self.session.settings.window = Some((size.width, size.height));
-                        stage.resize(size)
-                    }
-                    _ => Ok(()),
+                if !self.hidden {
+                    self.session.settings.window = Some((size.width, size.height));
                 }
+                Ok(())
             }
             WindowEvent::Occluded(hidden) => {
                 self.hidden = hidden;
@@ -363,21 +457,23 @@ impl ApplicationHandler<Event> for App {
             event_loop.exit();
             return;
         }
+        let revival = self.revive(event_loop);
         let always = self.session.is_playing() || self.session.record.limit.is_some();
         let due = if always { Some(Instant::now()) } else { self.due };
-        let Some(due) = due.filter(|_| !self.hidden) else {
-            // A picture that stands still costs nothing.
-            event_loop.set_control_flow(ControlFlow::Wait);
-            return;
-        };
-        if due > Instant::now() {
-            event_loop.set_control_flow(ControlFlow::WaitUntil(due));
+        // The device tells when it is there for the next frame.
+        let is_ready = self.stage.as_ref().is_some_and(|stage| !stage.is_waiting());
+        let due = due.filter(|_| is_ready && !self.hidden);
+        if due.is_some_and(|due| due <= Instant::now()) {
+            event_loop.set_control_flow(ControlFlow::Poll);
+            if let Some(window) = &self.window {
+                window.request_redraw();
+            }
             return;
         }
-        event_loop.set_control_flow(ControlFlow::Poll);
-        if let Some(window) = &self.window {
-            window.request_redraw();
-        }
+        let closing = self.desk.is_closing().then(|| Instant::now() + CLOSING);
+        // A picture that stands still costs nothing.
+        let next = [due, revival, closing].into_iter().flatten().min();
+        event_loop.set_control_flow(next.map_or(ControlFlow::Wait, ControlFlow::WaitUntil));
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
@@ -392,33 +488,11 @@ impl ApplicationHandler<Event> for App {
     }
 }
 
-/// Leaves at most one press or release of a button among the events, those of before first, and returns the rest: controls
-/// do not see a click that begins and ends within one frame, as clicks do where frames are slow.
-fn one_click(events: &mut Vec<egui::Event>, before: Vec<egui::Event>) -> Vec<egui::Event> {
-    events.splice(..0, before);
-    let is_button = |event: &egui::Event| matches!(event, egui::Event::PointerButton { .. });
-    let second = events.iter().enumerate().filter(|(_, event)| is_button(event)).nth(1);
-    second.map(|(at, _)| at).map_or_else(Vec::new, |at| events.split_off(at))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_fast_click_lasts_two_frames() {
-        let button = |pressed| egui::Event::PointerButton {
-            pos: egui::pos2(1.0, 2.0),
-            button: egui::PointerButton::Primary,
-            pressed,
-            modifiers: egui::Modifiers::NONE,
-        };
-        let moved = egui::Event::PointerMoved(egui::pos2(1.0, 2.0));
-        let mut events = vec![moved.clone(), button(true), button(false), moved.clone()];
-        let late = one_click(&mut events, Vec::new());
-        assert_eq!(events, [moved.clone(), button(true)]);
-        let mut next = vec![moved.clone()];
-        assert!(one_click(&mut next, late).is_empty());
-        assert_eq!(next, [button(false), moved.clone(), moved]);
-    }
+/// Sends an event to the window.
+fn waker(proxy: &EventLoopProxy<Event>, event: fn() -> Event) -> Wake {
+    let proxy = proxy.clone();
+    Arc::new(move || {
+        // Nobody is to be woken once the window is closed.
+        let _ = proxy.send_event(event());
+    })
 }

@@ -6,6 +6,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::command;
 use super::demo;
+use super::dialogs;
 use super::document::kind::Kind;
 use super::document::{Document, Options};
 use super::export::{self, Export, Progress, State};
@@ -61,6 +62,17 @@ enum Dialog {
     Export,
 }
 
+impl Dialog {
+    /// What to do where the system has no dialogs.
+    const fn otherwise(self) -> &'static str {
+        match self {
+            Self::File | Self::Look => "drop the file on the window, or install zenity or xdg-desktop-portal",
+            Self::Export => "type where it is to go, or install zenity or xdg-desktop-portal",
+            Self::Save | Self::Surroundings => "install zenity or xdg-desktop-portal",
+        }
+    }
+}
+
 /// The work beside the window.
 pub struct Desk {
     opener: Worker<Job, Result<Opened>>,
@@ -71,8 +83,8 @@ pub struct Desk {
     looks: LookWork,
     /// What the critic was asked last.
     asked: Option<(Look, Option<IsophoteRequest>)>,
-    chosen: Receiver<(Dialog, Option<PathBuf>)>,
-    choose: Sender<(Dialog, Option<PathBuf>)>,
+    chosen: Receiver<(Dialog, Result<Option<PathBuf>>)>,
+    choose: Sender<(Dialog, Result<Option<PathBuf>>)>,
     export: Option<Export>,
     /// Whether a dialog is open.
     choosing: bool,
@@ -106,9 +118,23 @@ impl Desk {
         })
     }
 
-    /// Whether the window is to be closed.
-    pub fn is_over(&self) -> bool {
+    /// Whether the window is to be closed as soon as what is exported has ended.
+    pub fn is_closing(&self) -> bool {
         self.over
+    }
+
+    /// Whether the window is to be closed now. An export is ended before, so that nothing of it is left.
+    pub fn is_over(&self) -> bool {
+        let is_running = |export: &Export| export.poll().state == State::Running;
+        self.over && !self.export.as_ref().is_some_and(is_running)
+    }
+
+    /// Ends what is being exported, and then the window.
+    fn close(&mut self) {
+        self.over = true;
+        if let Some(export) = &mut self.export {
+            export.cancel();
+        }
     }
 
     /// What is being done.
@@ -120,7 +146,14 @@ impl Desk {
     pub fn collect(&mut self, session: &mut Session) {
         while let Ok((dialog, path)) = self.chosen.try_recv() {
             self.choosing = false;
-            let Some(path) = path else { continue };
+            let path = match path {
+                Ok(Some(path)) => path,
+                Ok(None) => continue,
+                Err(error) => {
+                    session.notes.complain(&error);
+                    continue;
+                }
+            };
             match dialog {
                 Dialog::File => self.opener.ask(Job::Files(session.library.clone(), vec![path])),
                 Dialog::Look => {
@@ -210,7 +243,7 @@ impl Desk {
                     copied = Some(command::line(session));
                     session.notes.say("Copied the command line of this picture");
                 }
-                Wish::Quit => self.over = true,
+                Wish::Quit => self.close(),
             }
         }
         if !files.is_empty() {
@@ -301,7 +334,7 @@ impl Desk {
         };
         let (choose, wake) = (self.choose.clone(), Arc::clone(&self.wake));
         let asked = std::thread::Builder::new().name("dialog".into()).spawn(move || {
-            let path = ask(dialog, folder, &name);
+            let path = dialogs::shown(|| ask(dialog, folder, &name), dialog.otherwise());
             // The window may be closed by now.
             let _ = choose.send((dialog, path));
             wake();

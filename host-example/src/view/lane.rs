@@ -10,6 +10,7 @@ use crate::loader::catalogue::Kind;
 use crate::loader::contract::{IsophoteRequest, IsophoteSpace};
 use crate::stylize::Stylizer;
 use crate::stylize::kernels::Kernels;
+use crate::stylize::plan_runner::Counts;
 use crate::stylize::preset::Track;
 use crate::stylize::style::Setting;
 
@@ -56,6 +57,8 @@ pub struct Lane {
     worker: Worker<Job, (Recipe, Result<Ready>)>,
     kernels: Arc<Kernels>,
     ready: Option<Ready>,
+    /// The look for pictures of another scale, which are shown while something moves.
+    spare: Option<Ready>,
     /// What was last asked of the worker, or refused.
     asked: Option<Recipe>,
     revision: u64,
@@ -73,7 +76,8 @@ impl Lane {
             let built = build(&job);
             (job.recipe, built)
         })?;
-        Ok(Self { worker, kernels: Arc::clone(kernels), ready: None, asked: None, revision: 0, shown: None })
+        let kernels = Arc::clone(kernels);
+        Ok(Self { worker, kernels, ready: None, spare: None, asked: None, revision: 0, shown: None })
     }
 
     /// Follows `look` for pictures as `asked`: at once where only values change, and behind the picture otherwise.
@@ -85,19 +89,20 @@ impl Lane {
         let wanted = Recipe { look: look.clone(), asked };
         if look.is_plain() {
             self.revision += u64::from(self.ready.is_some());
-            (self.ready, self.asked, self.shown) = (None, None, None);
+            (self.ready, self.spare, self.asked, self.shown) = (None, None, None, None);
             return Ok(());
         }
         if let Some((recipe, built)) = answer.filter(|_| self.asked.is_some()) {
             match built {
-                Ok(ready) => {
-                    self.ready = Some(ready);
-                    self.revision += 1;
-                }
+                Ok(ready) => self.take(ready),
                 // It is not asked for again until something else is wanted.
                 Err(error) if self.asked.as_ref() == Some(&recipe) => return Err(error),
                 Err(_) => {}
             }
+        }
+        if !self.is_for(asked) && self.spare.as_ref().is_some_and(|spare| spare.recipe.asked == asked) {
+            std::mem::swap(&mut self.ready, &mut self.spare);
+            self.revision += 1;
         }
         if self.ready.as_ref().is_some_and(|ready| ready.recipe == wanted) {
             // What was asked for meanwhile is wanted no more.
@@ -116,6 +121,23 @@ impl Lane {
         }
         self.worker.ask(Job { library: library.clone(), kernels: Arc::clone(&self.kernels), recipe: wanted });
         Ok(())
+    }
+
+    /// Records this from now on. What was recorded before is kept if it is for pictures of another scale.
+    fn take(&mut self, ready: Ready) {
+        let scale = ready.recipe.asked.scale;
+        let old = self.ready.replace(ready);
+        self.spare = old.into_iter().chain(self.spare.take()).find(|old| old.recipe.asked.scale != scale);
+        self.revision += 1;
+    }
+
+    fn is_for(&self, asked: IsophoteRequest) -> bool {
+        self.ready.as_ref().is_some_and(|ready| ready.recipe.asked == asked)
+    }
+
+    /// What was made on the device for the look that is shown.
+    pub fn counts(&self) -> Counts {
+        self.ready.as_ref().map_or_else(Counts::default, |ready| ready.stylizer.counts())
     }
 
     /// Whether the look that is wanted is being built.
@@ -157,7 +179,8 @@ impl Lane {
             return Ok(true);
         };
         let Ready { stylizer, bound, number, done, .. } = ready;
-        if part.begins {
+        // A look that was built meanwhile begins by itself.
+        if part.begins || !*bound {
             *done = 0;
             if part.number.is_some() && part.number != number.map(|number| number + 1) {
                 stylizer.forget();
@@ -181,9 +204,7 @@ impl Lane {
 
     /// The inputs are others now.
     pub fn unbind(&mut self) {
-        if let Some(ready) = &mut self.ready {
-            ready.bound = false;
-        }
+        self.ready.iter_mut().chain(&mut self.spare).for_each(|ready| ready.bound = false);
     }
 }
 
@@ -195,9 +216,7 @@ impl Ready {
             && old.preset.lengths == new.preset.lengths
             && old.has_graph_of(new)
             && old.style_name() == new.style_name();
-        let IsophoteRequest { width, height, scale, .. } = wanted.asked;
-        let asked = IsophoteRequest { width, height, scale, ..self.recipe.asked };
-        if !is_same || asked != wanted.asked {
+        if !is_same || self.recipe.asked != wanted.asked {
             return Ok(false);
         }
         let track = |look: &Look, knob: &Knob| {
@@ -227,10 +246,6 @@ impl Ready {
         }
         for setting in &settings {
             self.stylizer.set(setting)?;
-        }
-        if asked != self.recipe.asked {
-            self.stylizer.resize_at_scale((width, height), scale)?;
-            (self.bound, self.done) = (false, 0);
         }
         self.recipe = wanted.clone();
         Ok(true)

@@ -2,21 +2,23 @@
 //!
 //! | what | where |
 //! |---|---|
-//! | the window's events, and when a frame is drawn | `app`, `pace` |
+//! | the window's events, and when a frame is drawn | `app`, `clicks`, `pace` |
 //! | all that is known of what is shown, and steps back | `session`, `history`, `look`, `chain`, `value`, `scenery`, `reel`, `easel` |
 //! | looks to choose from | `browser`, `preview`, `comparison`, `saving` |
-//! | work beside the window | `worker`, `desk`, `look_work`, `watch`, `idle`, `document`, `export` |
-//! | what lives on the device | `stage`, `source`, `pictures`, `snapshot`, `lane`, `canvas`, `probe`, `panel` |
+//! | work beside the window | `worker`, `desk`, `dialogs`, `look_work`, `watch`, `idle`, `document`, `export` |
+//! | what lives on the device | `stage`, `shown`, `screen`, `sources`, `source`, `pictures`, `snapshot`, `lane`, `canvas`, `probe`, `panel` |
 //! | the controls | `ui` |
 
-mod app;
+pub mod app;
 pub mod browser;
 mod canvas;
 pub mod chain;
+mod clicks;
 pub mod command;
 pub mod comparison;
 mod demo;
 mod desk;
+mod dialogs;
 pub mod document;
 mod easel;
 pub mod export;
@@ -36,10 +38,13 @@ pub mod record;
 pub mod reel;
 pub mod saving;
 pub mod scenery;
+mod screen;
 pub mod session;
 pub mod settings;
+mod shown;
 mod snapshot;
 mod source;
+mod sources;
 mod stage;
 pub mod ui;
 pub mod value;
@@ -67,12 +72,13 @@ pub fn keys() -> String {
 ///
 /// # Errors
 /// [`Error::Failure`] without a display or a graphics device.
-pub fn show(session: Session, size: Option<(u32, u32)>, with_report: bool) -> Result<()> {
+pub fn show(mut session: Session, size: Option<(u32, u32)>, with_report: bool) -> Result<()> {
     let failed = |e: &EventLoopError| {
         let problem = reason(&e.to_string()).to_owned();
         Error::failure(format!("no window can be opened: {problem}"), "start the viewer in a desktop session")
     };
     let event_loop = EventLoop::<Event>::with_user_event().build().map_err(|e| failed(&e))?;
+    session.record.is_wanted = with_report;
     let mut app = App::new(session, size, event_loop.create_proxy())?;
     event_loop.run_app(&mut app).map_err(|e| failed(&e))?;
     if with_report {

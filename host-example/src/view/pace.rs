@@ -33,8 +33,6 @@ pub struct Pace {
     pub is_software: bool,
     /// Seconds that a whole picture would take.
     whole: Option<f32>,
-    /// Seconds that the picture has taken that is begun.
-    spent: f32,
     scale: f32,
     face: Option<Face>,
     moved: Option<Instant>,
@@ -65,18 +63,13 @@ impl Pace {
         self.scale
     }
 
-    /// A frame was drawn in so much time; says when the next one is wanted at the latest.
+    /// A frame was drawn, its picture in so much time; says when the next one is wanted at the latest.
     pub fn next(&mut self, drawn: Drawn, took: Duration) -> Option<Duration> {
         if !self.is_software {
             return None;
         }
-        match drawn {
-            Drawn::Begun => self.spent += took.as_secs_f32(),
-            Drawn::Picture => {
-                self.whole = Some((self.spent + took.as_secs_f32()) / (self.scale * self.scale));
-                self.spent = 0.0;
-            }
-            Drawn::Controls | Drawn::Skipped => {}
+        if drawn == Drawn::Picture {
+            self.whole = Some(took.as_secs_f32() / (self.scale * self.scale));
         }
         let left = self.moved.and_then(|at| REST.checked_sub(at.elapsed()));
         left.or((self.scale < 1.0).then_some(Duration::ZERO))

@@ -13,6 +13,7 @@ use crate::loader::contract::{
 };
 use crate::render::gpu::Gpu;
 use crate::stylize::Stylizer;
+use crate::stylize::kernels::checked;
 
 /// Bytes that are uploaded at once, so that no copy is larger than the devices' buffers.
 const STRIP: usize = 32 << 20;
@@ -29,7 +30,7 @@ impl PictureSource {
     /// Uploads a frame, whose size is so much of the file's. `usual` is a request of any size.
     ///
     /// # Errors
-    /// [`Error::Input`] when it is beyond the limits of the device.
+    /// [`Error::Input`] when it is beyond the limits of the device, [`Error::Failure`] when that has no memory for it.
     pub fn new(gpu: &Gpu, frame: &Arc<Frame>, scale: f32, usual: IsophoteRequest) -> Result<Self> {
         let most = gpu.device.limits().max_texture_dimension_2d;
         if frame.width > most || frame.height > most {
@@ -42,7 +43,8 @@ impl PictureSource {
         let mut source =
             Self { frame: Arc::clone(frame), request: request(frame, scale, usual), textures: Vec::new() };
         for (name, channels, _) in inputs(frame) {
-            source.textures.push((name, texture(gpu, name, frame, channels)));
+            let view = checked(&gpu.device, || Ok(texture(gpu, name, frame, channels)))?;
+            source.textures.push((name, view));
         }
         source.upload(gpu);
         Ok(source)
@@ -85,6 +87,8 @@ impl PictureSource {
                         depth_or_array_layers: 1,
                     },
                 );
+                // Its copy in memory goes as soon as the device has it, and not with the window's next frame.
+                gpu.queue.submit([]);
             }
         }
     }

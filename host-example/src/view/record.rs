@@ -20,8 +20,30 @@ pub struct Record {
     pub limit: Option<u32>,
     /// Name of the adapter.
     pub adapter: String,
+    /// Whether a report is wanted at the end.
+    pub is_wanted: bool,
     stretches: Vec<Stretch>,
     begins: bool,
+    /// What the controls took on the device's clock, frame by frame.
+    panel: Vec<Duration>,
+    longest: Option<Hold>,
+}
+
+/// How long the thread of the window was held up by one frame, during which it answers nobody.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Hold {
+    /// Laying out the controls.
+    pub controls: Duration,
+    /// Taking over the picture, the looks and what was done beside the window.
+    pub looks: Duration,
+    /// Recording what the device is to do, and waiting for a place on the screen.
+    pub drawing: Duration,
+}
+
+impl Hold {
+    fn whole(self) -> Duration {
+        self.controls + self.looks + self.drawing
+    }
 }
 
 /// Most frames of a stretch whose times are kept; a window may be open for days.
@@ -48,6 +70,21 @@ impl Record {
         }
     }
 
+    /// The window was held up by a frame. What it does before its first picture does not count: there is nothing to answer yet.
+    pub fn hold(&mut self, hold: Hold) {
+        let is_longest = self.longest.is_none_or(|longest| hold.whole() > longest.whole());
+        if is_longest && !self.stretches.is_empty() {
+            self.longest = Some(hold);
+        }
+    }
+
+    /// The controls took so long on the device.
+    pub fn count_panel(&mut self, time: Duration) {
+        if self.panel.len() < MOST {
+            self.panel.push(time);
+        }
+    }
+
     /// The next frame is the first of another look.
     pub fn begin(&mut self) {
         self.begins = true;
@@ -61,22 +98,46 @@ impl Record {
 
     /// Whether all frames that were asked for have been shown.
     pub fn is_finished(&self) -> bool {
-        let shown: usize = self.stretches.iter().map(|s| s.times.len()).sum();
-        self.limit.is_some_and(|limit| shown >= limit as usize)
+        self.limit.is_some_and(|limit| self.shown() >= limit as usize)
     }
 
-    /// Prints the adapter, and the frames and milliseconds of each look.
+    /// Frames that have been shown, as far as they are kept.
+    pub fn shown(&self) -> usize {
+        self.stretches.iter().map(|stretch| stretch.times.len()).sum()
+    }
+
+    /// Prints the adapter, the frames and milliseconds of each look, the longest time that the window answered nobody, and what
+    /// its controls took on the device.
     ///
     /// # Errors
     /// As [`output::print`].
     pub fn report(&self) -> Result<()> {
         let mut text = format!("{}\n", self.adapter);
         for Stretch { look, size: (width, height), times } in &self.stretches {
-            let mut times = times.clone();
-            times.sort_unstable();
-            let median = times.get(times.len() / 2).map_or(0.0, |t| t.as_secs_f64() * 1e3);
+            let median = median(times);
             text += &format!("{look} {width}x{height}: {} frames, {median:.1} ms each\n", times.len());
+        }
+        if let Some(hold) = self.longest {
+            let [whole, controls, looks, drawing] =
+                [hold.whole(), hold.controls, hold.looks, hold.drawing].map(milliseconds);
+            text += &format!(
+                "longest hold of the window: {whole:.1} ms (controls {controls:.1}, looks {looks:.1}, drawing {drawing:.1})\n"
+            );
+        }
+        if !self.panel.is_empty() {
+            let (frames, median) = (self.panel.len(), median(&self.panel));
+            text += &format!("controls on the device: {frames} frames, {median:.2} ms each\n");
         }
         output::print(&text)
     }
+}
+
+fn median(times: &[Duration]) -> f64 {
+    let mut times = times.to_vec();
+    times.sort_unstable();
+    times.get(times.len() / 2).copied().map_or(0.0, milliseconds)
+}
+
+fn milliseconds(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e3
 }

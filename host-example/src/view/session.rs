@@ -250,10 +250,27 @@ impl Session {
     }
 
     /// Frames a scene that was just opened, by the place that it has in the window.
-    pub fn frame_first(&mut self) {
+    fn frame_first(&mut self) {
         if std::mem::take(&mut self.is_unframed) {
             self.frame_all();
         }
+    }
+
+    /// Lets time pass, and frames a scene that was just opened.
+    pub fn advance(&mut self) {
+        self.frame_first();
+        if let Some(scenery) = &mut self.scenery {
+            scenery.advance();
+        }
+        if let Some(Err(error)) = self.reel.as_mut().map(Reel::advance) {
+            self.notes.complain(&error);
+        }
+    }
+
+    /// Puts away what is open.
+    pub fn close(&mut self) {
+        (self.scenery, self.reel) = (None, None);
+        self.begin(None, String::new());
     }
 
     /// Size of the picture as it is placed: what is rendered smaller for the moment is shown as large.

@@ -13,9 +13,37 @@ use crate::loader::contract::{
 use crate::render::Renderer;
 use crate::render::background::Background;
 use crate::render::gpu::Gpu;
+use crate::render::look::Look as Light;
 use crate::render::targets::Targets;
 use crate::scene::Scene;
+use crate::scene::camera::View;
+use crate::scene::pose::Pose;
 use crate::stylize::Stylizer;
+
+/// What is uploaded of a scene: it stands still meanwhile.
+pub struct Stand {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    pose: Pose,
+    view: View,
+    light: Light,
+    background: Background,
+    ground: bool,
+}
+
+impl Stand {
+    /// The scene as it is now.
+    pub fn of(scenery: &Scenery) -> Self {
+        Self {
+            scene: Arc::clone(&scenery.scene),
+            pose: scenery.pose.clone(),
+            view: scenery.view(),
+            light: *scenery.light(),
+            background: scenery.lighting.background.clone(),
+            ground: scenery.ground,
+        }
+    }
+}
 
 /// A scene with its renderer.
 pub struct SceneSource {
@@ -31,14 +59,23 @@ impl SceneSource {
     ///
     /// # Errors
     /// [`crate::error::Error::Input`] when the scene is beyond the limits of the device.
-    pub fn new(gpu: &Gpu, scenery: &Scenery, size: (u32, u32), usual: IsophoteRequest) -> Result<Self> {
-        let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &scenery.scene, size)?;
-        let background = scenery.lighting.background.clone();
-        renderer.set_background(&background, false)?;
-        if scenery.ground {
+    pub fn new(gpu: &Gpu, stand: &Stand, size: (u32, u32), usual: IsophoteRequest) -> Result<Self> {
+        let Stand { scene, pose, view, light, background, ground } = stand;
+        let mut renderer = Renderer::new(&gpu.device, &gpu.queue, scene, size)?;
+        renderer.set_background(background, false)?;
+        if *ground {
             renderer.add_ground();
         }
-        Ok(Self { scene: Arc::clone(&scenery.scene), renderer, background, usual })
+        // A frame that is not submitted compiles what the first one needs, so that the window does not wait for it.
+        renderer.encode(
+            &mut gpu.device.create_command_encoder(&Default::default()),
+            scene,
+            pose,
+            view,
+            light,
+        );
+        renderer.forget_motion();
+        Ok(Self { scene: Arc::clone(scene), renderer, background: background.clone(), usual })
     }
 
     /// Whether it is of this scene.

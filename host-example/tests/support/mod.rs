@@ -2,6 +2,12 @@
 
 #![allow(dead_code, reason = "no test file needs all of it")]
 
+#[cfg(target_os = "linux")]
+pub mod others;
+pub mod places;
+#[cfg(target_os = "linux")]
+pub mod window;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -155,4 +161,34 @@ pub fn has_ffmpeg() -> bool {
     assert!(std::env::var("CI").is_err(), "ffmpeg is missing; install it");
     eprintln!("\n*** SKIPPED: videos need ffmpeg ***\n");
     false
+}
+
+/// A triangle that turns for ever.
+pub fn turning_triangle(folder: &Path) -> PathBuf {
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let values: [f32; 24] = [
+        -1.0, -0.6, 0.0, 1.0, -0.6, 0.0, 0.0, 1.0, 0.0, // positions
+        0.0, 1.0, 2.0, // times
+        0.0, 0.0, 0.0, 1.0, 0.0, half, 0.0, half, 0.0, 1.0, 0.0, 0.0, // rotations
+    ];
+    let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
+    fs::write(folder.join("triangle.bin"), &bytes).expect("the folder is writable");
+    let json = r#"{
+      "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0 }],
+      "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "material": 0 }] }],
+      "materials": [{ "doubleSided": true, "pbrMetallicRoughness": { "baseColorFactor": [0.8, 0.3, 0.1, 1] } }],
+      "animations": [{ "channels": [{ "sampler": 0, "target": { "node": 0, "path": "rotation" } }],
+                       "samplers": [{ "input": 1, "output": 2 }] }],
+      "buffers": [{ "uri": "triangle.bin", "byteLength": 96 }],
+      "bufferViews": [{ "buffer": 0, "byteOffset": 0, "byteLength": 36 },
+                      { "buffer": 0, "byteOffset": 36, "byteLength": 12 },
+                      { "buffer": 0, "byteOffset": 48, "byteLength": 48 }],
+      "accessors": [
+        { "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -0.6, 0], "max": [1, 1, 0] },
+        { "bufferView": 1, "componentType": 5126, "count": 3, "type": "SCALAR", "min": [0], "max": [2] },
+        { "bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC4" }]
+    }"#;
+    let path = folder.join("triangle.gltf");
+    fs::write(&path, json).expect("the folder is writable");
+    path
 }

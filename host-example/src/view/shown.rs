@@ -1,0 +1,40 @@
+//! Which texture of the device is seen where something is to be shown.
+
+use super::canvas::Numbers;
+use super::easel::Overlay;
+use super::lane::Lane;
+use super::pictures::numbers;
+use super::session::Which;
+use super::source::Source;
+use crate::loader::catalogue::Kind;
+
+/// One of the pictures that can be shown; the original where there is nothing else yet.
+pub fn picture<'s>(
+    source: &'s Source,
+    lanes: &'s [Lane; 3],
+    overlay: Overlay,
+    which: Which,
+) -> (&'s wgpu::TextureView, Numbers) {
+    let guide = match overlay {
+        Overlay::Normal => Some(Numbers::Normal),
+        Overlay::Depth => Some(Numbers::Depth),
+        Overlay::ObjectId => Some(Numbers::ObjectId),
+        Overlay::Motion => Some(Numbers::Motion),
+        _ => None,
+    };
+    let guide = guide.filter(|_| which == Which::Overlay);
+    if let Some((numbers, view)) = guide.and_then(|numbers| Some((numbers, source.guide(numbers)?))) {
+        return (view, numbers);
+    }
+    let lane = match which {
+        Which::Original => None,
+        Which::Look => lanes[0].output(),
+        Which::Compared => lanes[1].output(),
+        Which::Overlay => lanes[2].output(),
+    };
+    match lane {
+        Some((view, Kind::Scalar, _)) => (view, Numbers::Grey),
+        Some((view, _, space)) => (view, numbers(space)),
+        None => source.original(),
+    }
+}

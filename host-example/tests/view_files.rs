@@ -1,0 +1,111 @@
+//! Files that are dropped on the real window, as other programs drop them, and those that dialogs of the system choose.
+#![cfg(target_os = "linux")]
+
+mod support;
+
+use std::fs;
+use std::path::Path;
+
+use support::others::drop_files;
+use support::window::{Display, Part, Window, program, view};
+use support::{folder, picture};
+
+/// Size of the window.
+const SIZE: &str = "700x420";
+/// The upper part of the canvas, above what is said at its lower border.
+const CANVAS: Part = [0, 60, 350, 130];
+
+fn drops(display: &Display, window: &Window<'_>, files: &[&Path]) {
+    assert!(drop_files(&display.name, &window.id, files), "the window takes files");
+}
+
+#[test]
+fn what_is_dropped_opens_and_what_cannot_be_opened_leaves_what_was_there() {
+    let Some(display) = Display::open("800x600") else { return };
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    for name in ["a photo, größer.png", "second.png"] {
+        picture(96, 64).save(at(name)).unwrap();
+    }
+    fs::write(at("broken.png"), &fs::read(at("second.png")).unwrap()[..600]).unwrap();
+    fs::write(at("notes.txt"), "no picture").unwrap();
+    fs::create_dir(at("empty")).unwrap();
+    fs::create_dir(at("shot")).unwrap();
+    for number in 1..4 {
+        picture(48, 32).save(at("shot").join(format!("shot.000{number}.png"))).unwrap();
+    }
+    let look = r#"{"style": "blueprint", "parameters": {"line_width": 3}}"#;
+    fs::write(at("mine.json"), look).unwrap();
+    let later = r#"{"style": "hologram", "parameters": {"depth": 2}}"#;
+    fs::write(at("later style.json"), later).unwrap();
+    fs::write(at("later.json"), r#"{"style": "cartoon", "parameters": {"sparkle": 2}}"#).unwrap();
+
+    let mut window = Window::open(&display, view(folder.path(), SIZE).args(["--style", "cartoon"]));
+    window.wait_for("the start screen", |window| window.title() == "Isophote");
+    drops(&display, &window, &[&at("a photo, größer.png")]);
+    window.shows("a photo, größer.png", "cartoon");
+    let before = window.settled(CANVAS);
+    for (name, why) in [
+        ("broken.png", "is damaged"),
+        ("notes.txt", "is neither PNG"),
+        ("empty", "is a folder without numbered pictures"),
+        ("later style.json", "hologram"),
+        ("later.json", "sparkle"),
+    ] {
+        drops(&display, &window, &[&at(name)]);
+        window.wait_for(why, |window| window.said().contains(name) && window.said().contains(why));
+        assert!(window.title().starts_with("a photo, größer.png - cartoon"), "{}", window.title());
+    }
+    assert!(window.settled(CANVAS) == before, "the picture of before stays");
+    drops(&display, &window, &[&at("mine.json")]);
+    window.shows("a photo, größer.png", "mine");
+    window.changes("the look that was dropped", CANVAS, &before);
+    // The first that opens is shown.
+    drops(&display, &window, &[&at("broken.png"), &at("second.png"), &at("a photo, größer.png")]);
+    window.shows("second.png", "mine");
+    drops(&display, &window, &[&at("shot")]);
+    window.shows("shot.####.png", "mine");
+    window.close();
+    assert!(!window.said().contains("panicked"), "{}", window.said());
+}
+
+#[test]
+fn dialogs_choose_files_and_where_there_are_none_the_window_says_what_to_do() {
+    let Some(display) = Display::open("800x600") else { return };
+    let folder = folder();
+    picture(96, 64).save(folder.path().join("chosen.png")).unwrap();
+    // Where nothing is found, neither is a service of dialogs.
+    let nowhere = folder.path().join("nowhere");
+    let mut command = view(folder.path(), SIZE);
+    command.env("PATH", &nowhere).env("XDG_RUNTIME_DIR", &nowhere);
+    let mut window = Window::open(&display, &mut command);
+    for _ in 0..2 {
+        window.key("ctrl+o");
+    }
+    window.wait_for("what to do", |window| {
+        window.said().contains("the system cannot show a dialog")
+            && window.said().contains("drop the file on the window")
+    });
+    drops(&display, &window, &[&folder.path().join("chosen.png")]);
+    window.wait_for("the file that was dropped", |window| window.title().starts_with("chosen.png"));
+    window.close();
+
+    let script = format!("#!/bin/sh\necho '{}'\n", folder.path().join("chosen.png").display());
+    let programs = program(folder.path(), "zenity", &script);
+    let mut command = view(folder.path(), SIZE);
+    command.env("PATH", &programs).env("XDG_RUNTIME_DIR", &nowhere);
+    let mut window = Window::open(&display, &mut command);
+    window.key("ctrl+o");
+    window.wait_for("the file that was chosen", |window| window.title().starts_with("chosen.png"));
+    // One that is closed without an answer changes nothing and can be opened again.
+    program(folder.path(), "zenity", "#!/bin/sh\nexit 1\n");
+    window.key("ctrl+o");
+    let again = folder.path().join("again");
+    program(folder.path(), "zenity", &format!("#!/bin/sh\n: > '{}'\nexit 1\n", again.display()));
+    window.wait_for("another dialog", |window| {
+        window.key("ctrl+o");
+        again.exists()
+    });
+    window.close();
+    assert_eq!(window.said(), "");
+}

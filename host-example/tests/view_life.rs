@@ -1,0 +1,161 @@
+//! What a window lives through: being hidden, of any size, closed at work, and pictures as large as they come.
+#![cfg(target_os = "linux")]
+
+mod support;
+
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+
+use egui::accesskit::Role;
+use isophote_host::loader::Library;
+use isophote_host::view::document::{Document, Options};
+use isophote_host::view::look::Look;
+use isophote_host::view::reel::Reel;
+use isophote_host::view::session::Session;
+use isophote_host::view::settings::Settings;
+
+use support::others::{self, Cover, drop_files};
+use support::places::places;
+use support::window::{Display, Part, Window, screen, view};
+use support::{folder, listing, picture};
+
+const SIZE: (u32, u32) = (700, 420);
+/// The canvas of a window of that size, above what is said at its lower border.
+const CANVAS: Part = [0, 60, 350, 290];
+
+fn size() -> String {
+    format!("{}x{}", SIZE.0, SIZE.1)
+}
+
+/// A session like that of a window that was opened with a style and a picture.
+fn session(style: &Path, file: &Path) -> Session {
+    let library = Library::from_file(support::library()).unwrap();
+    let look = Look::open(&library, style).unwrap();
+    let mut session = Session::new(library, vec![look], Settings::default()).unwrap();
+    session.show_reel(Reel::new(Document::open(file, &Options::default()).unwrap()).unwrap());
+    session
+}
+
+#[test]
+fn a_window_lives_on_when_it_is_hidden_covered_and_as_small_as_a_pixel() {
+    let Some(display) = Display::open("1000x700") else { return };
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    picture(96, 64).save(at("first.png")).unwrap();
+    image::imageops::rotate180(&picture(96, 64)).save(at("second.png")).unwrap();
+    let mut command = view(folder.path(), &size());
+    command.args(["--style", "none", "--style", "blueprint"]).arg(at("first.png"));
+    let mut window = Window::open(&display, &mut command);
+    window.shows("first.png", "none");
+    let first = window.settled(CANVAS);
+    let id = window.id.clone();
+
+    // As a window manager minimises it.
+    window.wait_for("nothing on the screen", |_| display.xdotool(&["windowunmap", "--sync", &id]).is_some());
+    assert!(drop_files(&display.name, &id, &[&at("second.png")]));
+    window.wait_for("the second picture", |window| window.title().starts_with("second.png"));
+    window.wait_for("the window again", |_| display.xdotool(&["windowmap", "--sync", &id]).is_some());
+    let second = window.settled(CANVAS);
+    assert!(second != first && screen(display.folder(), CANVAS).iter().any(|byte| *byte > 60));
+
+    let cover = Cover::open(&display.name);
+    window.settled(CANVAS);
+    window.key("2");
+    std::thread::sleep(Duration::from_millis(500));
+    drop(cover);
+    window.shows("second.png", "blueprint");
+    let blueprint = window.settled(CANVAS);
+    assert!(blueprint != second);
+
+    for (width, height) in [(1, 1), (2, 400), (640, 1), (1, 1), (300, 200)] {
+        window.resize(width, height);
+        std::thread::sleep(Duration::from_millis(300));
+    }
+    let mut storm: Vec<String> = Vec::new();
+    for step in 0..60_u32 {
+        let (width, height) = (1 + step * 97 % 900, 1 + step * 61 % 600);
+        storm.extend(["windowsize".into(), id.clone(), width.to_string(), height.to_string()]);
+    }
+    let storm: Vec<&str> = storm.iter().map(String::as_str).collect();
+    window.wait_for("many sizes", |_| display.xdotool(&storm).is_some());
+    window.resize(SIZE.0, SIZE.1);
+    window.wait_for("the picture of before", |_| screen(display.folder(), CANVAS) == blueprint);
+    window.close();
+    assert_eq!(window.said(), "");
+}
+
+/// Command lines of processes that name a folder.
+fn processes(folder: &Path) -> Vec<String> {
+    let folder = folder.to_str().unwrap();
+    let lines = fs::read_dir("/proc").unwrap().flatten().filter_map(|process| {
+        let line = fs::read(process.path().join("cmdline")).ok()?;
+        let line = String::from_utf8_lossy(&line).replace('\0', " ");
+        (line.contains("--json") && line.contains(folder)).then_some(line)
+    });
+    lines.collect()
+}
+
+#[test]
+fn a_window_that_is_closed_during_an_export_ends_it_and_leaves_nothing() {
+    let Some(display) = Display::open("1000x700") else { return };
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    picture(2400, 1800).save(at("photo.png")).unwrap();
+    fs::write(at("mine.json"), r#"{"style": "oil_paint"}"#).unwrap();
+    let mut command = view(folder.path(), &size());
+    let mut window = Window::open(&display, command.arg("--style").arg(at("mine.json")).arg(at("photo.png")));
+    window.wait_for("the picture", |window| window.title().starts_with("photo.png"));
+    let mut asking = session(&at("mine.json"), &at("photo.png"));
+    asking.plan_export();
+    let start = places(asking, SIZE)("Start the export", Role::Button).center();
+    window.key("ctrl+e");
+    window.wait_for("the export", |window| {
+        window.click([start.x as i32, start.y as i32]);
+        !processes(folder.path()).is_empty()
+    });
+    others::close(&display.name, &window.id);
+    let (status, _) = window.ended();
+    assert!(status.success(), "{status}: {}", window.said());
+    assert_eq!(processes(folder.path()), [""; 0], "no process outlives it");
+    assert_eq!(listing(folder.path()), ["mine.json", "photo.png", "view.json"]);
+}
+
+/// The most memory that a process has held, in bytes.
+fn peak(process: u32) -> u64 {
+    let text = fs::read_to_string(format!("/proc/{process}/status")).unwrap();
+    let line = text.lines().find(|line| line.starts_with("VmHWM:")).unwrap();
+    line.split_whitespace().nth(1).unwrap().parse::<u64>().unwrap() << 10
+}
+
+/// A picture of that size is 0.5 GiB of floats. The window has it in memory, on the device and, while it is uploaded, in part
+/// in between; a Gaussian filter has it twice more, as passes read one and write another.
+const MOST: u64 = 7 << 29;
+
+#[test]
+fn a_picture_in_8k_opens_and_its_sliders_answer_within_a_bound_of_memory() {
+    let Some(display) = Display::open("1000x700") else { return };
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let small = picture(480, 270);
+    let large = image::RgbImage::from_fn(7680, 4320, |x, y| *small.get_pixel(x / 16, y / 16));
+    large.save(at("large.png")).unwrap();
+    fs::write(at("mine.json"), r#"{"style": "gaussian", "parameters": {"sigma": 4}}"#).unwrap();
+    let mut command = view(folder.path(), &size());
+    command.arg("--report").arg("--style").arg(at("mine.json")).arg(at("large.png"));
+    let mut window = Window::open(&display, &mut command);
+    window.shows("large.png", "mine");
+    let before = window.settled(CANVAS);
+    picture(96, 64).save(at("small.png")).unwrap();
+    let slider = places(session(&at("mine.json"), &at("small.png")), SIZE)("Sigma", Role::Slider);
+    let x = |share: f32| (slider.left() + slider.width() * share) as i32;
+    let y = slider.center().y as i32;
+    window.drag([x(0.2), y], [x(0.95), y]);
+    window.changes("a smoother picture", CANVAS, &before);
+    window.settled(CANVAS);
+    let most = peak(window.process());
+    eprintln!("8K: {} MiB", most >> 20);
+    eprintln!("{}", window.close());
+    assert!(most < MOST, "{} MiB", most >> 20);
+    assert_eq!(window.said(), "");
+}
