@@ -50,11 +50,18 @@ fn main() -> ExitCode {
 fn run(task: &Task) -> Result<()> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let kernels = shader::kernels(&here.join("../../shaders"))?;
-    let driver = Driver::open()?;
+    let table = here.join("COSTS.md");
     match task {
-        Task::Show(name) => show(&driver, &kernels, name),
-        Task::Check => check(&driver, &kernels, &here.join("COSTS.md")),
-        Task::Write => write(&driver, &kernels, &here.join("COSTS.md")),
+        Task::Show(name) => show(&Driver::open()?, &kernels, name),
+        Task::Write => write(&Driver::open()?, &kernels, &table),
+        Task::Check => match Driver::open() {
+            Ok(driver) => check(&driver, &kernels, &table),
+            // Machines with other drivers, or none, have other checks to pass.
+            Err(error) => {
+                println!("costs of shaders are not compared: {error}");
+                Ok(())
+            }
+        },
     }
 }
 
