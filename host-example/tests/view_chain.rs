@@ -127,7 +127,7 @@ fn what_the_window_saves_and_copies_is_what_apply_reads() {
 
     let file = folder.path().join("mine.json");
     let mut look = session.look().clone();
-    look.save(&file).unwrap();
+    look.save(&file, look.preset.title.clone()).unwrap();
     let opened = Look::open(&session.library, &file).unwrap();
     assert_eq!(opened, look);
     assert_eq!(

@@ -140,7 +140,7 @@ fn a_saved_look_is_the_same_look_and_its_command_is_short() {
     }
     let mut look = session.look().clone();
     assert_eq!(look.settings(&knobs).len(), 4);
-    look.save(&file).unwrap();
+    look.save(&file, look.preset.title.clone()).unwrap();
     assert!(!look.is_changed() && look.settings(&knobs).is_empty());
     let opened = Look::open(&session.library, &file).unwrap();
     assert_eq!(opened, look);

@@ -68,7 +68,7 @@ impl Dialog {
         match self {
             Self::File | Self::Look => "drop the file on the window, or install zenity or xdg-desktop-portal",
             Self::Export => "type where it is to go, or install zenity or xdg-desktop-portal",
-            Self::Save | Self::Surroundings => "install zenity or xdg-desktop-portal",
+            Self::LookFolder | Self::Save | Self::Surroundings => "install zenity or xdg-desktop-portal",
         }
     }
 }

@@ -291,18 +291,22 @@ fn glsl(module: &Module, info: &ModuleInfo, made: &Made) -> Result<String, Strin
 #[cfg(test)]
 mod tests {
     use super::*;
+    use isophote::engine::Rect;
+    use isophote::engine::program::{Precision, Program, SAMPLER_BINDING};
     use isophote::{Graph, Planned, Request, registry};
     use std::ffi::CStr;
+    use std::sync::Arc;
 
-    /// Kernels that the nodes use with their defaults.
-    fn kernels() -> Vec<Shader> {
-        let mut found: Vec<Shader> = Vec::new();
+    /// Shaders of the nodes with their defaults.
+    fn shaders(precision: Precision) -> Vec<Arc<Shader>> {
+        let mut found: Vec<Arc<Shader>> = Vec::new();
         for node in registry::nodes() {
             let Ok(graph) = Graph::single(node.id) else { continue };
             let Ok(planned) = Planned::new(&graph, Request::new(64, 48)) else { continue };
-            for pass in planned.plan().passes() {
-                if !found.iter().any(|k| k.name == pass.kernel.name) {
-                    found.push(Shader::from(pass.kernel));
+            let program = Program::lower_as(planned.plan(), Rect::of_size(64, 48), precision).unwrap();
+            for dispatch in program.dispatches {
+                if !found.iter().any(|known| known.name == dispatch.shader.name) {
+                    found.push(dispatch.shader);
                 }
             }
         }
@@ -311,8 +315,27 @@ mod tests {
     }
 
     #[test]
+    fn samplers_are_offered_where_they_are_promised() {
+        let filtered = shaders(Precision::Fast).into_iter().filter(|shader| !shader.filtered.is_empty());
+        let filtered: Vec<Arc<Shader>> = filtered.collect();
+        assert!(!filtered.is_empty());
+        for shader in filtered {
+            for language in [ISOPHOTE_LANGUAGE_WGSL, ISOPHOTE_LANGUAGE_SPIRV] {
+                let made = translated(&shader, language).unwrap_or_else(|e| panic!("{e:?}"));
+                // SAFETY: the array has the length beside it.
+                let bindings =
+                    unsafe { std::slice::from_raw_parts(made.bindings, made.binding_count as usize) };
+                let sampler = bindings.last().unwrap();
+                assert_eq!((sampler.kind, sampler.binding), (ISOPHOTE_BINDING_SAMPLER, SAMPLER_BINDING));
+            }
+            let refused = translated(&shader, ISOPHOTE_LANGUAGE_HLSL).map(|_| ()).unwrap_err();
+            assert!(format!("{refused:?}").contains("ISOPHOTE_PRECISION_HALF"), "{refused:?}");
+        }
+    }
+
+    #[test]
     fn every_kernel_speaks_every_language() {
-        for kernel in kernels() {
+        for kernel in [Precision::Exact, Precision::Half].into_iter().flat_map(shaders) {
             for language in ISOPHOTE_LANGUAGE_WGSL..=ISOPHOTE_LANGUAGE_GLSL {
                 let shader = translated(&kernel, language).unwrap_or_else(|e| panic!("{e:?}"));
                 let uniforms = 1 + usize::from(kernel.params_size > 0);
