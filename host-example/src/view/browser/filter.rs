@@ -1,6 +1,6 @@
 //! Which looks are shown: words that are searched for, and tags that are wanted.
 
-use super::Entry;
+use super::entry::Entry;
 
 /// What is asked of looks.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -60,7 +60,7 @@ pub fn tags<'e>(entries: impl Iterator<Item = &'e Entry>) -> Vec<(String, usize)
 mod tests {
     use std::path::PathBuf;
 
-    use super::super::{Content, Group};
+    use super::super::entry::{Content, Group};
     use super::*;
     use crate::stylize::title::Title;
 

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{Content, Group};
+use super::entry::{Content, Group};
 use crate::error::Error;
 use crate::loader::Library;
 use crate::looks;

@@ -1,5 +1,6 @@
 //! The browser of looks: what there is, which of it is shown, chosen and marked to be compared.
 
+pub mod entry;
 pub mod filter;
 pub mod listing;
 pub mod titling;
@@ -7,54 +8,14 @@ pub mod titling;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use self::entry::{Entry, Group};
 use self::filter::Filter;
 use self::listing::{Found, Listing};
 use self::titling::Titling;
-use super::look::Look;
 use crate::loader::Library;
-use crate::stylize::title::Title;
 
 /// Most looks that are compared at once.
 pub const MOST_COMPARED: usize = 6;
-
-/// Where a look belongs.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Group {
-    /// A folder of the user.
-    Folder(PathBuf),
-    /// It ships with the program.
-    Shipped,
-    /// It is a style by itself.
-    Styles,
-}
-
-/// A look, or why it cannot be used.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Content {
-    /// The look.
-    Look(Arc<Look>),
-    /// What is wrong.
-    Broken(String),
-}
-
-/// A look that can be chosen.
-#[derive(Clone, Debug)]
-pub struct Entry {
-    /// Its number, which it keeps while it stays the same.
-    pub id: u64,
-    /// Where it belongs.
-    pub group: Group,
-    /// What it is opened as: the id of a style, a look that ships, or a file.
-    pub source: PathBuf,
-    /// What people call it.
-    pub name: String,
-    /// What people call its style.
-    pub style: String,
-    /// What it says about itself.
-    pub title: Title,
-    /// The look itself.
-    pub content: Content,
-}
 
 /// All looks and how they are shown.
 #[derive(Debug, Default)]
@@ -94,26 +55,6 @@ pub enum Step {
     Up,
     /// To the row below.
     Down,
-}
-
-impl Entry {
-    /// The look, where it can be used.
-    pub fn look(&self) -> Option<&Arc<Look>> {
-        match &self.content {
-            Content::Look(look) => Some(look),
-            Content::Broken(_) => None,
-        }
-    }
-
-    /// Its file, if it is one of the user's.
-    pub fn file(&self) -> Option<&Path> {
-        matches!(self.group, Group::Folder(_)).then_some(&*self.source)
-    }
-
-    /// Whether its file can hold a name and tags, which graphs cannot.
-    pub fn has_title(&self) -> bool {
-        self.file().is_some() && self.look().is_some_and(|look| !look.is_graph())
-    }
 }
 
 impl Browser {

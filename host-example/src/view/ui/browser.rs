@@ -1,6 +1,5 @@
 //! The browser of looks: a grid of cards with what each look makes of the picture.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use egui::{
@@ -8,9 +7,11 @@ use egui::{
     pos2, vec2,
 };
 
+use super::act::{Act, perform};
 use super::{card, theme};
+use crate::view::browser::Step;
+use crate::view::browser::entry::{Entry, Group};
 use crate::view::browser::filter::{Filter, tags};
-use crate::view::browser::{Entry, Group, Step};
 use crate::view::look::PLAIN;
 use crate::view::preview::Place;
 use crate::view::preview::render::{FINENESS, Order};
@@ -30,25 +31,6 @@ const CHIP: f32 = 62.0;
 const NARROW: f32 = 720.0;
 /// Most bytes of previews that are made before they are seen.
 const AHEAD: usize = 48 << 20;
-
-/// What the controls of the browser ask for.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Act {
-    /// Show this look.
-    Apply(u64),
-    /// Show this look and the picture.
-    ApplyAndClose(u64),
-    /// Mark it to be compared, or no more.
-    Mark(u64),
-    /// Ask for its name and tags.
-    Title(u64),
-    /// Ask for the name of a copy.
-    Copy(u64),
-    /// Ask whether its file is to be deleted.
-    Delete(PathBuf),
-    /// Offer the looks of a folder no more.
-    RemoveFolder(PathBuf),
-}
 
 /// Shows the browser.
 pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session) {
@@ -265,21 +247,4 @@ fn heading(ui: &mut Ui, rect: Rect, session: &Session, group: &Group, count: usi
         egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Remove {text} from the list"))
     });
     button.clicked().then(|| Act::RemoveFolder(folder.clone()))
-}
-
-/// Does what the controls ask for, after which they show something else.
-pub fn perform(ui: &Ui, session: &mut Session, act: Act) {
-    ui.ctx().request_repaint();
-    match act {
-        Act::Apply(id) => session.apply(id, false),
-        Act::ApplyAndClose(id) => session.apply(id, true),
-        Act::Mark(id) => session.mark(id),
-        Act::Title(id) => session.ask_title(id),
-        Act::Copy(id) => session.ask_copy(id),
-        Act::Delete(file) => session.browser.deleting = Some(file),
-        Act::RemoveFolder(folder) => {
-            session.settings.remove_look_folder(&folder);
-            session.browser.is_outdated = true;
-        }
-    }
 }

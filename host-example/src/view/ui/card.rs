@@ -6,9 +6,9 @@ use egui::{
 };
 use std::sync::Arc;
 
-use super::browser::Act;
+use super::act::Act;
 use super::theme;
-use crate::view::browser::{Content, Entry};
+use crate::view::browser::entry::{Content, Entry};
 use crate::view::preview::picture::Picture;
 use crate::view::preview::render::{FINENESS, Order};
 use crate::view::preview::{Place, Preview};

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use egui::{Color32, Label, RichText, ScrollArea, Sense, Ui, vec2};
 
-use super::{browser, card, theme};
-use crate::view::browser::Content;
+use super::act::perform;
+use super::{card, theme};
+use crate::view::browser::entry::Content;
 use crate::view::look::Look;
 use crate::view::preview::Place;
 use crate::view::preview::render::{FINENESS, Order};
@@ -39,7 +40,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
             card::actions(ui, session, &entry)
         });
         if let Some(act) = act.inner {
-            browser::perform(ui, session, act);
+            perform(ui, session, act);
         }
         if let Some(file) = entry.file() {
             ui.add_space(10.0);

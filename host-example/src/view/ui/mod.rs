@@ -1,6 +1,7 @@
 //! The controls of the window: what surrounds the picture and what is drawn on it. They read and change the session and ask
 //! for the rest by wishes; nothing here knows a device.
 
+mod act;
 mod browser;
 mod canvas;
 mod card;
