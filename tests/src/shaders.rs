@@ -17,8 +17,11 @@ pub fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../shaders")
 }
 
+/// What is exchanged where it first stands in the function that a kernel is entered by.
+const EXCHANGES: [(&str, &str); 4] = [(" + ", " - "), (" - ", " + "), (" * ", " + "), (".xy", ".yx")];
+
 /// The shader with one number of its own text changed, for each number that carries meaning; those
-/// with a fraction first. A shader without any gets one operator exchanged.
+/// with a fraction first. After them, it with an operator or components exchanged.
 pub fn spoil(kernel: &Kernel) -> Vec<Spoiled> {
     let own = kernel.parts.own;
     let (shared, after) = kernel.shader.split_once(own).unwrap_or_default();
@@ -36,13 +39,12 @@ pub fn spoil(kernel: &Kernel) -> Vec<Spoiled> {
     }
     spoiled.sort_by_key(|(has_fraction, _)| !has_fraction);
     let mut spoiled: Vec<Spoiled> = spoiled.into_iter().map(|(_, s)| s).collect();
-    if let Some(body) = own.find("fn main").or_else(|| own.find("fn of_pixel"))
-        && let Some(plus) = own[body..].find(" + ").or_else(|| own[body..].find(" - "))
-    {
-        let at = body + plus + 1;
-        let exchanged = if &own[at..=at] == "+" { "-" } else { "+" };
-        let source = format!("{shared}{}{exchanged}{}{after}", &own[..at], &own[at + 1..]);
-        spoiled.push(Spoiled { source, change: format!("{} -> {exchanged} in the entry", &own[at..=at]) });
+    let body = own.find("fn main").or_else(|| own.find("fn of_pixel")).unwrap_or_default();
+    for (from, to) in EXCHANGES {
+        let Some(at) = own[body..].find(from).map(|at| body + at) else { continue };
+        let source = format!("{shared}{}{to}{}{after}", &own[..at], &own[at + from.len()..]);
+        let change = format!("{} -> {} in the entry", from.trim(), to.trim());
+        spoiled.push(Spoiled { source, change });
     }
     spoiled
 }
