@@ -1030,6 +1030,18 @@ typedef struct IsophoteSequenceApi {
                                 struct IsophotePlan *plan);
 } IsophoteSequenceApi;
 
+// How precisely graphics devices compute a graph. One of `ISOPHOTE_PRECISION_...`.
+typedef uint32_t IsophotePrecision;
+
+// The functions of the extension "isophote.precision/1". Tags and ownership are those of `IsophoteApi`.
+typedef struct IsophotePrecisionApi {
+  // Bytes of this struct.
+  uint32_t struct_size;
+  // [any-thread] Sets how precisely graphics devices compute the graph from the next plan, update of a plan or call of
+  // `process` on; exactly, unless set. CPUs always compute exactly. It is no part of the graph as text.
+  IsophoteStatus (ISOPHOTE_ABI *graph_set_precision)(struct IsophoteGraph graph, IsophotePrecision precision);
+} IsophotePrecisionApi;
+
 // What a device must be created with.
 typedef struct IsophoteVulkanNeeds {
   // Features to enable, a sum of `ISOPHOTE_VULKAN_...` bits.
@@ -1104,7 +1116,8 @@ typedef struct IsophoteVulkanEffect {
 // sRGB format give linear light, which the request's `space` must say. NaN and infinities are not replaced.
 //
 // The output is written by the last filter itself where its view has the format `VK_FORMAT_R32G32B32A32_SFLOAT` (for
-// graphs that give one channel, `VK_FORMAT_R32_SFLOAT`) and the image was created with `VK_IMAGE_USAGE_STORAGE_BIT` and
+// graphs that give one channel, `VK_FORMAT_R32_SFLOAT`; for colours in less than exact precision,
+// `VK_FORMAT_R16G16B16A16_SFLOAT`) and the image was created with `VK_IMAGE_USAGE_STORAGE_BIT` and
 // `VK_IMAGE_USAGE_SAMPLED_BIT`. Any other colour format needs `VK_IMAGE_USAGE_TRANSFER_DST_BIT`: the result is then blitted
 // there, converted as blits convert, which needs a queue family with graphics.
 typedef struct IsophoteVulkanImage {

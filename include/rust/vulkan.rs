@@ -95,7 +95,8 @@ pub struct IsophoteVulkanHost {
 /// sRGB format give linear light, which the request's `space` must say. NaN and infinities are not replaced.
 ///
 /// The output is written by the last filter itself where its view has the format `VK_FORMAT_R32G32B32A32_SFLOAT` (for
-/// graphs that give one channel, `VK_FORMAT_R32_SFLOAT`) and the image was created with `VK_IMAGE_USAGE_STORAGE_BIT` and
+/// graphs that give one channel, `VK_FORMAT_R32_SFLOAT`; for colours in less than exact precision,
+/// `VK_FORMAT_R16G16B16A16_SFLOAT`) and the image was created with `VK_IMAGE_USAGE_STORAGE_BIT` and
 /// `VK_IMAGE_USAGE_SAMPLED_BIT`. Any other colour format needs `VK_IMAGE_USAGE_TRANSFER_DST_BIT`: the result is then blitted
 /// there, converted as blits convert, which needs a queue family with graphics.
 #[repr(C)]

@@ -52,6 +52,7 @@ typedef struct Filter {
     void *library;
     const IsophoteApi *api;
     const IsophoteVulkanApi *vulkans;
+    const IsophotePrecisionApi *precisions;
     IsophoteGraph graph;
     IsophoteRequest request;
     IsophoteVulkan vulkan;
@@ -104,8 +105,9 @@ static Filter open_filter(Host *host, const char *path)
 
     filter.api = load(path, &filter.library);
     filter.vulkans = filter.api->extension("isophote.vulkan/1");
-    if (filter.vulkans == NULL)
-        fail(path, "it has no extension isophote.vulkan/1");
+    filter.precisions = filter.api->extension("isophote.precision/1");
+    if (filter.vulkans == NULL || filter.precisions == NULL)
+        fail(path, "it lacks the extension isophote.vulkan/1 or isophote.precision/1");
     /* An engine asks before it makes its device; this one was made by open_gpu. */
     if (filter.vulkans->needs(VK_API_VERSION_1_2, &error, &needs) != ISOPHOTE_OK)
         fail("needs", message);
@@ -160,9 +162,12 @@ static void update(Host *host, Filter *filter, uint32_t number)
     filter->request.frame = number;
     check(filter->api, filter->graph, "detail",
           filter->api->graph_set_float(filter->graph, 0, "detail", 0.1 + number % 9 * 0.1));
-    if (is_other)
+    if (is_other) {
+        check(filter->api, filter->graph, "precision",
+              filter->precisions->graph_set_precision(filter->graph, number / 40 % 3));
         check(filter->api, filter->graph, "posterize",
               filter->api->graph_set_int(filter->graph, 0, "posterize", number % 80 == 0 ? 0 : 6));
+    }
     check_effect(filter, "effect_update",
                  filter->vulkans->effect_update(filter->effect, filter->graph, &filter->request, &change));
     if (was_resized && change != ISOPHOTE_CHANGE_STRUCTURE)
@@ -368,7 +373,8 @@ static void compare(Host *host, const Filter *filter, const Frame *frame, uint32
     free(theirs);
 }
 
-/* Makes the images of all frames in flight: results of 32-bit floats, which are written directly, or of 8 bits. */
+/* Makes the images of all frames in flight: results of 32-bit floats, which are written directly unless colours have half
+ * precision, or of 8 bits. */
 static void make_frames(Host *host)
 {
     VkDeviceSize size = (VkDeviceSize)host->width * host->height * 16;
@@ -378,7 +384,8 @@ static void make_frames(Host *host)
         host->copies[i] = create_buffer(&host->gpu, size, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
         host->frames[i] =
             i % 2 == 0 ? make_frame(&host->gpu, &host->scene, host->width, host->height, VK_FORMAT_R32G32B32A32_SFLOAT,
-                                    VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT)
+                                    VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                                        VK_IMAGE_USAGE_TRANSFER_DST_BIT)
                        : make_frame(&host->gpu, &host->scene, host->width, host->height, VK_FORMAT_R8G8B8A8_UNORM,
                                     VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     }

@@ -169,6 +169,41 @@ fn frames_with_other_parameters_make_no_objects() {
 }
 
 #[test]
+fn colours_in_half_precision_are_written_directly_and_blitted() {
+    let Some(host) = Host::new("colours_in_half_precision_are_written_directly_and_blitted") else { return };
+    let studio = Studio::new(&host, c"cartoon");
+    let half = host.picture(vk::Format::R16G16B16A16_SFLOAT, STORED, SIZE);
+    host.fill(&half, [0.2, 0.4, 0.6, 1.0], READ, 1);
+    let color = image(c"color", &half, [READ, READ]);
+    let written = host.picture(vk::Format::R16G16B16A16_SFLOAT, STORED, SIZE);
+    let written = image(c"output", &written, [vk::ImageLayout::UNDEFINED, vk::ImageLayout::GENERAL]);
+    let blitted = host.picture(FLOATS, STORED, SIZE);
+    let layouts = [vk::ImageLayout::UNDEFINED, vk::ImageLayout::TRANSFER_SRC_OPTIMAL];
+    let effect = studio.effect(SIZE);
+    let mut value = 1;
+    for precision in [ISOPHOTE_PRECISION_HALF, ISOPHOTE_PRECISION_FAST, ISOPHOTE_PRECISION_EXACT] {
+        studio.set_precision(precision);
+        assert_eq!(studio.update(effect, None), (ISOPHOTE_OK, ISOPHOTE_CHANGE_STRUCTURE));
+        for output in [written, image(c"output", &blitted, layouts)] {
+            value += 1;
+            assert_eq!(
+                studio.submit(effect, &[color, output], value),
+                ISOPHOTE_OK,
+                "{}",
+                studio.error(effect)
+            );
+            host.wait(value);
+        }
+        value += 1;
+        for texel in host.read(&blitted, value) {
+            let is_near =
+                texel.iter().zip([0.2, 0.4, 0.6, 1.0]).all(|(a, b): (&f32, f32)| (a - b).abs() < 0.1);
+            assert!(is_near, "{texel:?}");
+        }
+    }
+}
+
+#[test]
 fn recordings_outlive_updates_and_their_effect() {
     let Some(host) = Host::new("recordings_outlive_updates_and_their_effect") else { return };
     let studio = Studio::new(&host, c"gaussian");

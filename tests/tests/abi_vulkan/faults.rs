@@ -128,7 +128,7 @@ macro_rules! makers {
             }
         })*
 
-        const REPLACED: [(&str, Function); 14] = [
+        const REPLACED: [(&str, Function); 15] = [
             // SAFETY: they are called with their own types by who asked for them by name.
             $(($name, Function(unsafe {
                 transmute::<unsafe extern "system" fn($($type),*) -> vk::Result, Plain>($function)
@@ -157,6 +157,7 @@ makers! {
     "vkCreateDescriptorSetLayout" create_set_layout(device: vk::Device, info: Any, with: Any, made: *mut u64)
     "vkCreatePipelineLayout" create_pipeline_layout(device: vk::Device, info: Any, with: Any, made: *mut u64)
     "vkCreateShaderModule" create_shader_module(device: vk::Device, info: Any, with: Any, made: *mut u64)
+    "vkCreateSampler" create_sampler(device: vk::Device, info: Any, with: Any, made: *mut u64)
     "vkCreateDescriptorPool" create_descriptor_pool(device: vk::Device, info: Any, with: Any, made: *mut u64)
     "vkCreateCommandPool" create_command_pool(device: vk::Device, info: Any, with: Any, made: *mut u64)
     "vkAllocateDescriptorSets" allocate_sets(device: vk::Device, info: Any, made: *mut u64)

@@ -134,6 +134,16 @@ impl Studio {
         (status, change)
     }
 
+    pub fn set_precision(&self, precision: IsophotePrecision) {
+        // SAFETY: the name ends with a zero; the table is of the type that its name says.
+        let status = unsafe {
+            let table = (self.library.api.extension)(c"isophote.precision/1".as_ptr());
+            let table = table.cast::<IsophotePrecisionApi>().as_ref().expect("the library knows precisions");
+            (table.graph_set_precision)(self.graph, precision)
+        };
+        assert_eq!(status, ISOPHOTE_OK);
+    }
+
     pub fn set(&self, name: &CStr, value: f64) {
         // SAFETY: the name ends with a zero.
         let status = unsafe { (self.library.api.graph_set_float)(self.graph, 0, name.as_ptr(), value) };

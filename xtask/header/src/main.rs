@@ -187,7 +187,9 @@ fn generate(root: &Path) -> Result<String, Error> {
     };
     // Only the documents name the type of the entry point, and tables of extensions, which are asked for by a string.
     config.export.include =
-        ["IsophoteEntry", "IsophoteSequenceApi", "IsophoteVulkanApi"].map(Into::into).into();
+        ["IsophoteEntry", "IsophoteSequenceApi", "IsophotePrecisionApi", "IsophoteVulkanApi"]
+            .map(Into::into)
+            .into();
     let mut builder = Builder::new().with_config(config);
     for source in SOURCES {
         builder = builder.with_src(root.join(source));

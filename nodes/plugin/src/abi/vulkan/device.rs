@@ -28,7 +28,7 @@ unsafe impl Sync for Names {}
 static NAMES: Names = Names([TIMELINES.as_ptr()]);
 
 /// Functions that are called here; a driver of Vulkan 1.1 has them all.
-const FUNCTIONS: [&CStr; 42] = [
+const FUNCTIONS: [&CStr; 44] = [
     c"vkAllocateCommandBuffers",
     c"vkAllocateDescriptorSets",
     c"vkAllocateMemory",
@@ -49,6 +49,7 @@ const FUNCTIONS: [&CStr; 42] = [
     c"vkCreateImage",
     c"vkCreateImageView",
     c"vkCreatePipelineLayout",
+    c"vkCreateSampler",
     c"vkCreateShaderModule",
     c"vkDestroyBuffer",
     c"vkDestroyCommandPool",
@@ -58,6 +59,7 @@ const FUNCTIONS: [&CStr; 42] = [
     c"vkDestroyImageView",
     c"vkDestroyPipeline",
     c"vkDestroyPipelineLayout",
+    c"vkDestroySampler",
     c"vkDestroyShaderModule",
     c"vkEndCommandBuffer",
     c"vkFreeMemory",
