@@ -11,9 +11,9 @@ use support::window::{Display, Part, Window, program, view};
 use support::{folder, picture};
 
 /// Size of the window.
-const SIZE: &str = "700x420";
+const SIZE: &str = "1000x700";
 /// The upper part of the canvas, above what is said at its lower border.
-const CANVAS: Part = [0, 60, 350, 130];
+const CANVAS: Part = [0, 60, 650, 330];
 
 fn drops(display: &Display, window: &Window<'_>, files: &[&Path]) {
     assert!(drop_files(&display.name, &window.id, files), "the window takes files");
@@ -21,7 +21,7 @@ fn drops(display: &Display, window: &Window<'_>, files: &[&Path]) {
 
 #[test]
 fn what_is_dropped_opens_and_what_cannot_be_opened_leaves_what_was_there() {
-    let Some(display) = Display::open("800x600") else { return };
+    let Some(display) = Display::open("1100x800") else { return };
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
     for name in ["a photo, größer.png", "second.png"] {
@@ -71,7 +71,7 @@ fn what_is_dropped_opens_and_what_cannot_be_opened_leaves_what_was_there() {
 
 #[test]
 fn dialogs_choose_files_and_where_there_are_none_the_window_says_what_to_do() {
-    let Some(display) = Display::open("800x600") else { return };
+    let Some(display) = Display::open("1100x800") else { return };
     let folder = folder();
     picture(96, 64).save(folder.path().join("chosen.png")).unwrap();
     // Where nothing is found, neither is a service of dialogs.

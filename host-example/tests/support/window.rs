@@ -150,9 +150,9 @@ impl<'d> Window<'d> {
         self.display.xdotool(&["getwindowname", &self.id]).unwrap_or_default()
     }
 
-    /// Waits until the title begins with what is open and the look.
+    /// Waits until the title begins with what is open and the look, and a picture of both has been shown.
     pub fn shows(&mut self, file: &str, look: &str) {
-        let wanted = format!("{file} - {look}");
+        let wanted = format!("{file} - {look} - frame ");
         self.wait_for(&wanted, |window| window.title().starts_with(&wanted));
     }
 

@@ -6,13 +6,19 @@ use super::theme;
 use crate::view::easel::{Compare, Overlay};
 use crate::view::session::{Session, Wish};
 
+/// Points of the bar, beside the menu, up to which the name is left out.
+const NARROW: f32 = 660.0;
+
 /// Shows the bar.
 pub fn show(ui: &mut Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         ui.set_min_height(24.0);
         file_menu(ui, session);
         let name = if session.has_picture() { session.name.as_str() } else { "Isophote" };
-        ui.label(RichText::new(name).color(theme::FAINT));
+        // The title of the window has it, too.
+        if ui.available_width() > NARROW {
+            ui.label(RichText::new(name).color(theme::FAINT));
+        }
         if !session.has_picture() {
             return right(ui, session);
         }
