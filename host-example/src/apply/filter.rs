@@ -270,7 +270,8 @@ impl Filter {
         for (number, layer) in self.layers.iter_mut().enumerate() {
             let mut result = Pixels::zeroed(color.width(), color.height(), channels, precision);
             let mut report = |done: f32| progress((number as f32 + done) / count);
-            let mut control = Control { threads: self.threads, progress: Some(&mut report), ..Control::default() };
+            let mut control =
+                Control { threads: self.threads, progress: Some(&mut report), ..Control::default() };
             let bad = layer
                 .process((&self.library, self.device.as_ref()), job, &mut result, &mut control)
                 .map_err(|e| e.at(name, "choose another picture or style"))?;

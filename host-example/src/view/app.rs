@@ -11,8 +11,8 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
 use winit::keyboard::{Key, ModifiersState, NamedKey};
 use winit::window::{Window, WindowId};
 
+use super::background::Background;
 use super::clicks;
-use super::desk::Desk;
 use super::pace::Pace;
 use super::panel::Textures;
 use super::record::Hold;
@@ -56,7 +56,7 @@ impl From<egui_winit::accesskit_winit::Event> for Event {
 /// The window and what it shows.
 pub struct App {
     session: Session,
-    desk: Desk,
+    background: Background,
     pace: Pace,
     size: Option<(u32, u32)>,
     // Dropped in order: the device before the window.
@@ -88,7 +88,7 @@ impl App {
     pub fn new(session: Session, size: Option<(u32, u32)>, proxy: EventLoopProxy<Event>) -> Result<Self> {
         let wake = waker(&proxy, || Event::Done);
         Ok(Self {
-            desk: Desk::new(&wake)?,
+            background: Background::new(&wake)?,
             pace: Pace::default(),
             session,
             size,
@@ -141,7 +141,7 @@ impl App {
     pub fn is_idle(&self) -> bool {
         let is_due = self.due.is_some_and(|due| due <= Instant::now());
         let is_at_work = self.stage.as_ref().is_none_or(|stage| stage.is_waiting() || stage.is_busy());
-        !is_due && !is_at_work && self.desk.busy().is_none()
+        !is_due && !is_at_work && self.background.busy().is_none()
     }
 
     fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
@@ -242,7 +242,7 @@ impl App {
         let started = Instant::now();
         self.due = None;
         let session = &mut self.session;
-        self.desk.collect(session);
+        self.background.collect(session);
         let context = input.egui_ctx().clone();
         let mut raw = input.take_egui_input(window);
         self.late = clicks::one_at_a_time(&mut raw.events, std::mem::take(&mut self.late));
@@ -257,14 +257,14 @@ impl App {
         if !context.egui_is_using_pointer() && !context.text_edit_focused() {
             session.let_go();
         }
-        let copied = self.desk.grant(session);
+        let copied = self.background.grant(session);
         copied.into_iter().for_each(|text| input.set_clipboard_text(text));
         session.advance();
         let scale = self.pace.scale(session);
         let problems = stage.follow(session, scale)?;
         problems.iter().for_each(|problem| session.notes.complain(problem));
         let was_busy = session.busy;
-        session.busy = stage.is_busy().then_some("Preparing the look").or(self.desk.busy());
+        session.busy = stage.is_busy().then_some("Preparing the look").or(self.background.busy());
         let looks = started.elapsed() - controls;
         let always =
             session.record.limit.is_some() || session.scenery.as_ref().is_some_and(|scenery| scenery.playing);
@@ -335,7 +335,7 @@ impl App {
         let session = &mut self.session;
         let pressed = event.state == ElementState::Pressed;
         if event.logical_key.as_ref() == Key::Character("\\") {
-            session.easel.peek = pressed;
+            session.viewport.peek = pressed;
             return;
         }
         if !pressed {
@@ -409,7 +409,7 @@ impl ApplicationHandler<Event> for App {
         let result = match event {
             WindowEvent::CloseRequested => {
                 self.session.wishes.push(Wish::Quit);
-                self.desk.grant(&mut self.session);
+                self.background.grant(&mut self.session);
                 Ok(())
             }
             WindowEvent::Resized(size) => {
@@ -439,7 +439,7 @@ impl ApplicationHandler<Event> for App {
                 Ok(())
             }
             WindowEvent::Focused(false) => {
-                self.session.easel.peek = false;
+                self.session.viewport.peek = false;
                 Ok(())
             }
             WindowEvent::DroppedFile(path) => {
@@ -453,7 +453,7 @@ impl ApplicationHandler<Event> for App {
     }
 
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
-        if self.session.record.is_finished() || self.desk.is_over() {
+        if self.session.record.is_finished() || self.background.is_over() {
             event_loop.exit();
             return;
         }
@@ -470,7 +470,7 @@ impl ApplicationHandler<Event> for App {
             }
             return;
         }
-        let closing = self.desk.is_closing().then(|| Instant::now() + CLOSING);
+        let closing = self.background.is_closing().then(|| Instant::now() + CLOSING);
         // A picture that stands still costs nothing.
         let next = [due, revival, closing].into_iter().flatten().min();
         event_loop.set_control_flow(next.map_or(ControlFlow::Wait, ControlFlow::WaitUntil));

@@ -83,7 +83,7 @@ pub fn animation(session: &Session) -> Vec<String> {
 
 /// Options of `render` for camera and light, where they are not as they are without being asked for.
 pub fn staging(session: &Session) -> Vec<String> {
-    let [_, area] = session.easel.halves();
+    let [_, area] = session.viewport.halves();
     let Some(scenery) = &session.scenery else { return Vec::new() };
     let mut words = scenery.reading.clone();
     let mut add = |option: &str, value: String| words.extend([option.to_owned(), value]);

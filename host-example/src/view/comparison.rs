@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::canvas::Area;
-use super::easel::Compare;
 use super::look::Look;
+use super::viewport::Compare;
 
 /// Pixels of the window between and around panes.
 const GAP: f32 = 8.0;

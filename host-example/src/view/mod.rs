@@ -3,13 +3,14 @@
 //! | what | where |
 //! |---|---|
 //! | the window's events, and when a frame is drawn | `app`, `clicks`, `pace` |
-//! | all that is known of what is shown, and steps back | `session`, `history`, `look`, `chain`, `value`, `scenery`, `reel`, `easel` |
+//! | all that is known of what is shown, and steps back | `session`, `history`, `look`, `chain`, `value`, `scenery`, `reel`, `viewport` |
 //! | looks to choose from | `browser`, `preview`, `comparison`, `saving` |
-//! | work beside the window | `worker`, `desk`, `dialogs`, `look_work`, `watch`, `idle`, `document`, `export` |
-//! | what lives on the device | `stage`, `shown`, `screen`, `sources`, `source`, `pictures`, `snapshot`, `lane`, `canvas`, `probe`, `panel` |
+//! | work beside the window | `worker`, `background`, `dialogs`, `look_work`, `watch`, `idle`, `document`, `export` |
+//! | what lives on the device | `stage`, `shown`, `screen`, `sources`, `source`, `pictures`, `snapshot`, `live_look`, `canvas`, `probe`, `panel` |
 //! | the controls | `ui` |
 
 pub mod app;
+mod background;
 pub mod browser;
 mod canvas;
 pub mod chain;
@@ -17,14 +18,12 @@ mod clicks;
 pub mod command;
 pub mod comparison;
 mod demo;
-mod desk;
 mod dialogs;
 pub mod document;
-mod easel;
 pub mod export;
 mod history;
 mod idle;
-mod lane;
+mod live_look;
 pub mod look;
 mod look_work;
 mod notes;
@@ -48,6 +47,7 @@ mod sources;
 mod stage;
 pub mod ui;
 pub mod value;
+mod viewport;
 mod watch;
 mod worker;
 

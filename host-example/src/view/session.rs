@@ -13,7 +13,6 @@ use super::browser::Browser;
 use super::chain::{self, Chain, Watched};
 use super::comparison::Comparison;
 use super::document::kind::Kind;
-use super::easel::{Compare, Easel, Overlay};
 use super::history::History;
 use super::look::{Knob, Look};
 use super::notes::Notes;
@@ -24,6 +23,7 @@ use super::reel::Reel;
 use super::saving::Saving;
 use super::scenery::{Lighting, Scenery};
 use super::settings::Settings;
+use super::viewport::{Compare, Overlay, Viewport};
 use crate::apply::exr::{Guide, Layer};
 use crate::error::Result;
 use crate::loader::Library;
@@ -110,7 +110,7 @@ pub struct Session {
     /// What is open, for the title.
     pub name: String,
     /// Where pictures lie.
-    pub easel: Easel,
+    pub viewport: Viewport,
     /// The browser of looks.
     pub browser: Browser,
     /// The looks that are seen beside each other, if any.
@@ -167,7 +167,7 @@ impl Session {
             reel: None,
             file: None,
             name: String::new(),
-            easel: Easel::default(),
+            viewport: Viewport::default(),
             browser: Browser::default(),
             comparison: None,
             saving: None,
@@ -242,8 +242,8 @@ impl Session {
 
     /// Shows all there is.
     pub fn frame_all(&mut self) {
-        self.easel.fit();
-        let [_, half] = self.easel.halves();
+        self.viewport.fit();
+        let [_, half] = self.viewport.halves();
         if let Some(scenery) = &mut self.scenery {
             scenery.frame_all(half.width / half.height);
         }
@@ -275,16 +275,16 @@ impl Session {
 
     /// Size of the picture as it is placed: what is rendered smaller for the moment is shown as large.
     pub fn nominal_size(&self) -> (u32, u32) {
-        let [_, half] = self.easel.halves();
+        let [_, half] = self.viewport.halves();
         self.reel.as_ref().map_or((half.width as u32, half.height as u32), Reel::size)
     }
 
     /// The pictures on the left and on the right of the split.
     pub fn shown(&self) -> [Which; 2] {
-        let look = if self.easel.overlay == Overlay::None { Which::Look } else { Which::Overlay };
+        let look = if self.viewport.overlay == Overlay::None { Which::Look } else { Which::Overlay };
         let other = if self.compared.is_some() { Which::Compared } else { Which::Original };
-        match self.easel.compare {
-            _ if self.easel.peek || self.is_covered() => [Which::Original; 2],
+        match self.viewport.compare {
+            _ if self.viewport.peek || self.is_covered() => [Which::Original; 2],
             Compare::Off => [look; 2],
             Compare::Wipe | Compare::Side => [other, look],
         }
@@ -312,8 +312,8 @@ impl Session {
             reel.seek(old.number());
         }
         self.reel = Some(reel);
-        if !self.has_overlay(self.easel.overlay) {
-            self.easel.overlay = Overlay::None;
+        if !self.has_overlay(self.viewport.overlay) {
+            self.viewport.overlay = Overlay::None;
         }
     }
 
@@ -337,8 +337,8 @@ impl Session {
         (self.file, self.name) = (file, name);
         self.plan = None;
         self.previews.clear();
-        self.easel.fit();
-        self.easel.overlay = Overlay::None;
+        self.viewport.fit();
+        self.viewport.overlay = Overlay::None;
         self.record.begin();
         self.edits = History::default();
     }

@@ -1,17 +1,17 @@
 //! Which texture of the device is seen where something is to be shown.
 
 use super::canvas::Numbers;
-use super::easel::Overlay;
-use super::lane::Lane;
+use super::live_look::LiveLook;
 use super::pictures::numbers;
 use super::session::Which;
 use super::source::Source;
+use super::viewport::Overlay;
 use crate::loader::catalogue::Kind;
 
 /// One of the pictures that can be shown; the original where there is nothing else yet.
 pub fn picture<'s>(
     source: &'s Source,
-    lanes: &'s [Lane; 3],
+    looks: &'s [LiveLook; 3],
     overlay: Overlay,
     which: Which,
 ) -> (&'s wgpu::TextureView, Numbers) {
@@ -26,13 +26,13 @@ pub fn picture<'s>(
     if let Some((numbers, view)) = guide.and_then(|numbers| Some((numbers, source.guide(numbers)?))) {
         return (view, numbers);
     }
-    let lane = match which {
+    let live = match which {
         Which::Original => None,
-        Which::Look => lanes[0].output(),
-        Which::Compared => lanes[1].output(),
-        Which::Overlay => lanes[2].output(),
+        Which::Look => looks[0].output(),
+        Which::Compared => looks[1].output(),
+        Which::Overlay => looks[2].output(),
     };
-    match lane {
+    match live {
         Some((view, Kind::Scalar, _)) => (view, Numbers::Grey),
         Some((view, _, space)) => (view, numbers(space)),
         None => source.original(),

@@ -80,7 +80,7 @@ impl Sources {
         let is_new = self.take(session)?;
         let is_other = match (&session.scenery, &session.reel) {
             (Some(scenery), _) => {
-                let [_, half] = session.easel.halves();
+                let [_, half] = session.viewport.halves();
                 let pixels = |length: f32| ((length * scale).round() as u32).max(1);
                 let size = (pixels(half.width), pixels(half.height));
                 match &mut self.present {

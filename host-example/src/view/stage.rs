@@ -10,8 +10,7 @@ use winit::window::Window;
 
 use super::canvas::{Arrangement, Canvas, SURROUND, Shown};
 use super::document::frame::Frame;
-use super::easel::Overlay;
-use super::lane::{Lane, Part};
+use super::live_look::{LiveLook, Part};
 use super::look::Look;
 use super::panel::Panel;
 use super::probe::Probe;
@@ -21,6 +20,7 @@ use super::shown::picture;
 use super::snapshot::Snapshots;
 use super::source::Source;
 use super::sources::Sources;
+use super::viewport::Overlay;
 use super::worker::{Wake, Worker};
 use crate::error::{Error, Result};
 use crate::loader::contract::IsophoteRequest;
@@ -35,7 +35,7 @@ use crate::stylize::plan_runner::Counts;
 /// All of one device. Fields are dropped in order: what uses the device before it.
 pub struct Stage {
     /// The look, what it is compared with, and what is shown instead.
-    lanes: [Lane; 3],
+    looks: [LiveLook; 3],
     sources: Sources,
     /// Waits for the device.
     waiter: Worker<Instant, Result<Duration>>,
@@ -139,15 +139,15 @@ impl Stage {
         let probe = Probe::new(&gpu.device);
         let panel = Panel::new(&gpu.device, screen.format());
         let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
-        let lane = || Lane::new(&kernels, Arc::clone(wake));
-        let lanes = [lane()?, lane()?, lane()?];
+        let live = || LiveLook::new(&kernels, Arc::clone(wake));
+        let looks = [live()?, live()?, live()?];
         let own = gpu.clone();
         let waiter = Worker::new("device", Arc::clone(landed), move |since: Instant| {
             own.wait().map(|()| since.elapsed())
         })?;
         gpu.check()?;
         Ok(Self {
-            lanes,
+            looks,
             sources: Sources::new(&gpu, wake)?,
             waiter,
             pending: None,
@@ -187,7 +187,7 @@ impl Stage {
         let mut problems = Vec::new();
         match self.sources.follow(session, scale) {
             Ok(false) => {}
-            Ok(true) => self.lanes.iter_mut().for_each(Lane::unbind),
+            Ok(true) => self.looks.iter_mut().for_each(LiveLook::unbind),
             Err(problem) => problems.push(problem),
         }
         // What is covered is built when it is seen, where that takes the processor's time.
@@ -198,18 +198,18 @@ impl Stage {
             self.gpu.check()?;
             return Ok(problems);
         };
-        let overlay = session.easel.overlay.node().map(|node| Look::open(&session.library, node.as_ref()));
+        let overlay = session.viewport.overlay.node().map(|node| Look::open(&session.library, node.as_ref()));
         let overlay = overlay.transpose()?.unwrap_or_else(Look::plain);
         let seen = session.seen();
         let compared = session.compared.clone().unwrap_or_else(Look::plain);
         let asked = source.asked();
-        for (lane, look) in self.lanes.iter_mut().zip([&*seen, &compared, &overlay]) {
-            problems.extend(lane.follow(&session.library, look, asked).err());
+        for (live, look) in self.looks.iter_mut().zip([&*seen, &compared, &overlay]) {
+            problems.extend(live.follow(&session.library, look, asked).err());
             if let Source::Scene(source) = source
-                && lane.wants_rest_positions()?
+                && live.wants_rest_positions()?
                 && source.add_rest_positions()
             {
-                lane.unbind();
+                live.unbind();
             }
         }
         self.gpu.check()?;
@@ -234,7 +234,7 @@ impl Stage {
             && !self.snapshots.shows(&face)
         {
             if source.add_rest_positions() {
-                self.lanes.iter_mut().for_each(Lane::unbind);
+                self.looks.iter_mut().for_each(LiveLook::unbind);
                 let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
                 source.encode(&mut encoder, scenery);
                 self.gpu.queue.submit([encoder.finish()]);
@@ -246,7 +246,7 @@ impl Stage {
 
     /// Whether a look is being built, or a picture or scene uploaded.
     pub fn is_busy(&self) -> bool {
-        self.sources.is_busy() || self.lanes.iter().any(Lane::is_busy)
+        self.sources.is_busy() || self.looks.iter().any(LiveLook::is_busy)
     }
 
     /// Whether the device is doing what it was given. Nothing else is given to it meanwhile: a viewer that runs ahead of its
@@ -394,7 +394,7 @@ impl Stage {
         });
         let mut pass = pass.forget_lifetime();
         if self.sources.present().is_some() && !session.is_covered() {
-            self.canvas.draw(&mut pass, session.easel.area, size);
+            self.canvas.draw(&mut pass, session.viewport.area, size);
         }
         if let Some(clock) = &self.clock {
             drop(pass);
@@ -421,9 +421,9 @@ impl Stage {
         let scene = session.scenery.as_ref();
         Some(Made {
             shown: session.shown(),
-            overlay: session.easel.overlay,
+            overlay: session.viewport.overlay,
             asked: source.asked(),
-            revisions: self.lanes.each_ref().map(Lane::revision),
+            revisions: self.looks.each_ref().map(LiveLook::revision),
             source: self.sources.number(),
             scene: scene.map(|scenery| (scenery.view(), *scenery.light(), scenery.time().0)),
         })
@@ -445,9 +445,9 @@ impl Stage {
         let shown = session.shown();
         let part = Part { begins, passes, number: source.number() };
         let mut is_whole = true;
-        for (lane, which) in self.lanes.iter_mut().zip([Which::Look, Which::Compared, Which::Overlay]) {
+        for (live, which) in self.looks.iter_mut().zip([Which::Look, Which::Compared, Which::Overlay]) {
             if shown.contains(&which) {
-                is_whole &= lane.encode(encoder, asked, part, |stylizer| source.bind(stylizer))?;
+                is_whole &= live.encode(encoder, asked, part, |stylizer| source.bind(stylizer))?;
             }
         }
         Ok(is_whole)
@@ -456,18 +456,18 @@ impl Stage {
     /// Says what lies where on the canvas.
     fn arrange(&mut self, session: &Session) {
         let Some(source) = self.sources.present() else { return };
-        let easel = &session.easel;
-        let places = easel.places(session.nominal_size());
+        let viewport = &session.viewport;
+        let places = viewport.places(session.nominal_size());
         let [left, right] = session.shown();
         let pictures = [(left, places[0]), (right, places[1])].map(|(which, place)| {
-            let (view, numbers) = picture(source, &self.lanes, easel.overlay, which);
+            let (view, numbers) = picture(source, &self.looks, viewport.overlay, which);
             Shown { view, numbers, place }
         });
         let arrangement = Arrangement {
-            area: easel.area,
+            area: viewport.area,
             pictures,
-            split: easel.split(),
-            exposure: easel.exposure.exp2(),
+            split: viewport.split(),
+            exposure: viewport.exposure.exp2(),
             middle: session.scenery.as_ref().map_or(1.0, |scenery| scenery.distance()),
             square: 8.0,
         };
@@ -478,10 +478,10 @@ impl Stage {
     fn encode_probe(&mut self, encoder: &mut wgpu::CommandEncoder, session: &Session) {
         let (Some(source), Some(pointer)) = (self.sources.present(), session.pointer) else { return };
         let size = session.nominal_size();
-        let Some((x, y)) = session.easel.pixel(size, pointer) else { return };
+        let Some((x, y)) = session.viewport.pixel(size, pointer) else { return };
         let place = [(x as f32 + 0.5) / size.0 as f32, (y as f32 + 0.5) / size.1 as f32];
         let (before, _) = source.original();
-        let after = self.lanes[0].output().map_or(before, |(view, ..)| view);
+        let after = self.looks[0].output().map_or(before, |(view, ..)| view);
         self.probe.encode(encoder, [before, after], place);
     }
 
@@ -492,7 +492,7 @@ impl Stage {
 
     /// What was made on the device for the look.
     pub fn counts(&self) -> Counts {
-        self.lanes[0].counts()
+        self.looks[0].counts()
     }
 
     /// Most texels of a texture across.

@@ -19,7 +19,7 @@ type Stamp = Option<(SystemTime, u64)>;
 /// A thread that looks at files twice a second and wakes the window when one has changed.
 #[derive(Debug)]
 pub struct Watch {
-    desk: Arc<Desk>,
+    shared: Arc<Shared>,
     files: Vec<PathBuf>,
     changes: Receiver<()>,
     thread: Option<JoinHandle<()>>,
@@ -27,7 +27,7 @@ pub struct Watch {
 
 /// What the thread looks at.
 #[derive(Debug, Default)]
-struct Desk {
+struct Shared {
     tray: Mutex<Tray>,
     changed: Condvar,
 }
@@ -44,14 +44,14 @@ impl Watch {
     /// # Errors
     /// [`Error::Failure`] when the system has no thread to give.
     pub fn new(wake: &Wake) -> Result<Self> {
-        let desk = Arc::new(Desk::default());
+        let shared = Arc::new(Shared::default());
         let (sender, changes) = channel();
-        let (own, wake) = (Arc::clone(&desk), Arc::clone(wake));
+        let (own, wake) = (Arc::clone(&shared), Arc::clone(wake));
         let thread = std::thread::Builder::new()
             .name("watch".into())
             .spawn(move || serve(&own, &sender, &wake))
             .map_err(|e| Error::failure(format!("no thread can be started: {e}"), "close other programs"))?;
-        Ok(Self { desk, files: Vec::new(), changes, thread: Some(thread) })
+        Ok(Self { shared, files: Vec::new(), changes, thread: Some(thread) })
     }
 
     /// Looks at these files from now on, as they are now, unless it does already.
@@ -60,9 +60,9 @@ impl Watch {
             return;
         }
         let stamped = files.iter().map(|file| (file.clone(), stamp(file))).collect();
-        self.desk.tray.lock().unwrap_or_else(PoisonError::into_inner).files = stamped;
+        self.shared.tray.lock().unwrap_or_else(PoisonError::into_inner).files = stamped;
         self.files = files;
-        self.desk.changed.notify_one();
+        self.shared.changed.notify_one();
     }
 
     /// Whether one of them has changed since the last call.
@@ -71,14 +71,14 @@ impl Watch {
     }
 }
 
-fn serve(desk: &Desk, changes: &Sender<()>, wake: &Wake) {
-    let mut tray = desk.tray.lock().unwrap_or_else(PoisonError::into_inner);
+fn serve(shared: &Shared, changes: &Sender<()>, wake: &Wake) {
+    let mut tray = shared.tray.lock().unwrap_or_else(PoisonError::into_inner);
     while !tray.closed {
         // Where there is no file, there is nothing to wake up for.
         tray = if tray.files.is_empty() {
-            desk.changed.wait(tray).unwrap_or_else(PoisonError::into_inner)
+            shared.changed.wait(tray).unwrap_or_else(PoisonError::into_inner)
         } else {
-            desk.changed.wait_timeout(tray, PAUSE).unwrap_or_else(PoisonError::into_inner).0
+            shared.changed.wait_timeout(tray, PAUSE).unwrap_or_else(PoisonError::into_inner).0
         };
         let mut is_new = false;
         for (file, known) in &mut tray.files {
@@ -101,8 +101,8 @@ fn stamp(file: &PathBuf) -> Stamp {
 
 impl Drop for Watch {
     fn drop(&mut self) {
-        self.desk.tray.lock().unwrap_or_else(PoisonError::into_inner).closed = true;
-        self.desk.changed.notify_one();
+        self.shared.tray.lock().unwrap_or_else(PoisonError::into_inner).closed = true;
+        self.shared.changed.notify_one();
         if let Some(thread) = self.thread.take() {
             // A panic there has been printed.
             let _ = thread.join();

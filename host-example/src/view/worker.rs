@@ -13,7 +13,7 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 /// for what is being done, since no thread may outlive the graphics driver.
 #[derive(Debug)]
 pub struct Worker<J, A> {
-    desk: Arc<Desk<J>>,
+    shared: Arc<Shared<J>>,
     answers: Receiver<(u64, A)>,
     asked: u64,
     answered: u64,
@@ -22,7 +22,7 @@ pub struct Worker<J, A> {
 
 /// Where requests are left.
 #[derive(Debug)]
-struct Desk<J> {
+struct Shared<J> {
     tray: Mutex<Tray<J>>,
     changed: Condvar,
 }
@@ -40,21 +40,21 @@ impl<J: Send + 'static, A: Send + 'static> Worker<J, A> {
     /// [`Error::Failure`] when the system has no thread to give.
     pub fn new(name: &str, wake: Wake, work: impl FnMut(J) -> A + Send + 'static) -> Result<Self> {
         let tray = Mutex::new(Tray { next: None, closed: false });
-        let desk = Arc::new(Desk { tray, changed: Condvar::new() });
+        let shared = Arc::new(Shared { tray, changed: Condvar::new() });
         let (sender, answers) = channel();
-        let own = Arc::clone(&desk);
+        let own = Arc::clone(&shared);
         let thread = std::thread::Builder::new()
             .name(name.to_owned())
             .spawn(move || serve(&own, &sender, &wake, work))
             .map_err(|e| Error::failure(format!("no thread can be started: {e}"), "close other programs"))?;
-        Ok(Self { desk, answers, asked: 0, answered: 0, thread: Some(thread) })
+        Ok(Self { shared, answers, asked: 0, answered: 0, thread: Some(thread) })
     }
 
     /// Asks for something, instead of what was asked for and not begun.
     pub fn ask(&mut self, job: J) {
         self.asked += 1;
-        self.desk.tray.lock().unwrap_or_else(PoisonError::into_inner).next = Some((self.asked, job));
-        self.desk.changed.notify_one();
+        self.shared.tray.lock().unwrap_or_else(PoisonError::into_inner).next = Some((self.asked, job));
+        self.shared.changed.notify_one();
     }
 }
 
@@ -72,17 +72,17 @@ impl<J, A> Worker<J, A> {
     }
 }
 
-/// Does what is on the desk until it is closed.
-fn serve<J, A>(desk: &Desk<J>, answers: &Sender<(u64, A)>, wake: &Wake, mut work: impl FnMut(J) -> A) {
+/// Does what is on the shared until it is closed.
+fn serve<J, A>(shared: &Shared<J>, answers: &Sender<(u64, A)>, wake: &Wake, mut work: impl FnMut(J) -> A) {
     loop {
-        let mut tray = desk.tray.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut tray = shared.tray.lock().unwrap_or_else(PoisonError::into_inner);
         let (number, job) = loop {
             if tray.closed {
                 return;
             }
             match tray.next.take() {
                 Some(next) => break next,
-                None => tray = desk.changed.wait(tray).unwrap_or_else(PoisonError::into_inner),
+                None => tray = shared.changed.wait(tray).unwrap_or_else(PoisonError::into_inner),
             }
         };
         drop(tray);
@@ -95,10 +95,10 @@ fn serve<J, A>(desk: &Desk<J>, answers: &Sender<(u64, A)>, wake: &Wake, mut work
 
 impl<J, A> Drop for Worker<J, A> {
     fn drop(&mut self) {
-        let mut tray = self.desk.tray.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut tray = self.shared.tray.lock().unwrap_or_else(PoisonError::into_inner);
         (tray.closed, tray.next) = (true, None);
         drop(tray);
-        self.desk.changed.notify_one();
+        self.shared.changed.notify_one();
         if let Some(thread) = self.thread.take() {
             // A panic there has been printed; the window goes on without its answer.
             let _ = thread.join();

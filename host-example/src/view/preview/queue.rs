@@ -35,13 +35,13 @@ pub type Done = (u64, Result<ColorImage>);
 /// Makes previews beside the window. Dropping it waits for the one that is being made, which is given up.
 #[derive(Debug)]
 pub struct Queue {
-    desk: Arc<Desk>,
+    shared: Arc<Shared>,
     answers: Receiver<Done>,
     thread: Option<JoinHandle<()>>,
 }
 
 #[derive(Debug, Default)]
-struct Desk {
+struct Shared {
     tray: Mutex<Tray>,
     changed: Condvar,
 }
@@ -57,7 +57,7 @@ struct Tray {
     closed: bool,
 }
 
-impl Desk {
+impl Shared {
     fn tray(&self) -> MutexGuard<'_, Tray> {
         self.tray.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -75,9 +75,9 @@ impl Queue {
     /// # Errors
     /// [`Error::Failure`] when the system has no thread to give.
     pub fn new(library: Library, wake: Wake) -> Result<Self> {
-        let desk = Arc::new(Desk::default());
+        let shared = Arc::new(Shared::default());
         let (sender, answers) = channel();
-        let own = Arc::clone(&desk);
+        let own = Arc::clone(&shared);
         // One core is left to the window.
         let cores = thread::available_parallelism().map_or(1, usize::from);
         let threads = cores.saturating_sub(1).clamp(1, MOST_THREADS) as u32;
@@ -85,32 +85,32 @@ impl Queue {
             .name("previews".into())
             .spawn(move || serve(&own, &sender, &wake, Renderer::new(library, threads)))
             .map_err(|e| Error::failure(format!("no thread can be started: {e}"), "close other programs"))?;
-        Ok(Self { desk, answers, thread: Some(thread) })
+        Ok(Self { shared, answers, thread: Some(thread) })
     }
 
     /// Makes these from now on, in this order, and nothing else.
     pub fn follow(&self, mut tasks: Vec<Task>) {
-        let mut tray = self.desk.tray();
+        let mut tray = self.shared.tray();
         let running = tray.running.filter(|running| tasks.iter().any(|task| task.serial == *running));
         tasks.retain(|task| Some(task.serial) != running && !tray.made.contains(&task.serial));
         tasks.reverse();
         (tray.running, tray.tasks) = (running, tasks);
         drop(tray);
-        self.desk.changed.notify_one();
+        self.shared.changed.notify_one();
     }
 
     /// What was made since the last call.
     pub fn collect(&self) -> Vec<Done> {
         let done: Vec<Done> = self.answers.try_iter().collect();
-        let mut tray = self.desk.tray();
+        let mut tray = self.shared.tray();
         tray.made.retain(|serial| done.iter().all(|(made, _)| made != serial));
         done
     }
 }
 
-fn serve(desk: &Desk, answers: &Sender<Done>, wake: &Wake, mut renderer: Renderer) {
+fn serve(shared: &Shared, answers: &Sender<Done>, wake: &Wake, mut renderer: Renderer) {
     loop {
-        let mut tray = desk.tray();
+        let mut tray = shared.tray();
         let task = loop {
             if tray.closed {
                 return;
@@ -119,21 +119,21 @@ fn serve(desk: &Desk, answers: &Sender<Done>, wake: &Wake, mut renderer: Rendere
                 Some(task) => break task,
                 None => {
                     renderer.rest();
-                    tray = desk.changed.wait(tray).unwrap_or_else(PoisonError::into_inner);
+                    tray = shared.changed.wait(tray).unwrap_or_else(PoisonError::into_inner);
                 }
             }
         };
         let serial = task.serial;
         tray.running = Some(serial);
         drop(tray);
-        let make = || renderer.render(&task.picture, &task.order, &|| desk.is_cancelled(serial));
+        let make = || renderer.render(&task.picture, &task.order, &|| shared.is_cancelled(serial));
         // A look that fails in a way of its own spoils one preview.
         let made = catch_unwind(AssertUnwindSafe(make)).unwrap_or_else(|_| {
             let problem = format!("{} cannot be previewed", task.order.look.name);
             Err(Error::failure(problem, "this is a mistake in the program; please report it"))
         });
         let Some(made) = made.transpose() else { continue };
-        let mut tray = desk.tray();
+        let mut tray = shared.tray();
         // Another picture may have come when it was all but done.
         if tray.running.take() != Some(serial) {
             continue;
@@ -149,8 +149,8 @@ fn serve(desk: &Desk, answers: &Sender<Done>, wake: &Wake, mut renderer: Rendere
 
 impl Drop for Queue {
     fn drop(&mut self) {
-        self.desk.tray().closed = true;
-        self.desk.changed.notify_one();
+        self.shared.tray().closed = true;
+        self.shared.changed.notify_one();
         if let Some(thread) = self.thread.take() {
             // A panic there has been printed.
             let _ = thread.join();

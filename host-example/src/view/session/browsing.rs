@@ -12,10 +12,10 @@ use crate::view::browser::listing::Listing;
 use crate::view::browser::titling::{self, Titling, Words};
 use crate::view::comparison::Comparison;
 use crate::view::document::frame::Frame;
-use crate::view::easel::Compare;
 use crate::view::look::Look;
 use crate::view::preview::picture::Picture;
 use crate::view::saving::Saving;
+use crate::view::viewport::Compare;
 
 impl Session {
     /// Whether something else is shown instead of the picture.
@@ -78,8 +78,8 @@ impl Session {
         if panes.len() < 2 {
             return;
         }
-        let before = std::mem::replace(&mut self.easel.compare, Compare::Off);
-        self.easel.fit();
+        let before = std::mem::replace(&mut self.viewport.compare, Compare::Off);
+        self.viewport.fit();
         self.comparison = Some(Comparison { panes, before, from_browser: self.browser.is_open });
         self.browser.is_open = false;
     }
@@ -87,8 +87,8 @@ impl Session {
     /// Shows the picture, or the browser again if it was open before.
     pub fn end_comparison(&mut self) {
         if let Some(comparison) = self.comparison.take() {
-            self.easel.compare = comparison.before;
-            self.easel.fit();
+            self.viewport.compare = comparison.before;
+            self.viewport.fit();
             self.browser.is_open = comparison.from_browser;
         }
     }
@@ -109,7 +109,7 @@ impl Session {
         if !self.is_covered() || self.is_playing() && self.previews.picture().is_some() {
             return;
         }
-        let exposure = self.easel.exposure.exp2();
+        let exposure = self.viewport.exposure.exp2();
         let known = self.previews.picture();
         let picture = match &self.reel {
             Some(reel) => {
@@ -133,7 +133,7 @@ impl Session {
     /// The scene looks like this from now on.
     pub fn show_scene_frame(&mut self, frame: Frame) {
         let size = (frame.width, frame.height);
-        let exposure = self.easel.exposure.exp2();
+        let exposure = self.viewport.exposure.exp2();
         self.previews.set_picture(Arc::new(Picture { frame: Arc::new(frame), size, exposure }));
     }
 

@@ -5,8 +5,8 @@ use egui::{
 };
 
 use super::theme;
-use crate::view::easel::Compare;
 use crate::view::session::{Session, Which};
+use crate::view::viewport::Compare;
 
 /// Radians per point of dragging.
 const TURN: f32 = 0.008;
@@ -26,7 +26,7 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session) {
         scroll(ui, pointer, session);
     }
     session.pointer = pointer.filter(|_| response.hovered()).map(|at| pixels(ui, at));
-    if session.easel.compare == Compare::Wipe && !session.easel.peek {
+    if session.viewport.compare == Compare::Wipe && !session.viewport.peek {
         wipe(ui, rect, session);
     }
     names(ui, rect, session);
@@ -60,7 +60,7 @@ pub fn drag(ui: &Ui, response: &egui::Response, session: &mut Session) {
         }
         _ => {
             let scale = ui.pixels_per_point();
-            session.easel.pan(size, [by.x * scale, by.y * scale]);
+            session.viewport.pan(size, [by.x * scale, by.y * scale]);
         }
     }
 }
@@ -87,20 +87,20 @@ pub fn scroll(ui: &Ui, pointer: Option<Pos2>, session: &mut Session) {
     let size = session.nominal_size();
     match (&mut session.scenery, pointer) {
         (Some(scenery), _) if !magnifies => scenery.orbit().zoom(NEARER.powf(notches)),
-        (_, Some(at)) => session.easel.zoom_about(size, pixels(ui, at), LARGER.powf(notches)),
+        (_, Some(at)) => session.viewport.zoom_about(size, pixels(ui, at), LARGER.powf(notches)),
         _ => {}
     }
 }
 
 /// The line between before and after, with its handle.
 fn wipe(ui: &Ui, rect: Rect, session: &mut Session) {
-    let x = session.easel.split() / ui.pixels_per_point();
+    let x = session.viewport.split() / ui.pixels_per_point();
     let grip = Rect::from_center_size(pos2(x, rect.center().y), vec2(18.0, rect.height()));
     let response = ui.interact(grip.intersect(rect), Id::unique("wipe"), Sense::drag());
     if response.dragged()
         && let Some(at) = response.interact_pointer_pos()
     {
-        session.easel.wipe = ((at.x - rect.left()) / rect.width().max(1.0)).clamp(0.0, 1.0);
+        session.viewport.wipe = ((at.x - rect.left()) / rect.width().max(1.0)).clamp(0.0, 1.0);
     }
     let response = response.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Wipe"));
@@ -129,12 +129,12 @@ fn names(ui: &Ui, rect: Rect, session: &Session) {
         Which::Compared => session.compared.as_ref().map_or_else(String::new, |look| look.name.clone()),
     };
     let [left, right] = session.shown();
-    if session.easel.peek {
+    if session.viewport.peek {
         tag(ui, rect.left_top() + vec2(12.0, 12.0), Align2::LEFT_TOP, "Original");
-    } else if session.easel.compare != Compare::Off {
-        let split = session.easel.split() / ui.pixels_per_point();
+    } else if session.viewport.compare != Compare::Off {
+        let split = session.viewport.split() / ui.pixels_per_point();
         tag(ui, rect.left_top() + vec2(12.0, 12.0), Align2::LEFT_TOP, &name(left));
-        let place = match session.easel.compare {
+        let place = match session.viewport.compare {
             Compare::Side => (pos2(split + 12.0, rect.top() + 12.0), Align2::LEFT_TOP),
             _ => (rect.right_top() + vec2(-12.0, 12.0), Align2::RIGHT_TOP),
         };

@@ -26,10 +26,10 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session) {
         (Some(reel), _) => reel.size().0 as f32 / reel.size().1.max(1) as f32,
         _ => rect.width() / rect.height().max(1.0),
     };
-    let areas = comparison::areas(looks.len(), session.easel.area, aspect);
+    let areas = comparison::areas(looks.len(), session.viewport.area, aspect);
     let Some(first) = areas.first().copied() else { return };
     // Pan and zoom are those of the first pane.
-    session.easel.area = first;
+    session.viewport.area = first;
     let mut taken = None;
     for (index, (look, area)) in looks.iter().zip(&areas).enumerate() {
         let points = Rect::from_min_size(pos2(area.x, area.y) / scale, vec2(area.width, area.height) / scale);
@@ -60,7 +60,7 @@ fn pane(
         let from_first = |at: egui::Pos2| at - vec2(by[0], by[1]) / ui.pixels_per_point();
         canvas::scroll(ui, response.hover_pos().map(from_first), session);
     }
-    let [_, place] = session.easel.places(session.nominal_size());
+    let [_, place] = session.viewport.places(session.nominal_size());
     let place = Area { x: place.x + by[0], y: place.y + by[1], ..place };
     if let Some(picture) = session.previews.picture().cloned() {
         ask(ui, rect, session, index, look, place, &picture);
@@ -71,7 +71,7 @@ fn pane(
     let context = ui.ctx().clone();
     let mut is_current = false;
     // Single pixels are seen from twice their size on, as on the canvas.
-    let is_large = session.easel.scale(session.nominal_size()) >= 2.0;
+    let is_large = session.viewport.scale(session.nominal_size()) >= 2.0;
     for (of, crisp) in [(Place::Pane(index), false), (Place::Detail(index), is_large)] {
         if let Some(preview) = session.previews.get(&context, of, crisp) {
             is_current = preview.is_current;

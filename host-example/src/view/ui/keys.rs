@@ -3,8 +3,8 @@
 use winit::keyboard::{Key, NamedKey};
 
 use crate::view::browser::Step;
-use crate::view::easel::Compare;
 use crate::view::session::{Session, Wish};
+use crate::view::viewport::Compare;
 
 /// Keys and what they do, for the help of the program and of the window.
 pub const KEYS: [(&str, &str); 27] = [
@@ -61,10 +61,10 @@ pub fn press(session: &mut Session, key: &Key) {
                 scenery.use_file_camera();
             }
         }
-        Key::Character("w") => session.easel.compare = toggled(session.easel.compare, Compare::Wipe),
-        Key::Character("e") => session.easel.compare = toggled(session.easel.compare, Compare::Side),
-        Key::Character("z") => session.easel.toggle_actual(),
-        Key::Character("0") => session.easel.fit(),
+        Key::Character("w") => session.viewport.compare = toggled(session.viewport.compare, Compare::Wipe),
+        Key::Character("e") => session.viewport.compare = toggled(session.viewport.compare, Compare::Side),
+        Key::Character("z") => session.viewport.toggle_actual(),
+        Key::Character("0") => session.viewport.fit(),
         Key::Character("p") => session.settings.panel_hidden = !session.settings.panel_hidden,
         Key::Character("r") => session.reset_all(),
         Key::Character(text) => {

@@ -65,7 +65,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     let scale = ui.pixels_per_point();
     let [x, y] = [rect.min.x, rect.min.y].map(|v| (v * scale).round());
     let [right, bottom] = [rect.max.x, rect.max.y].map(|v| (v * scale).round());
-    session.easel.area = Area { x, y, width: (right - x).max(1.0), height: (bottom - y).max(1.0) };
+    session.viewport.area = Area { x, y, width: (right - x).max(1.0), height: (bottom - y).max(1.0) };
     if session.is_covered() {
         session.pointer = None;
     }

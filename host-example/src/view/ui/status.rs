@@ -104,29 +104,30 @@ fn magnification(ui: &mut Ui, session: &mut Session) {
         size(ui, session);
         ui.add_space(8.0);
     }
-    let stops = DragValue::new(&mut session.easel.exposure).range(-10.0..=10.0).speed(0.02).max_decimals(2);
+    let stops =
+        DragValue::new(&mut session.viewport.exposure).range(-10.0..=10.0).speed(0.02).max_decimals(2);
     let label = ui.label(RichText::new("Exposure").color(theme::FAINT));
     let stops = ui.add(stops.suffix(" stops")).labelled_by(label.id);
     if stops
         .on_hover_text("Brightness of what is shown, not of what is saved; a double click sets it back")
         .double_clicked()
     {
-        session.easel.exposure = 0.0;
+        session.viewport.exposure = 0.0;
     }
 }
 
 /// How large the picture is shown.
 fn size(ui: &mut Ui, session: &mut Session) {
-    let scale = session.easel.scale(session.nominal_size());
+    let scale = session.viewport.scale(session.nominal_size());
     if ui
-        .add(Button::new("Fit").selected(session.easel.is_fitting()))
+        .add(Button::new("Fit").selected(session.viewport.is_fitting()))
         .on_hover_text("All of the picture (0)")
         .clicked()
     {
-        session.easel.fit();
+        session.viewport.fit();
     }
     let percent = format!("{:.0} %", scale * 100.0);
     if ui.add(Button::new(percent)).on_hover_text("Pixels as large as the screen's (z)").clicked() {
-        session.easel.toggle_actual();
+        session.viewport.toggle_actual();
     }
 }

@@ -3,8 +3,8 @@
 use egui::{Button, RichText, Ui};
 
 use super::theme;
-use crate::view::easel::{Compare, Overlay};
 use crate::view::session::{Session, Wish};
+use crate::view::viewport::{Compare, Overlay};
 
 /// Points of the bar, beside the menu, up to which the name is left out.
 const NARROW: f32 = 660.0;
@@ -115,12 +115,12 @@ fn compare(ui: &mut Ui, session: &mut Session) {
         (Compare::Wipe, "Wipe", "Before and after, divided by a line that can be dragged (w)"),
         (Compare::Side, "Side by side", "Before and after beside each other (e)"),
     ] {
-        if ui.selectable_label(session.easel.compare == compare, text).on_hover_text(hint).clicked() {
-            session.easel.compare = compare;
+        if ui.selectable_label(session.viewport.compare == compare, text).on_hover_text(hint).clicked() {
+            session.viewport.compare = compare;
         }
     }
     ui.spacing_mut().item_spacing.x = 8.0;
-    if session.easel.compare == Compare::Off {
+    if session.viewport.compare == Compare::Off {
         return;
     }
     let name = session.compared.as_ref().map_or("Original", |look| look.name.as_str());
@@ -149,9 +149,9 @@ fn compare(ui: &mut Ui, session: &mut Session) {
 fn overlays(ui: &mut Ui, session: &mut Session) {
     let now = Overlay::ALL
         .iter()
-        .find(|(overlay, _)| *overlay == session.easel.overlay)
+        .find(|(overlay, _)| *overlay == session.viewport.overlay)
         .map_or("", |(_, name)| name);
-    let shown = if session.easel.overlay == Overlay::None { "Show" } else { now };
+    let shown = if session.viewport.overlay == Overlay::None { "Show" } else { now };
     egui::ComboBox::from_id_salt("overlay")
         .selected_text(shown)
         .width(70.0)
@@ -160,7 +160,7 @@ fn overlays(ui: &mut Ui, session: &mut Session) {
                 if !session.has_overlay(overlay) {
                     continue;
                 }
-                ui.selectable_value(&mut session.easel.overlay, overlay, name);
+                ui.selectable_value(&mut session.viewport.overlay, overlay, name);
             }
         })
         .response

@@ -61,7 +61,7 @@ const ZOOMS: [f32; 2] = [1.0 / 32.0, 64.0];
 
 /// The arrangement that an artist has made.
 #[derive(Clone, Debug)]
-pub struct Easel {
+pub struct Viewport {
     /// How pictures are compared.
     pub compare: Compare,
     /// Where the line of the wipe is, as a share of the canvas from the left.
@@ -80,7 +80,7 @@ pub struct Easel {
     offset: [f32; 2],
 }
 
-impl Default for Easel {
+impl Default for Viewport {
     fn default() -> Self {
         Self {
             compare: Compare::Off,
@@ -95,7 +95,7 @@ impl Default for Easel {
     }
 }
 
-impl Easel {
+impl Viewport {
     /// The part of the canvas that belongs to each picture.
     pub fn halves(&self) -> [Area; 2] {
         let area = self.area;
@@ -187,37 +187,37 @@ impl Easel {
 mod tests {
     use super::*;
 
-    fn easel() -> Easel {
-        Easel { area: Area { x: 10.0, y: 20.0, width: 400.0, height: 300.0 }, ..Easel::default() }
+    fn viewport() -> Viewport {
+        Viewport { area: Area { x: 10.0, y: 20.0, width: 400.0, height: 300.0 }, ..Viewport::default() }
     }
 
     #[test]
     fn pictures_fit_and_stay_under_the_cursor_when_zoomed() {
-        let mut easel = easel();
+        let mut viewport = viewport();
         let size = (200, 100);
-        assert_eq!(easel.places(size)[1], Area { x: 10.0, y: 70.0, width: 400.0, height: 200.0 });
-        assert_eq!(easel.pixel(size, [10.0, 70.0]), Some((0, 0)));
-        assert_eq!(easel.pixel(size, [409.0, 269.0]), Some((199, 99)));
-        assert_eq!(easel.pixel(size, [10.0, 69.0]), None);
+        assert_eq!(viewport.places(size)[1], Area { x: 10.0, y: 70.0, width: 400.0, height: 200.0 });
+        assert_eq!(viewport.pixel(size, [10.0, 70.0]), Some((0, 0)));
+        assert_eq!(viewport.pixel(size, [409.0, 269.0]), Some((199, 99)));
+        assert_eq!(viewport.pixel(size, [10.0, 69.0]), None);
         let cursor = [110.5, 120.5];
-        let before = easel.pixel(size, cursor);
-        easel.zoom_about(size, cursor, 4.0);
-        assert_eq!(easel.pixel(size, cursor), before);
-        assert_eq!(easel.scale(size), 8.0);
-        easel.zoom_about(size, cursor, 1e9);
-        assert_eq!(easel.scale(size), 64.0);
-        easel.fit();
-        assert_eq!(easel.scale(size), 2.0);
+        let before = viewport.pixel(size, cursor);
+        viewport.zoom_about(size, cursor, 4.0);
+        assert_eq!(viewport.pixel(size, cursor), before);
+        assert_eq!(viewport.scale(size), 8.0);
+        viewport.zoom_about(size, cursor, 1e9);
+        assert_eq!(viewport.scale(size), 64.0);
+        viewport.fit();
+        assert_eq!(viewport.scale(size), 2.0);
     }
 
     #[test]
     fn side_by_side_both_pictures_show_the_same_pixel_alike() {
-        let mut easel = Easel { compare: Compare::Side, ..easel() };
+        let mut viewport = Viewport { compare: Compare::Side, ..viewport() };
         let size = (100, 100);
-        let [left, right] = easel.places(size);
+        let [left, right] = viewport.places(size);
         assert_eq!((left.width, right.x - left.x), (200.0, 200.0));
-        assert_eq!(easel.pixel(size, [60.0, 170.0]), easel.pixel(size, [260.0, 170.0]));
-        easel.pan(size, [20.0, -10.0]);
-        assert_eq!(easel.pixel(size, [80.0, 160.0]), easel.pixel(size, [280.0, 160.0]));
+        assert_eq!(viewport.pixel(size, [60.0, 170.0]), viewport.pixel(size, [260.0, 170.0]));
+        viewport.pan(size, [20.0, -10.0]);
+        assert_eq!(viewport.pixel(size, [80.0, 160.0]), viewport.pixel(size, [280.0, 160.0]));
     }
 }

@@ -53,7 +53,7 @@ pub struct Part {
 }
 
 /// A look on its way to the canvas.
-pub struct Lane {
+pub struct LiveLook {
     worker: Worker<Job, (Recipe, Result<Ready>)>,
     kernels: Arc<Kernels>,
     ready: Option<Ready>,
@@ -66,8 +66,8 @@ pub struct Lane {
     shown: Option<(wgpu::TextureView, Kind, IsophoteSpace)>,
 }
 
-impl Lane {
-    /// A lane without a look.
+impl LiveLook {
+    /// No look yet.
     ///
     /// # Errors
     /// As [`Worker::new`].
@@ -145,7 +145,7 @@ impl Lane {
         self.worker.is_busy() && self.asked.is_some()
     }
 
-    /// A number that grows with every change of what the lane gives.
+    /// A number that grows with every change of what it gives.
     pub fn revision(&self) -> u64 {
         self.revision
     }

@@ -25,7 +25,7 @@ use crate::apply::exr::Selection;
 use crate::error::{Error, Result};
 use crate::loader::Library;
 use crate::loader::contract::IsophoteRequest;
-use crate::render::background::Background;
+use crate::render::background::Background as Surround;
 use crate::scene::environment::Environment;
 use crate::scene::{Scene, camera, floor};
 
@@ -48,7 +48,7 @@ enum Opened {
     /// One of several, with what is wrong with others and how many were left.
     Among(Box<Opened>, Vec<Error>, usize),
     Look(Box<Look>),
-    Surroundings(Background, PathBuf),
+    Surroundings(Surround, PathBuf),
 }
 
 /// What a dialog is for.
@@ -74,7 +74,7 @@ impl Dialog {
 }
 
 /// The work beside the window.
-pub struct Desk {
+pub struct Background {
     opener: Worker<Job, Result<Opened>>,
     critic: Worker<Question, idle::Answer>,
     /// Reads looks again whose files have changed.
@@ -92,7 +92,7 @@ pub struct Desk {
     over: bool,
 }
 
-impl Desk {
+impl Background {
     /// Starts the threads.
     ///
     /// # Errors
@@ -387,7 +387,7 @@ fn open(job: Job) -> Result<Opened> {
         Job::Look(library, path) => Opened::Look(Box::new(Look::open(&library, &path)?)),
         Job::Surroundings(path) => {
             let environment = Arc::new(Environment::read(&path)?);
-            Opened::Surroundings(Background::Environment(environment), path)
+            Opened::Surroundings(Surround::Environment(environment), path)
         }
     })
 }
@@ -442,7 +442,7 @@ fn take(session: &mut Session, opened: Opened) {
             }
         }
         Opened::Scene(scene, file) => {
-            let area = session.easel.area;
+            let area = session.viewport.area;
             let name = file.as_ref().and_then(|file| file.file_name());
             let name = name.map_or_else(|| "Demo".into(), |name| name.to_string_lossy().into_owned());
             if let Some(warning) = scene.warnings.first() {
