@@ -73,6 +73,22 @@ pub struct Options {
 
 /// Smooths a colour along the stream lines of `tensors`; pixels count by their coverage.
 pub fn pass(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: &Options) -> ImageId {
+    let field = orientation_field::pass(plan, tensors);
+    convolved(plan, [color, tensors, field], options)
+}
+
+/// The same where lengths are never adapted: the orientation field is all that is read of the tensors.
+pub fn pass_unadapted(
+    plan: &mut PlanBuilder,
+    color: ImageId,
+    tensors: ImageId,
+    options: &Options,
+) -> ImageId {
+    let field = orientation_field::pass(plan, tensors);
+    convolved(plan, [color, field, field], &Options { adapt: Adapt::None, ..*options })
+}
+
+fn convolved(plan: &mut PlanBuilder, inputs: [ImageId; 3], options: &Options) -> ImageId {
     let params = Params {
         sigma: options.sigma,
         step: options.step.max(MIN_STEP),
@@ -83,10 +99,7 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, tensors: ImageId, options: &
         adapt: options.adapt as u32,
         nearest: options.nearest.into(),
     };
-    let field = orientation_field::pass(plan, tensors);
-    // Anisotropy is all that the field does not say.
-    let here = if options.adapt == Adapt::Anisotropy { tensors } else { field };
-    plan.pass(&KERNEL, &[color, here, field], &params, Class::Colour, Support::Pixels(reach(&params) as u32))
+    plan.pass(&KERNEL, &inputs, &params, Class::Colour, Support::Pixels(reach(&params) as u32))
 }
 
 /// Cosine of the greatest turn that a line survives, `max_angle` degrees; 0 for any.

@@ -231,7 +231,7 @@ impl Filter {
         match tensor {
             Some(tensor) if self.sigma_a > 0.0 => {
                 let last = Lic { sigma: self.sigma_a, ..lic::unadapted() };
-                line_integral_convolution::pass(plan, color, tensor, &last)
+                line_integral_convolution::pass_unadapted(plan, color, tensor, &last)
             }
             _ => color,
         }

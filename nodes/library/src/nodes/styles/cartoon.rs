@@ -159,7 +159,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let sigma_a = scope.float("sigma_a");
     if sigma_a > 0.0 {
         let smooth = Lic { sigma: sigma_a, ..lic::unadapted() };
-        return line_integral_convolution::pass(scope.plan, drawn, tensor, &smooth);
+        return line_integral_convolution::pass_unadapted(scope.plan, drawn, tensor, &smooth);
     }
     drawn
 }

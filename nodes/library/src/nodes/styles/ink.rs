@@ -10,7 +10,7 @@ use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::shared::stream::Integrator;
-use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
+use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::kernels::structure::contrast;
 use crate::kernels::structure::solid_noise::Marks;
 use crate::kernels::structure::tensor_display::least_significant;
@@ -121,8 +121,8 @@ fn strokes(scope: &mut Scope<'_>, tensor: ImageId, [width, length]: [f32; 2]) ->
     let soft = marks::grains(scope, width * scale, seed);
     let Marks { deviation, .. } = Marks::of_smoothed_noise(width * scale, scale, seed);
     // Noise is about as fine as pixels: none may be left out.
-    let options = Lic { sigma: length * scale, adapt: Adapt::None, ..lic::options() };
-    let long = line_integral_convolution::pass(scope.plan, soft, tensor, &options);
+    let options = Lic { sigma: length * scale, ..lic::options() };
+    let long = line_integral_convolution::pass_unadapted(scope.plan, soft, tensor, &options);
     // A Gaussian along lines leaves this share of the deviation.
     let left = (width / length.hypot(width)).sqrt();
     const DEVIATION: f32 = 0.22;

@@ -133,13 +133,12 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let dilation_length = scope.float("dilation_length") * length;
     let strokes = flow_dilation::pass(scope.plan, flat, tensors, grains, dilation_length, true);
     // Grains are about as fine as pixels: none may be left out.
-    let along = |sigma: f32, adapt: Adapt| Lic { sigma, adapt, ..lic::options() };
+    let along = |sigma: f32| Lic { sigma, adapt: Adapt::Anisotropy, ..lic::options() };
     let sigma_t = scope.float("sigma_t") * length;
-    let mut painted =
-        line_integral_convolution::pass(scope.plan, strokes, tensors, &along(sigma_t, Adapt::Anisotropy));
+    let mut painted = line_integral_convolution::pass(scope.plan, strokes, tensors, &along(sigma_t));
 
     let sigma_b = scope.float("sigma_b") * length;
-    let heights = line_integral_convolution::pass(scope.plan, grains, tensors, &along(sigma_b, Adapt::None));
+    let heights = line_integral_convolution::pass_unadapted(scope.plan, grains, tensors, &along(sigma_b));
     // The marks of a proxy are those of the full picture, seen from further away.
     let gain = evenness(sigma_n / scale, sigma_b / scale);
     let relief = Relief {
