@@ -95,6 +95,29 @@ fn flow_log(through: PixelSteps) -> f32 {
     return sum * step / (2.5066283 * (params.sigma * params.sigma) * params.sigma);
 }
 
+// The pixel whose luma, times the sign, is greatest among those looked at.
+struct Found {
+    extreme: f32,
+    best: vec4f,
+}
+
+// Looks at the pixel `along` steps on and `across` to the side. One covered less than `least`, much less than the
+// centre, knows little of its own colour.
+fn look_at(found: ptr<function, Found>, line: Line, along: i32, across: f32, sign: f32, least: f32) {
+    let v = fetch(source, 0u, pixel_on(line, along, i32(floor(across))));
+    let value = sign * luma(v.rgb);
+    if value > (*found).extreme && v.a >= least {
+        *found = Found(value, v);
+    }
+}
+
+// Looks at the pixels on both sides of the line, one and the same where it meets a centre.
+fn look_beside(found: ptr<function, Found>, line: Line, along: i32, sign: f32, least: f32) {
+    let across = f32(along) * line.slope;
+    look_at(found, line, along, across + 0.999, sign, least);
+    look_at(found, line, along, across + 0.001, sign, least);
+}
+
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
@@ -112,27 +135,17 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let sign = select(1.0, -1.0, z > 0.0);
         let wanted = floor((params.radius + 1e-3) * through.share) * params.scale;
         let steps = i32(ceil(wanted));
-        var extreme = sign * luma(origin.rgb);
-        var whole = best;
+        var found = Found(sign * luma(origin.rgb), origin);
+        var whole = origin;
         for (var k = 1; k <= steps; k++) {
             if f32(k) > wanted {
                 // The last step counts by its share.
-                whole = best;
+                whole = found.best;
             }
-            for (var side = 1; side >= -1; side -= 2) {
-                let across = f32(side * k) * line.slope;
-                for (var next = 0.999; next > 0.0; next -= 0.998) {
-                    // The pixels on both sides of the line; one and the same where it meets a centre.
-                    let v = fetch(source, 0u, pixel_on(line, side * k, i32(floor(across + next))));
-                    let value = sign * luma(v.rgb);
-                    // A pixel much less covered than this one knows little of its own colour.
-                    if value > extreme && v.a >= 0.5 * origin.a {
-                        extreme = value;
-                        best = v;
-                    }
-                }
-            }
+            look_beside(&found, line, k, sign, 0.5 * origin.a);
+            look_beside(&found, line, -k, sign, 0.5 * origin.a);
         }
+        best = found.best;
         if f32(steps) > wanted {
             best = whole + (best - whole) * (wanted - floor(wanted));
         }
