@@ -287,8 +287,17 @@ fn the_benchmark_reports_every_pass() {
         passes.iter().map(|p| p["kernel"].as_str().expect("a kernel").to_owned()).collect()
     };
     assert!(kernels(0).len() > 5);
-    // An adapter without timestamps tells nothing of its passes.
-    assert!(kernels(1).is_empty() || kernels(1) == kernels(0));
+    // A dispatch may do the work of several passes, where the last of them stands. An adapter without timestamps tells
+    // nothing of either.
+    let sorted = |names: Vec<String>| {
+        let single = names.iter().flat_map(|name| name.split('+'));
+        let mut single: Vec<String> =
+            single.map(|name| name.split('@').next().unwrap_or_default().to_owned()).collect();
+        single.sort();
+        single
+    };
+    assert!(kernels(1).is_empty() || sorted(kernels(1)) == sorted(kernels(0)));
+    assert!(results[1]["bytes"].as_u64().is_some_and(|bytes| bytes > 96 * 64 * 100));
     for result in results {
         assert!(result["milliseconds"].as_f64().is_some_and(|v| v > 0.0));
         assert!(result["megapixels_per_second"].as_f64().is_some_and(|v| v > 0.0));

@@ -343,6 +343,7 @@ fn a_thousand_moves_of_a_slider_and_two_hundred_switches_of_the_style_leave_noth
             |warm, end| {
                 assert_eq!(warm.objects, end.objects, "nothing is made for a move");
                 assert_eq!(warm.made, end.made);
+                eprintln!("DEBUG {:?} {:?} made {} {}", warm.uploads, end.uploads, warm.made, end.made);
                 assert!(end.uploads >= warm.uploads + 800, "{} to {}", warm.uploads, end.uploads);
                 let grown = end.memory.saturating_sub(warm.memory);
                 eprintln!("1000 moves: {} KiB more of {} MiB", grown >> 10, end.memory >> 20);

@@ -485,10 +485,12 @@ fn a_failed_update_leaves_the_plan_as_it_was() {
         assert_eq!((api.graph_set_float)(graph, 0, c("mix").as_ptr(), 0.5), ISOPHOTE_OK);
         assert_eq!((api.plan_update)(plan, graph, null(), &raw mut change), ISOPHOTE_OK);
         assert_eq!(change, ISOPHOTE_CHANGE_STRUCTURE);
-        assert_eq!(passes().len(), before.len() + 1);
+        // The picture that is mixed in joins a pass, whose parameters are more then.
+        let mixed = bytes(passes());
+        assert_ne!(mixed.iter().flatten().count(), before.iter().flatten().count());
         // The plan does not need its graph.
         assert_eq!((api.graph_destroy)(graph), ISOPHOTE_OK);
-        assert_eq!(bytes(passes()).len(), before.len() + 1);
+        assert_eq!(bytes(passes()), mixed);
         (api.plan_destroy)(plan);
     }
 }

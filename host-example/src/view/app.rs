@@ -78,7 +78,8 @@ pub struct App {
     hidden: bool,
     /// When the next frame is wanted, if nothing happens before.
     due: Option<Instant>,
-    titled: Option<Instant>,
+    /// What the title tells, and since when.
+    titled: Option<(Instant, String)>,
     /// Events for the next frame.
     late: Vec<egui::Event>,
 }
@@ -273,6 +274,7 @@ impl App {
         let delay = delay.filter(|delay| *delay < Duration::from_secs(3600));
         self.due = delay.map(|delay| Instant::now() + delay);
         if drawn == Drawn::Skipped {
+            self.entitle();
             self.want(Duration::from_millis(10));
         }
         if self.session.reel.as_ref().is_some_and(Reel::is_waiting) {
@@ -316,10 +318,7 @@ impl App {
             let size = window.inner_size();
             session.record.count(&look, (size.width, size.height), took);
         }
-        if self.titled.is_none_or(|at| at.elapsed() > TITLE) {
-            self.titled = Some(Instant::now());
-            window.set_title(&session.title());
-        }
+        self.entitle();
         self.revivals = 0;
         if let Some(delay) = self.pace.next(drawn, took) {
             self.want(delay);
@@ -328,6 +327,28 @@ impl App {
             self.want(Duration::ZERO);
         }
         Ok(())
+    }
+
+    /// What a window does that is not seen: what was dropped on it is opened, and its title says so.
+    fn attend(&mut self) {
+        self.background.collect(&mut self.session);
+        // There is nothing to copy from what is not seen.
+        let _ = self.background.grant(&mut self.session);
+        self.entitle();
+    }
+
+    /// Lets the title tell what is shown: at once, or with a later frame where it did so a moment ago.
+    fn entitle(&mut self) {
+        let (Some(window), title) = (&self.window, self.session.title()) else { return };
+        let pause = self.titled.as_ref().map(|(at, _)| TITLE.saturating_sub(at.elapsed()));
+        match pause {
+            _ if self.titled.as_ref().is_some_and(|(_, told)| *told == title) => {}
+            Some(pause) if !pause.is_zero() => self.want(pause),
+            _ => {
+                window.set_title(&title);
+                self.titled = Some((Instant::now(), title));
+            }
+        }
     }
 
     /// What a key does, unless something is being typed.
@@ -457,6 +478,10 @@ impl ApplicationHandler<Event> for App {
             event_loop.exit();
             return;
         }
+        if self.hidden && self.due.is_some_and(|due| due <= Instant::now()) {
+            self.due = None;
+            self.attend();
+        }
         let revival = self.revive(event_loop);
         let always = self.session.is_playing() || self.session.record.limit.is_some();
         let due = if always { Some(Instant::now()) } else { self.due };
@@ -472,7 +497,8 @@ impl ApplicationHandler<Event> for App {
         }
         let closing = self.background.is_closing().then(|| Instant::now() + CLOSING);
         // A picture that stands still costs nothing.
-        let next = [due, revival, closing].into_iter().flatten().min();
+        let unseen = self.due.filter(|_| self.hidden);
+        let next = [due, unseen, revival, closing].into_iter().flatten().min();
         event_loop.set_control_flow(next.map_or(ControlFlow::Wait, ControlFlow::WaitUntil));
     }
 

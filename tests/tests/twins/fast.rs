@@ -1,7 +1,8 @@
 //! Twins where the shader reads and writes 16-bit floats, and interpolates by samplers if it can: the difference stays below
 //! the kernel's second tolerance.
 
-use super::{Tally, spoiled};
+use super::spoiled;
+use super::tally::Tally;
 use isophote_engine::Kernel;
 use isophote_engine::cpu::Control;
 use isophote_engine::program::{Format, Precision, Program};
