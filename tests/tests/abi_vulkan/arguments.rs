@@ -28,10 +28,8 @@ fn a_host_is_told_what_its_device_needs() {
     assert_eq!((status, needs.extension_count), (ISOPHOTE_OK, 0));
     assert_eq!(needs.features, 3);
     // SAFETY: null is what must not matter.
-    assert_eq!(
-        unsafe { (table.needs)(vk::API_VERSION_1_2, null_mut(), null_mut()) },
-        ISOPHOTE_ERROR_INVALID_ARGUMENT
-    );
+    let status = unsafe { (table.needs)(vk::API_VERSION_1_2, null_mut(), null_mut()) };
+    assert_eq!(status, ISOPHOTE_ERROR_INVALID_ARGUMENT);
 }
 
 /// Calls of `create` that are refused: with which status, and how the message begins.

@@ -156,7 +156,7 @@ impl Host {
             let timelines = is_old.then(|| khr::timeline_semaphore::Device::new(&instance, &device));
             let pictures = Mutex::default();
             Ok(Self {
-                entry: entry,
+                entry,
                 instance,
                 physical,
                 device,

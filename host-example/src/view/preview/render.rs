@@ -55,12 +55,15 @@ impl PartialEq for Order {
     }
 }
 
+/// A frame, the size that it has in a preview, the part of it that was read, and what was read.
+type Read = (Arc<Frame>, (u32, u32), Part, Frame);
+
 /// Makes previews, one after the other.
 pub struct Renderer {
     library: Library,
     threads: u32,
     /// The part of the picture that was read last, for the next look on it.
-    read: Option<(Arc<Frame>, (u32, u32), Part, Frame)>,
+    read: Option<Read>,
 }
 
 impl Renderer {
