@@ -285,21 +285,13 @@ struct Held {
     memory: u64,
     objects: Vec<(&'static str, usize)>,
     made: u64,
-    uploads: u64,
-    is_software: bool,
 }
 
 impl Held {
     fn now(app: &App) -> Self {
         let counts = app.counts().unwrap();
         let gpu = app.gpu().unwrap();
-        Self {
-            memory: resident(),
-            objects: objects(gpu),
-            made: counts.objects,
-            uploads: counts.uploads,
-            is_software: gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu,
-        }
+        Self { memory: resident(), objects: objects(gpu), made: counts.objects }
     }
 }
 
@@ -343,16 +335,17 @@ fn a_thousand_moves_of_a_slider_and_two_hundred_switches_of_the_style_leave_noth
     let name = "a_thousand_moves_of_a_slider_and_two_hundred_switches_of_the_style_leave_nothing_behind";
     alone(name, |folder| {
         let session = session(folder, &["gaussian", "cartoon", "blueprint", "ink"], (96, 64));
+        // It changes the passes, so that each move makes all of them anew.
         let moves = repeat(
             1000,
             100,
             |app, step| set(app, "mix", 0.2 + (step % 50) as f32 / 100.0),
             |warm, end| {
-                assert_eq!(warm.objects, end.objects, "nothing is made for a move");
+                assert_eq!(
+                    warm.objects, end.objects,
+                    "what a move has made anew takes the place of what was"
+                );
                 assert_eq!(warm.made, end.made);
-                // Where the processor draws, pictures are smaller while a slider moves, by a plan of their own.
-                let is_whole = end.uploads >= warm.uploads + 800;
-                assert!(is_whole || end.is_software, "{} to {}", warm.uploads, end.uploads);
                 let grown = end.memory.saturating_sub(warm.memory);
                 eprintln!("1000 moves: {} KiB more of {} MiB", grown >> 10, end.memory >> 20);
                 assert!(grown < 900 * OF_A_MOVE, "{} MiB to {} MiB", warm.memory >> 20, end.memory >> 20);
