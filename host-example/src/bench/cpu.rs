@@ -69,6 +69,7 @@ pub fn run(library: &Library, subject: &Subject, picture: &Pixels, runs: u32) ->
                 kernel: pass.kernel.clone(),
                 seconds: seconds(at),
                 pixels: pass.pixels,
+                bytes: None,
                 work: Some((pass.operations, pass.bytes as f64)),
             })
             .collect(),

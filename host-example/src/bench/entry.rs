@@ -28,6 +28,8 @@ pub struct PassEntry {
     pub seconds: f64,
     /// Pixels written.
     pub pixels: u64,
+    /// Bytes that it reads from and writes to textures, on the GPU.
+    pub bytes: Option<u64>,
     /// Multiply-adds and bytes, on the CPU.
     pub work: Option<(f64, f64)>,
 }

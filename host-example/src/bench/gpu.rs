@@ -66,7 +66,7 @@ impl Bench {
         }
         let totals = (0..runs).map(|_| self.once(&mut runner)).collect::<Result<Vec<f64>>>()?;
         let mut passes = passes(&plan).map_err(refused)?;
-        let bytes = bytes(&plan).map_err(refused)?;
+        let bytes = passes.iter().filter_map(|pass| pass.bytes).sum();
         match Timer::new(&self.gpu, passes.len()) {
             Some(timer) => {
                 let times =
@@ -133,21 +133,16 @@ impl Bench {
     }
 }
 
-/// Bytes that all passes of a plan read from and write to textures, each texel once a pass.
-fn bytes(plan: &Plan) -> Answer<u64> {
-    let textures = plan.textures()?;
-    let bytes = |at: &u32| textures.get(*at as usize).map_or(0, Texture::bytes);
-    Ok(plan.passes()?.flat_map(|pass| pass.inputs.iter().chain(pass.outputs)).map(bytes).sum())
-}
-
-/// The passes of a plan, not measured yet.
+/// The passes of a plan, not measured yet. Of the bytes that a pass reads, each texel counts once.
 fn passes(plan: &Plan) -> Answer<Vec<PassEntry>> {
     let textures = plan.textures()?;
     let written = |i: &u32| textures.get(*i as usize).map(|t| u64::from(t.size[0]) * u64::from(t.size[1]));
+    let bytes = |at: &u32| textures.get(*at as usize).map_or(0, Texture::bytes);
     let entry = |pass: Pass<'_>| PassEntry {
         kernel: pass.kernel.to_owned(),
         seconds: 0.0,
         pixels: pass.outputs.first().and_then(written).unwrap_or(0),
+        bytes: Some(pass.inputs.iter().chain(pass.outputs).map(bytes).sum()),
         work: None,
     };
     Ok(plan.passes()?.map(entry).collect())

@@ -103,9 +103,12 @@ impl Report {
         for (at, pass) in entry.passes.iter().enumerate() {
             let rate = pass.pixels as f64 / 1e6 / pass.seconds;
             text += &format!(
-                "  {:38}{}{}\n",
+                "  {:38}{}{}{}\n",
                 pass.kernel,
                 columns(pass.seconds, rate, shares(peak, pass.seconds, pass.work)),
+                pass.bytes.map_or_else(String::new, |bytes| {
+                    format!("  {:3.0} bytes a pixel", bytes as f64 / pass.pixels as f64)
+                }),
                 ratio(passes.get(at).copied())
             );
         }
@@ -232,6 +235,7 @@ fn entry(entry: &Entry, peak: Option<Peak>) -> Value {
                 "kernel": p.kernel,
                 "milliseconds": p.seconds * 1e3,
                 "megapixels_per_second": p.pixels as f64 / 1e6 / p.seconds,
+                "bytes": p.bytes,
             });
             add_shares(&mut value, shares(peak, p.seconds, p.work));
             value
