@@ -1,9 +1,9 @@
 //! The command line: which verbs there are. Each verb's file declares its arguments.
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::error::Result;
-use crate::verbs::{apply, bench, farm, nodes, preset, render, sheet, view};
+use crate::verbs::{apply, bench, documents, farm, nodes, preset, render, sheet, view};
 
 /// Renders scenes and stylizes them; stylizes pictures and sequences of frames.
 #[derive(Debug, Parser)]
@@ -33,6 +33,8 @@ enum Command {
     Nodes(nodes::NodesArgs),
     /// Measures how fast the nodes are.
     Bench(bench::BenchArgs),
+    /// Writes the manual pages and the completions for shells.
+    Documents(documents::DocumentsArgs),
 }
 
 impl Cli {
@@ -50,6 +52,7 @@ impl Cli {
             Command::Farm(args) => farm::run(args),
             Command::Nodes(args) => nodes::run(args),
             Command::Bench(args) => bench::run(args),
+            Command::Documents(args) => documents::run(args, Self::command()),
         }
     }
 }

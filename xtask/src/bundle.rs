@@ -21,6 +21,12 @@ pub struct Options {
 
 const NAME: &str = "Isophote.ofx";
 
+/// The folder of the bundle.
+pub const FOLDER: &str = "Isophote.ofx.bundle";
+
+/// The package that draws its icons.
+pub const ICONS: &str = "isophote-icons";
+
 /// Where hosts look for plugins.
 const SYSTEM: &str = if cfg!(target_os = "windows") {
     r"C:\Program Files\Common Files\OFX\Plugins"
@@ -48,13 +54,13 @@ const ARCHITECTURE: &str = if cfg!(target_os = "windows") {
 pub fn run(options: &Options) -> Result<()> {
     heading("build");
     let profile = if options.debug { "debug" } else { "release" };
-    build_with_host(profile, &["isophote-icons"])?;
-    let bundle = target_dir("bundle").join(format!("{NAME}.bundle"));
+    build_with_host(profile, &[ICONS])?;
+    let bundle = target_dir("bundle").join(FOLDER);
     write(&bundle, profile)?;
     println!("{}", bundle.display());
     if options.install {
         let folder = options.to.clone().unwrap_or_else(|| PathBuf::from(SYSTEM));
-        let installed = folder.join(format!("{NAME}.bundle"));
+        let installed = folder.join(FOLDER);
         remove(&installed)?;
         copy(&bundle, &installed)?;
         println!("{}", installed.display());
@@ -62,7 +68,11 @@ pub fn run(options: &Options) -> Result<()> {
     Ok(())
 }
 
-fn write(bundle: &Path, profile: &str) -> Result<()> {
+/// Writes the bundle of a build, and the catalogue of its library beside it.
+///
+/// # Errors
+/// The first step that fails.
+pub fn write(bundle: &Path, profile: &str) -> Result<()> {
     remove(bundle)?;
     let contents = bundle.join("Contents");
     let (binaries, resources) = (contents.join(ARCHITECTURE), contents.join("Resources"));
@@ -82,7 +92,7 @@ fn write(bundle: &Path, profile: &str) -> Result<()> {
     }
     let catalogue = bundle.with_extension("json");
     std::fs::write(&catalogue, output.stdout).context(|| format!("cannot write {}", catalogue.display()))?;
-    run_command(program("isophote-icons", profile).arg(&catalogue).arg(&resources))
+    run_command(program(ICONS, profile).arg(&catalogue).arg(&resources))
 }
 
 fn property_list() -> String {

@@ -3,6 +3,7 @@
 mod bench;
 mod bundle;
 mod demo;
+mod dist;
 mod error;
 mod experiments;
 mod gallery;
@@ -46,6 +47,8 @@ enum Chore {
     Bench(bench::Options),
     /// Makes the OpenFX bundle, and installs it
     Bundle(bundle::Options),
+    /// Packs the library, the plugin and the program as archives that users install
+    Dist(dist::Options),
     /// Writes include/isophote.h from the Rust declarations
     Header(header::Options),
     /// Writes the README's table of nodes from their declarations
@@ -65,6 +68,7 @@ fn main() -> ExitCode {
         Chore::Looks(options) => looks::run(&options),
         Chore::GpuCost(options) => gpu_cost::run(&options),
         Chore::Bundle(options) => bundle::run(&options),
+        Chore::Dist(options) => dist::run(&options),
         Chore::Bench(options) => bench::run(&options),
         Chore::Readme(options) => readme::run(&options),
         Chore::Header(options) => header::run(&options),

@@ -61,6 +61,13 @@ pub const BROWSER: Need = Need {
     packages: &["chromium-headless-shell"],
 };
 
+/// What users of the library build with, and what shows manual pages.
+pub const PACKAGING: Need = Need {
+    what: "CMake, pkg-config and man",
+    present: || ["cmake", "make", "pkg-config", "man"].into_iter().all(program),
+    packages: &["cmake", "make", "pkg-config", "man-db"],
+};
+
 /// What reads and writes videos.
 pub const FFMPEG: Need =
     Need { what: "ffmpeg", present: || program("ffmpeg") && program("ffprobe"), packages: &["ffmpeg"] };

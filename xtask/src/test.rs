@@ -2,7 +2,8 @@
 
 use crate::error::{Context, Failure, Result};
 use crate::setup::{
-    self, BINUTILS, BROWSER, C_COMPILER, CLANG, CPP_COMPILER, FFMPEG, VALGRIND, VULKAN, VULKAN_HEADERS, XVFB,
+    self, BINUTILS, BROWSER, C_COMPILER, CLANG, CPP_COMPILER, FFMPEG, PACKAGING, VALGRIND, VULKAN,
+    VULKAN_HEADERS, XVFB,
 };
 use crate::tools::{cargo, cargo_command, heading, root, target_dir};
 use std::path::{Path, PathBuf};
@@ -41,6 +42,7 @@ pub fn run(options: &Options) -> Result<()> {
         &FFMPEG,
         &BROWSER,
         &CLANG,
+        &PACKAGING,
     ])?;
     let is_everything = options.filter.is_none() && !options.list;
     if is_everything && !options.tests_only {

@@ -37,7 +37,7 @@ pub fn cargo(arguments: &[&str]) -> Result<()> {
     run(&mut cargo_command(arguments))
 }
 
-/// Where a build leaves its programs and libraries: `release` or `debug`.
+/// Where a build leaves its programs and libraries: `debug`, or the name of another profile.
 pub fn target_dir(profile: &str) -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
     target.join(profile)
@@ -51,7 +51,7 @@ pub fn target_dir(profile: &str) -> PathBuf {
 pub fn build(profile: &str, programs: &[&str]) -> Result<()> {
     let mut command = cargo_command(&["build", "--workspace"]);
     command.args(programs.iter().flat_map(|program| ["--bin", program]));
-    run(command.args(release(profile)))
+    run(command.args(chosen(profile)))
 }
 
 /// Builds the dynamic library, the sample host and some more programs. The libraries of the workspace come along,
@@ -62,11 +62,12 @@ pub fn build(profile: &str, programs: &[&str]) -> Result<()> {
 pub fn build_with_host(profile: &str, more: &[&str]) -> Result<()> {
     let mut command = cargo_command(&["build", "--workspace", "--lib", "--bin", "isophote"]);
     command.args(more.iter().flat_map(|program| ["--bin", program]));
-    run(command.args(release(profile)))
+    run(command.args(chosen(profile)))
 }
 
-fn release(profile: &str) -> Option<&'static str> {
-    (profile == "release").then_some("--release")
+/// How cargo is told the profile of that folder.
+fn chosen(profile: &str) -> Vec<&str> {
+    if profile == "debug" { Vec::new() } else { vec!["--profile", profile] }
 }
 
 /// A program of a build.

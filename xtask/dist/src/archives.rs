@@ -1,0 +1,176 @@
+//! Which archives there are and what each holds: the one list that everything else walks.
+
+use crate::binary;
+use crate::error::{Error, Result};
+use crate::share::{Names, VERSION, abi_version, add_library, add_licences};
+use crate::tree::{Entry, Tree};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// An archive.
+pub struct Archive {
+    /// What it is, in its name.
+    kind: &'static str,
+    fill: fn(&Built, &mut Tree) -> Result<()>,
+}
+
+/// All archives.
+pub const ARCHIVES: [Archive; 3] = [
+    Archive { kind: "library", fill: library },
+    Archive { kind: "openfx", fill: openfx },
+    Archive { kind: "program", fill: program },
+];
+
+impl Archive {
+    /// Name of the file without its ending, and of the folder in it.
+    pub fn name(&self) -> String {
+        let (system, machine) = (std::env::consts::OS, std::env::consts::ARCH);
+        format!("isophote-{}-{VERSION}-{system}-{machine}", self.kind)
+    }
+
+    /// What it holds.
+    ///
+    /// # Errors
+    /// A binary or a licence that must not leave, and what cannot be read.
+    pub fn tree(&self, built: &Built) -> Result<Tree> {
+        let mut tree = Tree::default();
+        (self.fill)(built, &mut tree)?;
+        Ok(tree)
+    }
+}
+
+/// What was built before.
+pub struct Built {
+    root: PathBuf,
+    /// Folder of the library and the program.
+    folder: PathBuf,
+    bundle: PathBuf,
+    draft: bool,
+}
+
+impl Built {
+    /// Looks whether all is there.
+    ///
+    /// # Errors
+    /// [`Error::File`] naming what is missing.
+    pub fn find(root: &Path, folder: &Path, bundle: &Path, draft: bool) -> Result<Self> {
+        for path in [root, folder, bundle] {
+            std::fs::metadata(path).map_err(Error::at(path))?;
+        }
+        Ok(Self { root: root.to_owned(), folder: folder.to_owned(), bundle: bundle.to_owned(), draft })
+    }
+
+    fn source(&self, path: &str) -> PathBuf {
+        self.root.join(path)
+    }
+}
+
+/// The package with the C and the OpenFX face.
+const LIBRARY: &str = "isophote-plugin";
+/// The package of the program.
+const PROGRAM: &str = "isophote-host";
+
+/// The C library for programs that are compiled against it.
+fn library(built: &Built, tree: &mut Tree) -> Result<()> {
+    let names = Names::new(abi_version(&built.root)?);
+    add_library(tree, &built.root, &built.folder, built.draft)?;
+    let import = built.folder.join("isophote.dll.lib");
+    if cfg!(windows) {
+        tree.copy("lib/isophote.lib", import);
+    }
+    tree.copy("include/isophote.h", built.source("include/isophote.h"));
+    let folder = if cfg!(windows) { "bin" } else { "lib" };
+    let filled = |text: &str| {
+        text.replace("@VERSION@", VERSION)
+            .replace("@LIBRARY@", &format!("{folder}/{}", names.file))
+            .replace("@SONAME@", &names.soname)
+    };
+    tree.text("lib/pkgconfig/isophote.pc", filled(include_str!("../files/isophote.pc")));
+    let cmake = "lib/cmake/Isophote";
+    tree.text(format!("{cmake}/IsophoteConfig.cmake"), filled(include_str!("../files/IsophoteConfig.cmake")));
+    let version = filled(include_str!("../files/IsophoteConfigVersion.cmake"));
+    tree.text(format!("{cmake}/IsophoteConfigVersion.cmake"), version);
+    examples(built, tree)?;
+    tree.text("README.md", filled(include_str!("../files/library.md")));
+    add_licences(tree, "share/doc/isophote", &built.root, &[LIBRARY])
+}
+
+/// Programs in C that were tried, to begin from.
+fn examples(built: &Built, tree: &mut Tree) -> Result<()> {
+    let place = "share/isophote/examples";
+    tree.text(format!("{place}/CMakeLists.txt"), include_str!("../files/examples.cmake"));
+    for name in ["linked.c", "plan.c", "load.h", "ppm.h"] {
+        tree.copy(format!("{place}/{name}"), built.source("tests/c").join(name));
+    }
+    // A whole renderer, to read.
+    for name in ["vulkan_host.c", "vulkan_device.h", "vulkan_scene.h", "vulkan_scene.wgsl"] {
+        tree.copy(format!("{place}/vulkan/{name}"), built.source("tests/c").join(name));
+    }
+    let readme = built.source("README.md");
+    let text = std::fs::read_to_string(&readme).map_err(Error::at(&readme))?;
+    let block = text.split_once("```c\n").and_then(|(_, rest)| rest.split_once("```"));
+    let (program, _) = block.ok_or_else(|| Error::malformed(&readme, "has no program in C"))?;
+    tree.text(format!("{place}/stylize.c"), program);
+    Ok(())
+}
+
+/// The plugin for hosts of OpenFX, and what installs it.
+fn openfx(built: &Built, tree: &mut Tree) -> Result<()> {
+    let names = Names::new(abi_version(&built.root)?);
+    let name = built.bundle.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    tree.folder(&name, &built.bundle, "")?;
+    let mut binaries = 0;
+    for (place, entry) in &mut tree.entries {
+        if let Entry::Copy(path) = entry
+            && place.ends_with(".ofx")
+        {
+            binary::check(path, Some(&names.soname), built.draft)?;
+            *entry = Entry::Program(path.clone());
+            binaries += 1;
+        }
+    }
+    if binaries != 1 {
+        return Err(Error::malformed(&built.bundle, format!("holds {binaries} plugins instead of one")));
+    }
+    if cfg!(windows) {
+        tree.text("install.ps1", include_str!("../files/install.ps1"));
+    } else {
+        tree.add("install.sh", Entry::Script(include_str!("../files/install.sh").into()));
+    }
+    tree.text("README.md", include_str!("../files/openfx.md").replace("@VERSION@", VERSION));
+    tree.copy("OPENFX.md", built.source("nodes/plugin/OPENFX.md"));
+    add_licences(tree, "licences", &built.root, &[LIBRARY])
+}
+
+/// The program with its library, pages, completions and looks.
+fn program(built: &Built, tree: &mut Tree) -> Result<()> {
+    add_library(tree, &built.root, &built.folder, built.draft)?;
+    let name = format!("isophote{}", std::env::consts::EXE_SUFFIX);
+    let program = built.folder.join(&name);
+    binary::check(&program, None, built.draft)?;
+    tree.add(format!("bin/{name}"), Entry::Program(program.clone()));
+    documents(&program, tree)?;
+    tree.folder("share/isophote/looks", &built.source("host-example/looks"), ".json")?;
+    tree.folder("share/isophote/graphs", &built.source("host-example/graphs"), ".json")?;
+    tree.text("README.md", include_str!("../files/program.md").replace("@VERSION@", VERSION));
+    add_licences(tree, "share/doc/isophote", &built.root, &[LIBRARY, PROGRAM])
+}
+
+/// What the program writes about its own command line.
+fn documents(program: &Path, tree: &mut Tree) -> Result<()> {
+    let folder = tempfile::tempdir().map_err(Error::at(program))?;
+    let mut command = Command::new(program);
+    let output = command.arg("documents").arg(folder.path()).output().map_err(Error::at(program))?;
+    if !output.status.success() {
+        let said = String::from_utf8_lossy(&output.stderr).trim().to_owned();
+        return Err(Error::Program { command: "isophote documents".into(), said });
+    }
+    let mut found = Tree::default();
+    found.folder("share", folder.path(), "")?;
+    for (place, entry) in found.entries {
+        if let Entry::Copy(path) = entry {
+            tree.text(place, std::fs::read_to_string(&path).map_err(Error::at(&path))?);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,67 @@
+//! Why nothing was packed.
+
+use std::path::{Path, PathBuf};
+
+/// What can go wrong.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A file cannot be read or written, or a program cannot be started.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// The file or program.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A program failed.
+    #[error("{command} failed: {said}")]
+    Program {
+        /// What was run.
+        command: String,
+        /// What it wrote about it.
+        said: String,
+    },
+    /// Something that was read is not what it should be.
+    #[error("{}: {problem}", path.display())]
+    Malformed {
+        /// Where it is.
+        path: PathBuf,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A binary must not leave this machine as it is.
+    #[error("{}: {problem}", path.display())]
+    Unfit {
+        /// The binary.
+        path: PathBuf,
+        /// What is wrong with it, and what to do.
+        problem: String,
+    },
+    /// A dependency's licence is not one of those that were looked at.
+    #[error(
+        "{package} is licensed under `{licence}`, which the list of xtask/dist/src/licences.rs does not allow: read it, \
+         then add it there or do without the package"
+    )]
+    Licence {
+        /// Name and version.
+        package: String,
+        /// What its manifest says.
+        licence: String,
+    },
+}
+
+impl Error {
+    /// Says which file an error of the system is about.
+    pub fn at(path: &Path) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::File { path, source }
+    }
+
+    /// Something that was read is wrong.
+    pub fn malformed(path: &Path, problem: impl ToString) -> Self {
+        Self::Malformed { path: path.to_owned(), problem: problem.to_string() }
+    }
+}
+
+/// The result of a step.
+pub type Result<T> = std::result::Result<T, Error>;

@@ -1,0 +1,42 @@
+//! `cargo xtask dist`: the archives that users install, for the system and the machine that it runs on.
+
+use crate::bundle;
+use crate::error::Result;
+use crate::tools::{build_with_host, heading, program, root, run as run_command, target_dir};
+use std::path::PathBuf;
+
+/// The package that packs.
+const PACKAGE: &str = "isophote-dist";
+
+/// The profile of what users get.
+const RELEASED: &str = "dist";
+
+/// Options of `cargo xtask dist`.
+#[derive(clap::Args)]
+pub struct Options {
+    /// Where the archives and their checksums go
+    #[arg(long, value_name = "DIR", default_value = "target/packages")]
+    out: PathBuf,
+    /// The profile of the build: `dev` tries the packing with what the tests have built
+    #[arg(long, value_name = "NAME", default_value = RELEASED)]
+    profile: String,
+}
+
+/// Builds all that is packed, and packs it.
+///
+/// # Errors
+/// The first step that fails.
+pub fn run(options: &Options) -> Result<()> {
+    heading("build");
+    // The folder of this profile has another name.
+    let profile = if options.profile == "dev" { "debug" } else { &options.profile };
+    let is_draft = options.profile != RELEASED;
+    build_with_host(profile, &[bundle::ICONS, PACKAGE])?;
+    let bundle = target_dir("packed-bundle").join(bundle::FOLDER);
+    bundle::write(&bundle, profile)?;
+    heading("archives");
+    let mut pack = program(PACKAGE, profile);
+    pack.arg("--built").arg(target_dir(profile)).arg("--bundle").arg(bundle);
+    pack.arg("--out").arg(root().join(&options.out)).args(is_draft.then_some("--draft"));
+    run_command(&mut pack)
+}
