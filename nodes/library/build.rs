@@ -54,7 +54,8 @@ fn main() {
     let target = out.join("kernels.rs");
     let _ = fs::remove_file(&target);
     assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
-    let text = shared_texts(&shaders, &kernels) + &generated(&kernels, &rust);
+    let pairs = pairs(&shaders).expect("texts of pairs can be read");
+    let text = shared_texts(&shaders, &kernels) + &generated(&kernels, &rust) + &pairs;
     fs::write(&target, text).expect("OUT_DIR is writable");
 }
 
@@ -110,6 +111,29 @@ fn shared_texts(shaders: &Path, kernels: &BTreeMap<Name, Shader>) -> String {
     text
 }
 
+/// What the rows and columns of a separable window are in one dispatch, as constants: `shaders/gpu/<kernel>_pair.wgsl`.
+fn pairs(shaders: &Path) -> Result<String, String> {
+    let mut text = String::from("/// Rows and columns in one dispatch, by kernel.\npub mod pairs {\n");
+    for file in fs::read_dir(shaders.join(GPU)).into_iter().flatten().flatten() {
+        let name = file.file_name().to_string_lossy().into_owned();
+        if let Some(stem) = name.strip_suffix("_pair.wgsl") {
+            let imports::Text { imports, own, .. } = imports::Text::read(shaders, &file.path())?;
+            let imported: Vec<String> =
+                imports.iter().map(|name| format!("&super::imports::{}", constant(name))).collect();
+            let _ = write!(
+                text,
+                "/// `shaders/gpu/{name}`.\npub mod {stem} {{\n\
+                 /// What it imports.\n\
+                 pub static IMPORTS: &[&isophote_engine::kernel::Import] = &[{}];\n\
+                 /// Its own text.\npub const OWN: &str = {own:?};\n}}\n",
+                imported.join(", ").replace("super::", "super::super::"),
+            );
+        }
+    }
+    text.push_str("}\n");
+    Ok(text)
+}
+
 /// The constant that holds what is imported as `folder/name`.
 fn constant(name: &str) -> String {
     name.replace('/', "_").to_uppercase()
@@ -133,7 +157,7 @@ fn generated(kernels: &BTreeMap<Name, Shader>, rust: &BTreeMap<Name, PathBuf>) -
              /// Bytes of the uniform block; 0 for none.\npub const PARAMS_SIZE: usize = {};\n\
              /// What the module is put together from.\n\
              pub const PARTS: isophote_engine::kernel::Parts = isophote_engine::kernel::Parts {{\n\
-             imports: &[{}],\nown: {:?},\nis_per_pixel: {},\nfiltered: &{:?},\ncan_lead: {} }};\n{}}}\n",
+             imports: &[{}],\nown: {:?},\nis_per_pixel: {},\naround: &{:?},\ncan_produce: {},\nfiltered: &{:?},\ncan_lead: {} }};\n{}}}\n",
             shader.source,
             shader.inputs,
             shader.outputs,
@@ -141,6 +165,8 @@ fn generated(kernels: &BTreeMap<Name, Shader>, rust: &BTreeMap<Name, PathBuf>) -
             imported.join(", "),
             shader.own,
             shader.is_per_pixel,
+            shader.around,
+            shader.can_produce,
             shader.filtered,
             shader.can_lead,
             shader.params.as_ref().map_or_else(String::new, |block| block.rust(&path)),

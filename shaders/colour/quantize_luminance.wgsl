@@ -1,6 +1,6 @@
 // Soft quantization of the lightness of a Lab image (section 4.6): bins continue below 0 and above 100.
-// Cost: one to six loads, a tanh and two square roots.
-#import gpu/grid
+// Cost: one to nine loads, a tanh and two square roots.
+#import shared/sampling
 
 struct Params {
     /// Width of a bin, units of L.
@@ -27,23 +27,22 @@ struct Params {
 
 @group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;
-// The mean gradient of L around each pixel.
+// The mean gradient of L around each pixel, at half the size.
 @group(0) @binding(3) var tones_around: texture_2d<f32>;
 @group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
 
+const INPUT_SOURCE: u32 = 0u;
+const INPUT_TONES_AROUND: u32 = 1u;
+
 // Lightness of a neighbour; where it is not covered, that of the pixel itself.
 fn neighbour(p: vec2i, own: f32) -> f32 {
-    let v = fetch(source, 0u, p);
+    let v = fetch(source, INPUT_SOURCE, p);
     return own + (v.x - own) * clamp(v.w, 0.0, 1.0);
 }
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
+fn of_pixel(id: vec3u) -> vec4f {
     let p = pixel(id);
-    let v = fetch(source, 0u, p);
+    let v = fetch(source, INPUT_SOURCE, p);
     var phi = params.phi;
     var stepped = 1.0;
     if params.adaptive != 0u || params.inverse_least > 0.0 {
@@ -56,7 +55,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
         if params.inverse_least > 0.0 {
             phi = min(phi, 2.0 / max(params.crispest * g, 1e-6));
-            let around = fetch(tones_around, 1u, p).xy;
+            let around = sample_linear(tones_around, INPUT_TONES_AROUND, 0.5 * centre(id)).xy;
             let t = clamp((sqrt(dot(around, around)) * params.inverse_least - 0.6) * 1.25, 0.0, 1.0);
             stepped = t * t * (3.0 - 2.0 * t);
         }
@@ -65,5 +64,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let x = clamp(phi * (v.x - middle), -20.0, 20.0);
     let level = middle + 0.5 * params.width * tanh(x);
     let lightness = v.x + stepped * (level - v.x);
-    textureStore(target_image, vec2i(id.xy), vec4f(lightness, v.yzw));
+    return vec4f(lightness, v.yzw);
 }

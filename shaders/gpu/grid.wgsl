@@ -11,7 +11,8 @@ struct Grid {
     size: vec2i,
     // Size of the whole picture at the outputs' level.
     full: vec2i,
-    reserved: vec2i,
+    // How far the first of several kernels reads around a pixel that a window of the others holds.
+    halo: vec2i,
     // Per input: absolute position of texel (0, 0), and the whole picture's size at its level.
     inputs: array<vec4i, 6>,
 }

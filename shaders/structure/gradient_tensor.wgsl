@@ -47,6 +47,32 @@ fn column(p: vec2i) -> Column {
     return c;
 }
 
+// Both derivatives, of colour times coverage and of coverage.
+struct Gradient {
+    x: vec4f,
+    y: vec4f,
+}
+
+// Adds the columns i pixels to the left and to the right.
+fn with_columns(g: Gradient, i: i32, left: Column, right: Column) -> Gradient {
+    return Gradient(
+        g.x + params.derivative[i >> 2u][i & 3] * (right.smoothed - left.smoothed),
+        g.y + params.smoothing[i >> 2u][i & 3] * (left.derived + right.derived),
+    );
+}
+
+fn tensor_of(centre: vec4f, g: Gradient) -> vec4f {
+    return outer_product(centre, g.x, g.y, params.scale, params.flags, params.threshold);
+}
+
+fn at_place(p: vec2i) -> vec4f {
+    var g = Gradient(vec4f(0.0), params.smoothing[0].x * column(p).derived);
+    for (var i = 1; i <= params.radius; i++) {
+        g = with_columns(g, i, column(p - vec2i(i, 0)), column(p + vec2i(i, 0)));
+    }
+    return tensor_of(tap(p), g);
+}
+
 // Columns around the workgroup's pixels, radius at most 19.
 var<workgroup> smoothed: array<vec4f, 368>;
 var<workgroup> derived: array<vec4f, 368>;
@@ -68,28 +94,29 @@ fn share_columns(id: vec3u) {
 
 // The column i pixels to the right.
 fn column_beside(id: vec3u, i: i32) -> Column {
-    if shared_windows {
-        let seat = group_seat(id);
-        let at = seat.y * (8 + 2 * params.radius) + seat.x + params.radius + i;
-        return Column(smoothed[at], derived[at]);
+    let seat = group_seat(id);
+    let at = seat.y * (8 + 2 * params.radius) + seat.x + params.radius + i;
+    return Column(smoothed[at], derived[at]);
+}
+
+// The same as `at_place`, from columns that the workgroup has summed together.
+fn shared_tensor(id: vec3u) -> vec4f {
+    share_columns(id);
+    var g = Gradient(vec4f(0.0), params.smoothing[0].x * column_beside(id, 0).derived);
+    for (var i = 1; i <= params.radius; i++) {
+        g = with_columns(g, i, column_beside(id, -i), column_beside(id, i));
     }
-    return column(group_pixel(id) + vec2i(i, 0));
+    return tensor_of(tap(group_pixel(id)), g);
 }
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
+    var t: vec4f;
     if shared_windows {
-        share_columns(id);
+        t = shared_tensor(id);
+    } else {
+        t = at_place(group_pixel(id));
     }
-    var gx = vec4f(0.0);
-    var gy = params.smoothing[0].x * column_beside(id, 0).derived;
-    for (var i = 1; i <= params.radius; i++) {
-        let left = column_beside(id, -i);
-        let right = column_beside(id, i);
-        gx += params.derivative[i >> 2u][i & 3] * (right.smoothed - left.smoothed);
-        gy += params.smoothing[i >> 2u][i & 3] * (left.derived + right.derived);
-    }
-    let t = outer_product(tap(group_pixel(id)), gx, gy, params.scale, params.flags, params.threshold);
     if !outside(id) {
         textureStore(target_image, vec2i(id.xy), t);
     }

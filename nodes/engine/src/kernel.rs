@@ -11,6 +11,13 @@ pub const MAX_INPUTS: usize = 6;
 /// Side of the square workgroups of every kernel.
 pub const WORKGROUP: u32 = 8;
 
+/// Most pixels that a window reads to each side where its rows and columns run in one dispatch, with what the pass before
+/// it reads around: 16 x 16 pixels and so many around them take the 16 KiB of workgroup memory of the smallest devices.
+pub const PAIR_REACH: u32 = 8;
+
+/// Side of the square workgroups of dispatches of such windows.
+pub const PAIR_WORKGROUP: u32 = 16;
+
 /// Binding of the sampler of shaders that interpolate by one.
 pub const SAMPLER_BINDING: u32 = 15;
 
@@ -29,6 +36,8 @@ pub struct Kernel {
     pub params_size: usize,
     /// What the shader is put together from, for passes that do the work of several kernels.
     pub parts: Parts,
+    /// How its rows and columns run in one dispatch, if it sums windows along one axis.
+    pub pair: Option<Pair>,
     /// The CPU twin: fills one band of the outputs.
     pub cpu: fn(&CpuPass<'_>, &mut Band<'_>),
     /// Fused multiply-adds (or operations of like cost) per output pixel, for benchmarks.
@@ -50,11 +59,30 @@ pub struct Parts {
     /// Whether each pixel of the output depends on the same pixel of the inputs alone, so that the kernel can follow
     /// another one in the same pass.
     pub is_per_pixel: bool,
+    /// Inputs that a kernel of single pixels reads itself, at other pixels or at another level; `of_pixel` has no argument
+    /// for them. It knows their slots by constants, `const INPUT_NAME: u32 = 0u;`, which other kernels before it change.
+    pub around: &'static [usize],
+    /// Whether a window can sum it as it is computed, in the same dispatch: a function `at_place(p: vec2i) -> vec4f` gives it
+    /// at any pixel, reads the only texture by `fetch(source, 0u, ...)`, and all it uses stands before the first variable
+    /// in workgroup memory.
+    pub can_produce: bool,
     /// Inputs that are interpolated by [`Import::filtered`] alone, if the kernel imports any text that has one.
     pub filtered: &'static [usize],
     /// Whether kernels of single pixels can follow in the same pass: there is one output, stored in one place by
     /// `textureStore(target_image, vec2i(id.xy), VALUE);`, or the kernel is of single pixels itself.
     pub can_lead: bool,
+}
+
+/// How two passes of a kernel, the rows and the columns of a separable window, run in one dispatch.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair {
+    /// Texts that `own` uses, as in [`Parts::imports`].
+    pub imports: &'static [&'static Import],
+    /// WGSL with the entry point, of [`PAIR_WORKGROUP`]. It knows the two uniform blocks as `rows_params` and
+    /// `columns_params` and what rows sum as `pair_source(p: vec2i) -> vec4f`; `pair_hold` is called before it asks.
+    pub own: &'static str,
+    /// Whether passes with these uniform blocks are the rows and the columns of a window.
+    pub fits: fn(&[u8], &[u8]) -> bool,
 }
 
 /// A text that shaders share.
@@ -72,7 +100,15 @@ pub struct Import {
 impl Parts {
     /// Of a kernel that always has passes of its own.
     pub const NONE: Self =
-        Self { imports: &[], own: "", is_per_pixel: false, filtered: &[], can_lead: false };
+        Self {
+            imports: &[],
+            own: "",
+            is_per_pixel: false,
+            around: &[],
+            can_produce: false,
+            filtered: &[],
+            can_lead: false,
+        };
 }
 
 impl PartialEq for &'static Kernel {

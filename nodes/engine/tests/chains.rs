@@ -34,9 +34,10 @@ macro_rules! kernel {
                 imports: &[&GRID],
                 own: $own,
                 is_per_pixel: $is_per_pixel,
-                filtered: &[],
                 can_lead: true,
+                ..Parts::NONE
             },
+            pair: None,
             cpu: $cpu,
             cost: |_| 1.0,
             tolerance: EXACT,

@@ -62,6 +62,13 @@ impl Text {
         self.own.contains(&format!("fn {OF_PIXEL}("))
     }
 
+    /// The textures, by their slots, that a shader of single pixels reads itself: those that have a constant for their slot.
+    pub fn around(&self) -> Vec<usize> {
+        let has_constant =
+            |name: &str| self.own.contains(&format!("\nconst INPUT_{}: u32 = ", name.to_uppercase()));
+        sampled(&self.own).enumerate().filter(|(_, name)| has_constant(name)).map(|(slot, _)| slot).collect()
+    }
+
     /// The complete module, with an entry point for a shader of single pixels.
     ///
     /// # Errors
@@ -72,7 +79,7 @@ impl Text {
             if self.shared.contains("params") {
                 return Err(format!("what a shader with `{OF_PIXEL}` imports must not know of parameters"));
             }
-            module.push_str(&entry_point(&self.own)?);
+            module.push_str(&entry_point(&self.own, &self.around())?);
         }
         Ok(module)
     }
@@ -103,17 +110,17 @@ pub fn read(path: &Path) -> Result<String, String> {
 }
 
 /// The entry point of a shader that computes each pixel from the same pixel of its textures.
-fn entry_point(own: &str) -> Result<String, String> {
+fn entry_point(own: &str, around: &[usize]) -> Result<String, String> {
     let mut arguments = String::new();
-    for (slot, name) in sampled(own).enumerate() {
-        let _ = write!(arguments, ", fetch({name}, {slot}u, p)");
+    for (slot, name) in sampled(own).enumerate().filter(|(slot, _)| !around.contains(slot)) {
+        let _ = write!(arguments, ", fetch({name}, {slot}u, pixel(id))");
     }
-    if arguments.is_empty() {
+    if sampled(own).next().is_none() {
         return Err(format!("a shader with `{OF_PIXEL}` reads at least one texture"));
     }
     Ok(format!(
         "\n@compute @workgroup_size(8, 8)\nfn main(@builtin(global_invocation_id) id: vec3u) {{\n    \
-         if outside(id) {{\n        return;\n    }}\n    let p = pixel(id);\n    \
+         if outside(id) {{\n        return;\n    }}\n    \
          {STORE}{OF_PIXEL}(id{arguments}));\n}}\n"
     ))
 }

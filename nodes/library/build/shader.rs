@@ -1,12 +1,15 @@
 //! One shader: its text put together, validated, and what it says about itself.
 
 use crate::filtered::filtered_inputs;
-use crate::imports::{OF_PIXEL, STORE, Text};
+use crate::imports::{OF_PIXEL, STORE, Text, sampled};
 use crate::uniform::Block;
 use naga::front::wgsl::{Frontend, Options};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{ImageClass, Module, StorageFormat, TypeInner};
 use std::path::Path;
+
+/// The function of a shader that can be computed anywhere for the window of another kernel.
+const AT_PLACE: &str = "fn at_place(p: vec2i) -> vec4f {";
 
 /// What reflection finds in one shader.
 pub struct Shader {
@@ -18,6 +21,10 @@ pub struct Shader {
     pub own: String,
     /// Whether it computes each pixel from the same pixel of its textures.
     pub is_per_pixel: bool,
+    /// Inputs that such a shader reads itself.
+    pub around: Vec<usize>,
+    /// Whether it can be computed anywhere for the window of another kernel.
+    pub can_produce: bool,
     /// Inputs that are interpolated by functions of which there are filtered ones.
     pub filtered: Vec<usize>,
     /// Whether it stores its only result in one place, by the usual words.
@@ -50,9 +57,23 @@ impl Shader {
         let (inputs, outputs, params) = bindings(&module)?;
         let stores_once = text.own.matches("textureStore(").count() == 1 && text.own.contains(STORE);
         let is_per_pixel = text.is_per_pixel();
+        let around = if is_per_pixel { text.around() } else { Vec::new() };
+        let can_produce = text.own.contains(AT_PLACE) && sampled(&text.own).eq(["source"]);
         let can_lead = (is_per_pixel || stores_once) && outputs.len() == 1;
         let Text { imports, own, .. } = text;
-        Ok(Self { source, imports, own, is_per_pixel, filtered, can_lead, inputs, outputs, params })
+        Ok(Self {
+            source,
+            imports,
+            own,
+            is_per_pixel,
+            around,
+            can_produce,
+            filtered,
+            can_lead,
+            inputs,
+            outputs,
+            params,
+        })
     }
 }
 

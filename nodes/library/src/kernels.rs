@@ -23,10 +23,10 @@ include!(concat!(env!("OUT_DIR"), "/kernels.rs"));
 /// `fast` is the tolerance of that.
 #[macro_export]
 macro_rules! kernel {
-    ($kernel:ident { cpu: $cpu:expr, cost: |_| $cost:expr, tolerance: $tolerance:expr $(, fast: $fast:expr)? $(,)? }) => {
-        $crate::kernel!(@ $kernel, $cpu, |_| $cost, $tolerance, $crate::kernel!(@ fast $tolerance $(, $fast)?));
+    ($kernel:ident { cpu: $cpu:expr, cost: |_| $cost:expr, tolerance: $tolerance:expr $(, fast: $fast:expr)? $(, pair: $pair:expr)? $(,)? }) => {
+        $crate::kernel!(@ $kernel, $cpu, |_| $cost, $tolerance, $crate::kernel!(@ fast $tolerance $(, $fast)?), $crate::kernel!(@ pair $($pair)?));
     };
-    ($kernel:ident { cpu: $cpu:expr, cost: |$params:ident| $cost:expr, tolerance: $tolerance:expr $(, fast: $fast:expr)? $(,)? }) => {
+    ($kernel:ident { cpu: $cpu:expr, cost: |$params:ident| $cost:expr, tolerance: $tolerance:expr $(, fast: $fast:expr)? $(, pair: $pair:expr)? $(,)? }) => {
         $crate::kernel!(
             @ $kernel,
             $cpu,
@@ -35,7 +35,8 @@ macro_rules! kernel {
                 $cost
             },
             $tolerance,
-            $crate::kernel!(@ fast $tolerance $(, $fast)?)
+            $crate::kernel!(@ fast $tolerance $(, $fast)?),
+            $crate::kernel!(@ pair $($pair)?)
         );
     };
     (@ fast $tolerance:expr) => {
@@ -44,7 +45,13 @@ macro_rules! kernel {
     (@ fast $tolerance:expr, $fast:expr) => {
         $fast
     };
-    (@ $kernel:ident, $cpu:expr, $cost:expr, $tolerance:expr, $fast:expr) => {
+    (@ pair) => {
+        None
+    };
+    (@ pair $pair:expr) => {
+        Some($pair)
+    };
+    (@ $kernel:ident, $cpu:expr, $cost:expr, $tolerance:expr, $fast:expr, $pair:expr) => {
         /// The kernel, for plans.
         pub static KERNEL: isophote_engine::Kernel = isophote_engine::Kernel {
             name: stringify!($kernel),
@@ -53,6 +60,7 @@ macro_rules! kernel {
             outputs: $crate::kernels::shaders::$kernel::OUTPUTS,
             params_size: $crate::kernels::shaders::$kernel::PARAMS_SIZE,
             parts: $crate::kernels::shaders::$kernel::PARTS,
+            pair: $pair,
             cpu: $cpu,
             cost: $cost,
             tolerance: $tolerance,

@@ -67,6 +67,6 @@ fn difference(
 }
 
 fn copy(kernel: &Kernel) -> Kernel {
-    let Kernel { name, shader, inputs, outputs, params_size, parts, cpu, cost, tolerance, fast } = *kernel;
-    Kernel { name, shader, inputs, outputs, params_size, parts, cpu, cost, tolerance, fast }
+    let Kernel { name, shader, inputs, outputs, params_size, parts, pair, cpu, cost, tolerance, fast } = *kernel;
+    Kernel { name, shader, inputs, outputs, params_size, parts, pair, cpu, cost, tolerance, fast }
 }

@@ -8,8 +8,8 @@ pub enum Precision {
     /// Every image holds 32-bit floats, as those of the CPU executor do.
     #[default]
     Exact,
-    /// Images of class [`Class::Colour`] with three or four channels hold 16-bit floats, those that leave included: half the
-    /// bytes, and eleven bits for each value up to 65504, where larger ones are cut. What enters is the caller's.
+    /// Images of class [`Class::Colour`] with two to four channels hold 16-bit floats, those that leave included: half the
+    /// bytes, or as many for two, which share textures with the others, and eleven bits for each value up to 65504, where larger ones are cut. What enters is the caller's.
     Half,
     /// As `Half`; besides, samplers interpolate them, whose weights have eight bits on common hardware. An input whose format
     /// is [`Format::Rgba16`] is read so, too, and must have a format that the device filters.
@@ -42,7 +42,7 @@ impl Format {
     /// That of a virtual image.
     pub fn of(desc: ImageDesc, precision: Precision) -> Self {
         match Self::exact(desc.channels) {
-            Self::Rgba32 if precision != Precision::Exact && desc.class == Class::Colour => Self::Rgba16,
+            Self::Rg32 | Self::Rgba32 if precision != Precision::Exact && desc.class == Class::Colour => Self::Rgba16,
             exact => exact,
         }
     }

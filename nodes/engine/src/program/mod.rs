@@ -9,11 +9,12 @@
 //! [`Precision::Fast`] names, which it reads through a sampler at binding 15 ([`SAMPLER_BINDING`]): linear in both
 //! directions, clamped to the edge.
 //!
-//! A pass that computes each pixel from the same pixel of what another pass has computed runs in the dispatch of that
-//! one, so that what lies between them takes neither memory nor time to write and read.
+//! Passes are fused where what lies between them need not exist: those that compute each pixel from the same pixel of what
+//! another pass has computed run in the dispatch of that one, as do the rows and the columns of small windows.
 
-mod chains;
 mod format;
+mod fused;
+mod fusion;
 mod shader;
 
 pub use format::{Format, Precision};
@@ -22,10 +23,10 @@ pub use shader::Shader;
 use crate::error::{Error, Result};
 use crate::image::Rect;
 pub use crate::kernel::SAMPLER_BINDING;
-use crate::kernel::{MAX_INPUTS, WORKGROUP};
+use crate::kernel::MAX_INPUTS;
 use crate::plan::{Class, ImageId, Pass, Plan, Port, Support};
-use chains::{chains, external};
-use shader::{Link, padded};
+use fused::{Fused, Link, padded};
+use fusion::{Fusion, Lead, external, fusions, reaches};
 use std::sync::Arc;
 
 /// What a texture of a program is for.
@@ -63,8 +64,8 @@ pub struct Grid {
     pub size: [i32; 2],
     /// Size of the whole picture at the outputs' level.
     pub full: [i32; 2],
-    /// Zero.
-    pub reserved: [i32; 2],
+    /// How far the first of several kernels reads around a pixel that a window of the others holds; else zero.
+    pub halo: [i32; 2],
     /// Per input: absolute position of texel (0, 0), and the whole picture's size at its level.
     pub inputs: [[i32; 4]; MAX_INPUTS],
 }
@@ -107,6 +108,8 @@ struct Origin {
     kernels: Vec<&'static str>,
     /// Their supports where windows depend on them.
     supports: Option<Vec<Vec<Support>>>,
+    /// How they begin.
+    lead: Lead,
 }
 
 impl Program {
@@ -128,24 +131,25 @@ impl Program {
         // The windows of the whole picture are whole, however far the passes read.
         let [width, height] = plan.size();
         let is_whole = region == Rect::of_size(width, height);
-        let chains = chains(plan);
+        let fusions = fusions(plan);
         let mut lowering = Lowering::new(plan, plan.windows(region), precision);
+        fusions.iter().for_each(|fusion| lowering.align(fusion));
         lowering.add_ports()?;
-        let ending = last_uses(plan, &chains);
+        let ending = last_uses(plan, &fusions);
         let mut program = Self::default();
-        for (chain, ending) in chains.into_iter().zip(ending) {
-            let passes: Vec<&Pass> = chain.iter().map(|index| &plan.passes()[*index]).collect();
-            let Some(last) = passes.last() else { continue };
-            if lowering.windows[last.outputs[0].index()].is_empty() {
+        for (fusion, ending) in fusions.into_iter().zip(ending) {
+            if lowering.windows[fusion.outputs[0].index()].is_empty() {
                 continue;
             }
-            lowering.make_room(last);
-            program.dispatches.push(lowering.dispatch(&passes));
+            let passes: Vec<&Pass> = fusion.passes.iter().map(|index| &plan.passes()[*index]).collect();
+            lowering.make_room(&fusion.outputs);
+            program.dispatches.push(lowering.dispatch(&fusion, &passes));
             lowering.release(&ending);
             program.origins.push(Origin {
                 kernels: passes.iter().map(|pass| pass.kernel.shader).collect(),
                 supports: (!is_whole).then(|| passes.iter().map(|pass| pass.supports.clone()).collect()),
-                passes: chain,
+                passes: fusion.passes,
+                lead: fusion.lead,
             });
         }
         program.textures = lowering.textures;
@@ -176,6 +180,9 @@ impl Program {
             return false;
         }
         for (dispatch, origin) in self.dispatches.iter_mut().zip(&self.origins) {
+            if let Some([_, halo]) = reaches(plan, &origin.passes, origin.lead) {
+                dispatch.grid.halo = [halo as i32; 2];
+            }
             let mut at = 0;
             for index in &origin.passes {
                 let params = &plan.passes()[*index].params;
@@ -186,11 +193,14 @@ impl Program {
         true
     }
 
-    /// Bytes that all dispatches read from and write to textures, each texel of an input once.
+    /// Bytes that all dispatches read from and write to textures, each texel of a texture once.
     pub fn bytes_moved(&self) -> u64 {
         let bytes = |dispatch: &Dispatch| {
             let texels = dispatch.grid.size.map(|side| side.max(0) as u64).iter().product::<u64>();
-            let read = dispatch.inputs.iter().map(|at| self.textures[*at as usize].bytes());
+            let read = dispatch.inputs.iter().enumerate();
+            // What a shader knows by two names is read once.
+            let read = read.filter(|(place, at)| !dispatch.inputs[..*place].contains(at));
+            let read = read.map(|(_, at)| self.textures[*at as usize].bytes());
             let written = dispatch.outputs.iter().map(|at| self.textures[*at as usize].format.texel());
             read.sum::<u64>() + written.map(|texel| u64::from(texel) * texels).sum::<u64>()
         };
@@ -219,6 +229,9 @@ impl Origin {
     /// Whether a plan still has these passes, which read as far as they did.
     fn is_of(&self, plan: &Plan) -> bool {
         let supports = |at: usize| self.supports.as_ref().map(|supports| &supports[at]);
+        if self.lead != Lead::Single && reaches(plan, &self.passes, self.lead).is_none() {
+            return false;
+        }
         self.passes.iter().enumerate().all(|(at, index)| {
             plan.passes().get(*index).is_some_and(|pass| {
                 pass.kernel.shader == self.kernels[at] && supports(at).is_none_or(|s| *s == pass.supports)
@@ -228,12 +241,12 @@ impl Origin {
 }
 
 /// By dispatch: the images that it or a pass in it reads or writes for the last time.
-fn last_uses(plan: &Plan, chains: &[Vec<usize>]) -> Vec<Vec<ImageId>> {
+fn last_uses(plan: &Plan, fusions: &[Fusion]) -> Vec<Vec<ImageId>> {
     let mut living: Vec<bool> = vec![false; plan.images().len()];
     plan.outputs().iter().for_each(|port| living[port.image.index()] = true);
-    let mut ending: Vec<Vec<ImageId>> = Vec::with_capacity(chains.len());
-    for chain in chains.iter().rev() {
-        let images = chain.iter().map(|index| &plan.passes()[*index]);
+    let mut ending: Vec<Vec<ImageId>> = Vec::with_capacity(fusions.len());
+    for fusion in fusions.iter().rev() {
+        let images = fusion.passes.iter().map(|index| &plan.passes()[*index]);
         let images = images.flat_map(|pass| pass.inputs.iter().chain(&pass.outputs).copied());
         ending.push(images.filter(|image| !std::mem::replace(&mut living[image.index()], true)).collect());
     }
@@ -268,6 +281,14 @@ impl<'p> Lowering<'p> {
         }
     }
 
+    /// Gives all images that a dispatch stores the window of the largest: what follows from a pixel can be computed
+    /// wherever the pixel is.
+    fn align(&mut self, fusion: &Fusion) {
+        let windows = fusion.outputs.iter().map(|image| self.windows[image.index()]);
+        let all = windows.fold(Rect::default(), |all, window| all.union(&window));
+        fusion.outputs.iter().for_each(|image| self.windows[image.index()] = all);
+    }
+
     /// Gives textures to what enters and leaves.
     fn add_ports(&mut self) -> Result<()> {
         for port in self.plan.inputs() {
@@ -294,7 +315,12 @@ impl<'p> Lowering<'p> {
 
     fn texture(&self, image: ImageId, role: Role, window: Rect) -> Texture {
         let desc = self.plan.desc(image);
-        Texture { role, format: Format::of(desc, self.precision), class: desc.class, window }
+        let format = match role {
+            // A caller's picture of two channels stays one.
+            Role::Input(_) if desc.channels == 2 => Format::Rg32,
+            _ => Format::of(desc, self.precision),
+        };
+        Texture { role, format, class: desc.class, window }
     }
 
     fn push(&mut self, image: ImageId, texture: Texture) -> u32 {
@@ -303,11 +329,11 @@ impl<'p> Lowering<'p> {
         self.textures.len() as u32 - 1
     }
 
-    /// Gives textures to the transient images that a pass writes: free ones of their level and format, which grow
+    /// Gives textures to the transient images that a dispatch writes: free ones of their level and format, which grow
     /// where an image is larger, or new ones. The size does not choose, so that tiles of all sizes connect their
     /// passes alike and one prepared program runs them all.
-    fn make_room(&mut self, pass: &Pass) {
-        for output in &pass.outputs {
+    fn make_room(&mut self, outputs: &[ImageId]) {
+        for output in outputs {
             if self.places[output.index()].is_some() {
                 continue;
             }
@@ -338,13 +364,12 @@ impl<'p> Lowering<'p> {
         self.free.extend(ended.filter(|place| self.textures[*place as usize].role == Role::Transient));
     }
 
-    /// The dispatch of passes of which each computes on what the one before has computed; mostly of one.
-    fn dispatch(&self, passes: &[&Pass]) -> Dispatch {
-        let last = passes[passes.len() - 1];
-        let out = last.outputs[0];
+    /// The dispatch of passes that are fused; mostly of one.
+    fn dispatch(&self, fusion: &Fusion, passes: &[&Pass]) -> Dispatch {
+        let out = fusion.outputs[0];
         let window = self.windows[out.index()];
         let full = self.plan.level_size(self.plan.desc(out).level);
-        let read: Vec<ImageId> = external(passes.iter().copied()).collect();
+        let read: Vec<ImageId> = external(self.plan, &fusion.passes).collect();
         let mut inputs = [[0; 4]; MAX_INPUTS];
         for (place, image) in inputs.iter_mut().zip(&read) {
             let w = self.windows[image.index()];
@@ -352,35 +377,52 @@ impl<'p> Lowering<'p> {
             *place = [w.x0, w.y0, fw, fh];
         }
         let size = [window.width() as i32, window.height() as i32];
-        // Every image of a pass got its texture before the pass, or in an earlier one.
+        let reaches = reaches(self.plan, &fusion.passes, fusion.lead);
+        let halo = reaches.map_or([0; 2], |[_, halo]| [halo as i32; 2]);
+        // Every image of a dispatch got its texture before it, or in an earlier one.
         let textures = |ids: &[ImageId]| ids.iter().filter_map(|id| self.places[id.index()]).collect();
+        let shader = self.shader(fusion, passes);
+        let groups = |side: u32| side.div_ceil(shader.workgroup);
         Dispatch {
-            shader: Arc::new(self.shader(passes)),
-            grid: Grid { origin: [window.x0, window.y0], size, full, reserved: [0; 2], inputs },
+            grid: Grid { origin: [window.x0, window.y0], size, full, halo, inputs },
             params: params(passes),
             inputs: textures(&read),
-            outputs: textures(&last.outputs),
-            workgroups: [window.width().div_ceil(WORKGROUP), window.height().div_ceil(WORKGROUP), 1],
+            outputs: textures(&fusion.outputs),
+            workgroups: [groups(window.width()), groups(window.height()), 1],
+            shader: Arc::new(shader),
         }
     }
 
-    fn shader(&self, passes: &[&Pass]) -> Shader {
+    fn shader(&self, fusion: &Fusion, passes: &[&Pass]) -> Shader {
         let format = |image: &ImageId| Format::of(self.plan.desc(*image), self.precision);
-        let (first, last) = (passes[0], passes[passes.len() - 1]);
+        let first = passes[0];
         let filtered = first.kernel.parts.filtered;
         let is_filtered = self.precision == Precision::Fast
+            && fusion.lead == Lead::Single
             && !filtered.is_empty()
             && filtered.iter().all(|input| format(&first.inputs[*input]) == Format::Rgba16);
         if let [pass] = passes {
             let outputs: Vec<Format> = pass.outputs.iter().map(format).collect();
             return Shader::of(pass.kernel, &outputs, is_filtered);
         }
-        let before = std::iter::once(None).chain(passes.iter().map(|pass| Some(pass.outputs[0])));
-        let links = passes.iter().zip(before).map(|(pass, before)| Link {
+        let place = |image: &ImageId, before: usize| {
+            passes[..before].iter().position(|pass| pass.outputs.contains(image))
+        };
+        let links = passes.iter().enumerate().map(|(at, pass)| Link {
             kernel: pass.kernel,
-            taken: pass.inputs.iter().position(|image| Some(*image) == before).unwrap_or_default(),
+            values: pass.inputs.iter().map(|image| place(image, at)).collect(),
         });
-        Shader::of_chain(&links.collect::<Vec<_>>(), format(&last.outputs[0]), is_filtered)
+        let outputs = fusion.outputs.iter();
+        let outputs = outputs.filter_map(|image| Some((place(image, passes.len())?, format(image))));
+        let level = |image: ImageId| self.plan.desc(image).level;
+        let fused = Fused {
+            links: links.collect(),
+            lead: fusion.lead,
+            outputs: outputs.collect(),
+            is_held: level(first.inputs[0]) == level(first.outputs[0]),
+            is_filtered,
+        };
+        fused.shader()
     }
 }
 

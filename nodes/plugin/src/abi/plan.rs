@@ -9,7 +9,6 @@ use super::lowered::Lowered;
 use super::objects::GraphObject;
 use super::request;
 use super::shader;
-use isophote::engine::kernel::WORKGROUP;
 use isophote::engine::program::{Dispatch, Format, Program, Role, Texture};
 use isophote::engine::{Class, Rect};
 use isophote::{Graph, Request};
@@ -128,7 +127,7 @@ fn pass(dispatch: &Dispatch, name: &mut impl FnMut(&str) -> *const c_char) -> Is
         input_count: dispatch.inputs.len() as u32,
         output_count: dispatch.outputs.len() as u32,
         workgroups: dispatch.workgroups,
-        workgroup_size: [WORKGROUP, WORKGROUP, 1],
+        workgroup_size: [dispatch.shader.workgroup, dispatch.shader.workgroup, 1],
     }
 }
 

@@ -38,13 +38,13 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
         }
         None => (color, Params { source_space: WORKING, space: 0, premultiplied: 0 }),
     };
-    plan.pass(&KERNEL, &[image], &params, Class::Field, Support::Pixels(0))
+    plan.pass(&KERNEL, &[image], &params, Class::Colour, Support::Pixels(0))
 }
 
 /// (L alpha, alpha) of a Lab image.
 pub fn pass_lab(plan: &mut PlanBuilder, lab: ImageId) -> ImageId {
     let params = Params { source_space: LAB, space: 0, premultiplied: 0 };
-    plan.pass(&KERNEL, &[lab], &params, Class::Field, Support::Pixels(0))
+    plan.pass(&KERNEL, &[lab], &params, Class::Colour, Support::Pixels(0))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {

@@ -4,7 +4,7 @@
 //! Steps may be left out where the surroundings have no gradient to speak of: there borders of levels would wander,
 //! since nothing in the picture says where they are.
 //!
-//! Cost: one to six reads, a tanh and two square roots per pixel.
+//! Cost: one to nine reads, a tanh and two square roots per pixel.
 
 pub use crate::kernels::shaders::quantize_luminance::Params;
 use crate::kernels::simd::pixels::{Block, for_blocks, write};
@@ -48,7 +48,7 @@ pub fn pass(plan: &mut PlanBuilder, lab: ImageId, bins: i32, steepness: Steepnes
 /// Where the steps of [`pass_where`] are.
 #[derive(Clone, Copy, Debug)]
 pub struct Steps {
-    /// The mean gradient of L around each pixel, in the first two of four channels, units of L per pixel.
+    /// The mean gradient of L around each pixel, in the first two of four channels, units of L per pixel; one level up.
     pub surroundings: ImageId,
     /// Its length from which on levels step, units of L per pixel; tones below are continuous.
     pub least: f32,
@@ -95,6 +95,7 @@ pub fn pass_where(
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let view = &pass.inputs[0];
+    let mut around = Around::default();
     dispatch!(pass.level, simd => for_blocks::<4>(band, #[inline(always)] |block, target| {
         let [l, a, b, alpha] = block.read(simd, view);
         let mut phi = f32x8::splat(simd, params.phi);
@@ -112,7 +113,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
             }
             if params.inverse_least > 0.0 {
                 phi = phi.min(f32x8::splat(simd, 2.0) / (g * params.crispest).max(1e-6));
-                let [x, y, ..]: [f32x8<_>; 4] = block.read(simd, &pass.inputs[1]);
+                let [x, y] = around.of(simd, &pass.inputs[1], &block);
                 let length = (x * x + y * y).sqrt();
                 let t = ((length * params.inverse_least - 0.6) * 1.25).max(0.0).min(1.0);
                 stepped = t * t * (t * -2.0 + 3.0);
@@ -123,6 +124,59 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         let level = middle + x.tanh() * (0.5 * params.width);
         write([l + stepped * (level - l), a, b, alpha], target);
     }));
+}
+
+/// A row of an image one level up between two of its own, in its first two channels.
+#[derive(Debug, Default)]
+struct Around {
+    /// The row of pixels that it stands for; none yet.
+    y: Option<i32>,
+    /// Column of its first pixel.
+    left: i32,
+    channels: [Vec<f32>; 2],
+}
+
+impl Around {
+    /// The image at the pixels of a block, interpolated.
+    #[inline(always)]
+    fn of<S: Simd>(&mut self, simd: S, view: &View<'_>, block: &Block) -> [f32x8<S>; 2] {
+        if self.y != Some(block.y) {
+            self.load(view, block.y);
+        }
+        // Pixel 2 q lies a quarter of the way from pixel q to the one before, pixel 2 q + 1 as far towards the next.
+        let first = (block.x >> 1) - self.left;
+        let odd = (block.x & 1) as usize;
+        self.channels.each_ref().map(
+            #[inline(always)]
+            |channel| {
+                let mut values = [0.0; 10];
+                let row = channel[first.max(0) as usize..].windows(3);
+                for (pair, near) in values.chunks_exact_mut(2).zip(row) {
+                    pair[0] = near[1] + (near[0] - near[1]) * 0.25;
+                    pair[1] = near[1] + (near[2] - near[1]) * 0.25;
+                }
+                f32x8::from_slice(simd, &values[odd..odd + 8])
+            },
+        )
+    }
+
+    /// Loads what lies around row `y`, each with a pixel more on either side.
+    fn load(&mut self, view: &View<'_>, y: i32) {
+        let (window, height) = (view.window(), view.full()[1]);
+        let (near, far) = (y >> 1, (y >> 1) + if y & 1 == 0 { -1 } else { 1 });
+        let [near, far] = [near, far].map(|y| view.offset(window.x0, y.clamp(0, height - 1)));
+        let len = 4 * window.width() as usize;
+        let (near, far) = (&view.data()[near..near + len], &view.data()[far..far + len]);
+        (self.y, self.left) = (Some(y), window.x0);
+        for (at, channel) in self.channels.iter_mut().enumerate() {
+            channel.clear();
+            // Beyond the picture lies its edge; beyond the window nothing that is needed.
+            let rows = || near.iter().zip(far).skip(at).step_by(4).map(|(near, far)| near + (far - near) * 0.25);
+            channel.extend(rows().next());
+            channel.extend(rows());
+            channel.extend(rows().next_back());
+        }
+    }
 }
 
 /// Lightness of the neighbours at (dx, dy); where one is not covered, that of the pixel itself.

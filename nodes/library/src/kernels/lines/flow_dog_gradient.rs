@@ -57,7 +57,7 @@ pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, field: ImageId, options:
     };
     // A step is at least one pixel long, and a sample reaches one pixel further across.
     let support = Support::Pixels(halfwidth as u32 + 1);
-    plan.pass(&KERNEL, &[lightness, field], &params, Class::Field, support)
+    plan.pass(&KERNEL, &[lightness, field], &params, Class::Colour, support)
 }
 
 /// How far the first pass reaches, in pixels.

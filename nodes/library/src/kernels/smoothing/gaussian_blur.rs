@@ -4,10 +4,12 @@
 //! interleaved values, sixteen pixels at a time. The shader reads its windows through workgroup memory,
 //! radius / 2 + 2 loads a pixel.
 
+use crate::kernels::pairs::gaussian_blur as pair;
 pub use crate::kernels::shaders::gaussian_blur::Params;
 use crate::kernels::shared::coverage::{FULL, LEAST_COVERAGE, is_opaque};
 use crate::kernels::simd::window_sum::{GAUSSIAN_TAPS, RUN, flat, gaussian_radius, gaussian_table, sum};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, f32x16, prelude::*};
+use isophote_engine::kernel::Pair;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(gaussian_blur {
@@ -19,7 +21,15 @@ crate::kernel!(gaussian_blur {
         outliers: 0.0,
         reason: "sums of up to 511 products in the same order; only fused multiply-adds differ",
     },
+    pair: Pair { imports: pair::IMPORTS, own: pair::OWN, fits: is_window },
 });
+
+/// Whether two passes are the rows and the columns of a window.
+fn is_window(rows: &[u8], columns: &[u8]) -> bool {
+    let [rows, columns]: [Params; 2] = [rows, columns].map(bytemuck::pod_read_unaligned);
+    (rows.axis, columns.axis) == ([1, 0], [0, 1])
+        && (rows.radius, rows.weights) == (columns.radius, columns.weights)
+}
 
 /// Cut-off of the window, in standard deviations.
 const CUTOFF: f32 = 3.0;

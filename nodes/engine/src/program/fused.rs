@@ -1,0 +1,404 @@
+//! Shaders that do the work of several kernels in one dispatch.
+
+use super::format::Format;
+use super::fusion::Lead;
+use super::shader::{NEAREST_HALF, STORE, Shader, variant};
+use crate::kernel::{Import, Kernel, PAIR_WORKGROUP, WORKGROUP};
+use std::collections::HashSet;
+use std::fmt::Write as _;
+
+/// What takes the place of [`STORE`] where other kernels follow.
+const FOLLOW: &str = "follow(id, ";
+
+/// How a kernel reads what a window holds in its place.
+const FETCH: &str = "fetch(source, 0u, ";
+
+/// A kernel among those of a dispatch.
+#[derive(Clone, Debug)]
+pub(super) struct Link {
+    pub kernel: &'static Kernel,
+    /// By input: the kernel of the dispatch that has computed it; none for a texture.
+    pub values: Vec<Option<usize>>,
+}
+
+/// Kernels that run in one dispatch.
+#[derive(Clone, Debug)]
+pub(super) struct Fused {
+    pub links: Vec<Link>,
+    /// Which of them come first, together.
+    pub lead: Lead,
+    /// What is stored: the kernels that have computed it, and as what.
+    pub outputs: Vec<(usize, Format)>,
+    /// Whether what the first of several reads is held in the window that is summed, as it is at the same level.
+    pub is_held: bool,
+    /// Whether the first interpolates by a sampler.
+    pub is_filtered: bool,
+}
+
+/// The uniform bytes of several kernels: each block begins at a multiple of 16 bytes.
+pub(super) fn padded(size: usize) -> usize {
+    size.next_multiple_of(16)
+}
+
+impl Fused {
+    /// The shader.
+    pub fn shader(&self) -> Shader {
+        let kernels = || self.links.iter().map(|link| link.kernel);
+        let params_size = kernels().map(|kernel| padded(kernel.params_size)).sum();
+        let outputs: Vec<Format> = self.outputs.iter().map(|(_, format)| *format).collect();
+        Shader {
+            name: self.name().into(),
+            source: self.source().into(),
+            inputs: self.textures(),
+            outputs: outputs.into(),
+            params_size,
+            workgroup: if self.lead == Lead::Single { WORKGROUP } else { PAIR_WORKGROUP },
+            filtered: match self.links.first() {
+                Some(link) if self.is_filtered => link.kernel.parts.filtered.into(),
+                _ => (&[]).into(),
+            },
+        }
+    }
+
+    fn is_half(&self) -> bool {
+        self.outputs.iter().any(|(_, format)| *format == Format::Rgba16)
+    }
+
+    /// How many textures are read.
+    fn textures(&self) -> usize {
+        self.links.iter().flat_map(|link| &link.values).filter(|value| value.is_none()).count()
+    }
+
+    fn name(&self) -> String {
+        let mut name = String::new();
+        for (place, link) in self.links.iter().enumerate() {
+            let is_lead = place < self.lead.len();
+            let between = if place == 0 { "" } else if is_lead { "&" } else { "+" };
+            let _ = write!(name, "{between}{}", link.kernel.name);
+            let taken: Vec<usize> = (0..link.values.len()).filter(|at| link.values[*at].is_some()).collect();
+            match taken[..] {
+                _ if is_lead => {}
+                [0] if link.values[0] == Some(place - 1) => {}
+                [at] if link.values[at] == Some(place - 1) => drop(write!(name, "@{at}")),
+                _ => {
+                    let value = |value: &Option<usize>| value.map_or("t".to_owned(), |place| place.to_string());
+                    let values: Vec<String> = link.values.iter().map(value).collect();
+                    let _ = write!(name, "@({})", values.join(","));
+                }
+            }
+            if place + 1 < self.links.len() && self.outputs.iter().any(|(of, _)| *of == place) {
+                name.push('*');
+            }
+        }
+        name + variant(self.is_half(), self.is_filtered)
+    }
+
+    /// The module. What kernels after the first declare gets the number of their place behind its name, so that two may use
+    /// the same names.
+    fn source(&self) -> String {
+        let mut text = self.imports();
+        text.push_str(&self.uniforms());
+        let mut bindings = Bindings { text: String::new(), count: 0 };
+        let following = match self.lead {
+            Lead::Single => self.single(&mut bindings, &mut text),
+            _ => self.window(&mut bindings, &mut text),
+        };
+        let following = following + &self.followers(&mut bindings, &mut text);
+        text.push_str(&bindings.text);
+        let mut stores = String::new();
+        for (at, (place, format)) in self.outputs.iter().enumerate() {
+            let image = if at == 0 { "target_image".to_owned() } else { format!("target_image_{at}") };
+            let binding = 2 + bindings.count + at;
+            let _ = writeln!(
+                text,
+                "@group(0) @binding({binding}) var {image}: texture_storage_2d<{}, write>;",
+                format.wgsl()
+            );
+            let value = format!("value_{place}");
+            let value = if *format == Format::Rgba16 { format!("nearest_half({value})") } else { value };
+            let _ = writeln!(stores, "    textureStore({image}, vec2i(id.xy), {value});");
+        }
+        let _ = write!(text, "\nfn follow(id: vec3u, first: vec4f) {{\n{following}{stores}}}\n");
+        if self.is_half() {
+            text.push_str(NEAREST_HALF);
+        }
+        text
+    }
+
+    /// What the kernels import, each text once.
+    fn imports(&self) -> String {
+        let mut text = String::new();
+        let mut known: HashSet<&str> = HashSet::new();
+        for (place, link) in self.links.iter().enumerate() {
+            let pair = link.kernel.pair.as_ref().filter(|_| self.is_of_pair(place));
+            let imports = pair.map_or(link.kernel.parts.imports, |pair| pair.imports);
+            for Import { text: loaded, filtered, .. } in imports.iter().filter(|import| known.insert(import.name)) {
+                // Only what the first kernel imports may know of its parameters.
+                for line in filtered.filter(|_| self.is_filtered).unwrap_or(loaded).lines() {
+                    rename(line, &mut text, |word| (word == "params").then(|| "uniforms.params_0".to_owned()));
+                    text.push('\n');
+                }
+            }
+        }
+        text
+    }
+
+    /// Whether a kernel is the rows or the columns of a window.
+    fn is_of_pair(&self, place: usize) -> bool {
+        self.lead != Lead::Single && (self.lead.len() - 2..self.lead.len()).contains(&place)
+    }
+
+    /// One uniform block with the blocks of all kernels, if any has one.
+    fn uniforms(&self) -> String {
+        let places = || self.links.iter().enumerate().filter(|(_, link)| link.kernel.params_size > 0);
+        if places().next().is_none() {
+            return String::new();
+        }
+        let mut text = String::from("struct Uniforms {\n");
+        for (place, _) in places() {
+            // Rows and columns have blocks of one kind.
+            let ty = if self.is_of_pair(place) { self.lead.len() - 2 } else { place };
+            let _ = writeln!(text, "    @align(16) params_{place}: Params_{ty},");
+        }
+        text.push_str("}\n@group(0) @binding(1) var<uniform> uniforms: Uniforms;\n");
+        text
+    }
+
+    /// Adds the text of a first kernel; returns what begins the function of those that follow.
+    fn single(&self, bindings: &mut Bindings, text: &mut String) -> String {
+        let link = &self.links[0];
+        let own = Own::new(link.kernel.parts.own, 0);
+        let (arguments, _) = bindings.of(link, &own.textures);
+        if link.kernel.parts.is_per_pixel {
+            let _ = write!(
+                text,
+                "@compute @workgroup_size(8, 8)\nfn main(@builtin(global_invocation_id) id: vec3u) {{\n    \
+                 if !outside(id) {{\n        {FOLLOW}of_pixel(id{arguments}));\n    }}\n}}\n"
+            );
+        }
+        text.push_str(&own.text);
+        format!("    let value_0 = {};\n", stored("first", link.kernel.outputs[0]))
+    }
+
+    /// Adds the texts of a window and of what it sums; returns the same.
+    fn window(&self, bindings: &mut Bindings, text: &mut String) -> String {
+        let (rows, last) = (self.lead.len() - 2, self.lead.len() - 1);
+        let kernel = self.links[rows].kernel;
+        let Some(pair) = &kernel.pair else { return String::new() };
+        if rows > 0 {
+            let produced = produced(self.links[0].kernel.parts.own);
+            let own = Own::new(produced, 0);
+            bindings.of(&self.links[0], &own.textures);
+            text.push_str(&if self.is_held { own.text.replace(FETCH, "pair_held(") } else { own.text });
+        } else {
+            bindings.of(&self.links[0], &["source".to_owned()]);
+        }
+        let block = block(kernel.parts.own);
+        text.push_str(&block.replacen("struct Params ", &format!("struct Params_{rows} "), 1));
+        let source = if rows > 0 { "at_place(p)" } else { "fetch(source, 0u, p)" };
+        let _ = writeln!(text, "fn pair_source(p: vec2i) -> vec4f {{\n    return {source};\n}}");
+        text.push_str(if rows > 0 && self.is_held { HOLDING } else { HOLDING_NOTHING });
+        for line in pair.own.lines() {
+            rename(line, text, |word| match word {
+                "rows_params" => Some(format!("uniforms.params_{rows}")),
+                "columns_params" => Some(format!("uniforms.params_{last}")),
+                _ => None,
+            });
+            text.push('\n');
+        }
+        *text = text.replace(STORE, FOLLOW);
+        format!("    let value_{last} = {};\n", stored("first", kernel.outputs[0]))
+    }
+
+    /// Adds the texts of the kernels that follow; returns the lines that call them.
+    fn followers(&self, bindings: &mut Bindings, text: &mut String) -> String {
+        let mut following = String::new();
+        for (place, link) in self.links.iter().enumerate().skip(self.lead.len()) {
+            let mut own = Own::new(link.kernel.parts.own, place);
+            let (arguments, slots) = bindings.of(link, &own.textures);
+            own.place(&slots);
+            let call = format!("of_pixel_{place}(id{arguments})");
+            let _ = writeln!(following, "    let value_{place} = {};", stored(&call, link.kernel.outputs[0]));
+            text.push_str(&own.text);
+        }
+        following
+    }
+}
+
+/// The textures that are read, so far.
+struct Bindings {
+    text: String,
+    count: usize,
+}
+
+impl Bindings {
+    /// Binds the textures of a kernel under these names. Returns the arguments of its function of single pixels, each with
+    /// a comma before it, and the slots of its inputs.
+    fn of(&mut self, link: &Link, names: &[String]) -> (String, Vec<Option<usize>>) {
+        let (mut arguments, mut slots) = (String::new(), Vec::new());
+        for (input, (name, value)) in names.iter().zip(&link.values).enumerate() {
+            let is_around = link.kernel.parts.around.contains(&input);
+            if let Some(place) = value {
+                let _ = write!(arguments, ", value_{place}");
+                slots.push(None);
+                continue;
+            }
+            let slot = self.count;
+            let _ = writeln!(self.text, "@group(0) @binding({}) var {name}: texture_2d<f32>;", slot + 2);
+            if !is_around {
+                let _ = write!(arguments, ", fetch({name}, {slot}u, pixel(id))");
+            }
+            slots.push(Some(slot));
+            self.count += 1;
+        }
+        (arguments, slots)
+    }
+}
+
+/// What a window holds at first: what the pass before reads, as far around as it reads. Later it holds what rows sum, and
+/// then their sums.
+const HOLDING: &str = "
+var<private> pair_corner: vec2i;
+var<private> pair_stride: i32;
+
+// Loads the part of the picture of `size` from `first` on that the invocations of a workgroup need.
+fn pair_hold(first: vec2i, size: vec2i, index: i32) {
+    pair_corner = first - grid.halo;
+    pair_stride = size.x + 2 * grid.halo.x;
+    let count = pair_stride * (size.y + 2 * grid.halo.y);
+    for (var i = index; i < count; i += 256) {
+        pair_window[i] = fetch(source, 0u, pair_corner + vec2i(i % pair_stride, i / pair_stride));
+    }
+    workgroupBarrier();
+}
+
+fn pair_held(p: vec2i) -> vec4f {
+    let at = p - pair_corner;
+    return pair_window[at.y * pair_stride + at.x];
+}
+
+";
+
+/// Where the pass before reads another level, or there is none.
+const HOLDING_NOTHING: &str = "
+fn pair_hold(first: vec2i, size: vec2i, index: i32) {
+}
+
+";
+
+/// The part of a kernel's own text that computes it anywhere.
+fn produced(own: &str) -> &str {
+    let end = own.match_indices('\n').map(|(at, _)| at + 1).find(|at| {
+        let rest = &own[*at..];
+        rest.starts_with("var<workgroup>") || rest.starts_with("@compute")
+    });
+    &own[..end.unwrap_or(own.len())]
+}
+
+/// The struct of a kernel's parameters.
+fn block(own: &str) -> &str {
+    let start = own.find("struct Params ").unwrap_or(own.len());
+    let end = own[start..].find("\n}\n").map_or(own.len(), |at| start + at + 3);
+    &own[start..end]
+}
+
+/// A value as it would be read from a texture with so many channels.
+fn stored(value: &str, channels: u32) -> String {
+    match channels {
+        1 => format!("vec4f(({value}).x, 0.0, 0.0, 1.0)"),
+        2 => format!("vec4f(({value}).xy, 0.0, 1.0)"),
+        _ => value.to_owned(),
+    }
+}
+
+/// A kernel's own text among those of others.
+struct Own {
+    /// Without bindings, and with other names for what it declares.
+    text: String,
+    /// The new names of the textures that it reads, in their order.
+    textures: Vec<String>,
+}
+
+impl Own {
+    fn new(own: &str, place: usize) -> Self {
+        // The first kernel keeps its names, by which what it imports may call it; only its parameters lie elsewhere.
+        let declared: HashSet<&str> = match place {
+            0 => ["params", "Params"].into(),
+            _ => own.lines().filter_map(declared).filter(|name| *name != "target_image").collect(),
+        };
+        let bindings = || own.lines().filter(|line| line.starts_with("@group"));
+        let read = bindings().filter(|line| line.ends_with("texture_2d<f32>;")).filter_map(declared_name);
+        let renamed = |name: &str| if place == 0 { name.to_owned() } else { format!("{name}_{place}") };
+        let textures = read.map(renamed).collect();
+        let mut text = String::with_capacity(own.len() * 2);
+        let mut is_struct = false;
+        for line in own.lines().filter(|line| !line.starts_with("@group")) {
+            is_struct = line.starts_with("struct ") || is_struct && line != "}";
+            // The fields of a struct keep their names.
+            let (field, line) = match line.find(':').filter(|_| is_struct && line.starts_with(' ')) {
+                Some(at) => line.split_at(at),
+                None => ("", line),
+            };
+            text.push_str(field);
+            rename(line, &mut text, |word| match word {
+                "params" if declared.contains(word) => Some(format!("uniforms.params_{place}")),
+                _ => declared.contains(word).then(|| format!("{word}_{place}")),
+            });
+            text.push('\n');
+        }
+        Self { text: text.replace(STORE, FOLLOW), textures }
+    }
+
+    /// Says at which slots its textures lie that it reads itself.
+    fn place(&mut self, slots: &[Option<usize>]) {
+        let lines = self.text.lines().map(|line| {
+            let slot = line.starts_with("const INPUT_").then(|| line.split_once('=')).flatten();
+            let slot = slot.and_then(|(start, n)| Some((start, n.trim().trim_end_matches("u;").parse::<usize>().ok()?)));
+            match slot.and_then(|(start, n)| Some((start, slots.get(n).copied()??))) {
+                Some((start, slot)) => format!("{start}= {slot}u;\n"),
+                None => format!("{line}\n"),
+            }
+        });
+        self.text = lines.collect();
+    }
+}
+
+/// The name that a line declares for the whole module, if it does.
+fn declared(line: &str) -> Option<&str> {
+    let is_declaration = ["fn ", "struct ", "const ", "override ", "var<", "alias ", "@group"];
+    is_declaration.iter().any(|start| line.starts_with(start)).then(|| declared_name(line)).flatten()
+}
+
+fn declared_name(line: &str) -> Option<&str> {
+    let rest =
+        ["fn ", "struct ", "const ", "override ", "alias "].iter().find_map(|start| line.strip_prefix(start));
+    // Variables may have an address space before their name.
+    let rest =
+        rest.or_else(|| line.split_once("var<").and_then(|(_, rest)| rest.split_once("> ")).map(|(_, r)| r));
+    let rest = rest.or_else(|| line.split_once(" var ").map(|(_, rest)| rest))?;
+    rest.split(|c: char| !is_letter(c)).next().filter(|name| !name.is_empty())
+}
+
+fn is_letter(c: char) -> bool {
+    c.is_ascii_alphanumeric() || c == '_'
+}
+
+/// Appends `line` to `text` with other words where `other` has one, but for fields of structs and comments.
+fn rename(line: &str, text: &mut String, other: impl Fn(&str) -> Option<String>) {
+    let (code, comment) = line.find("//").map_or((line, ""), |at| line.split_at(at));
+    let mut rest = code;
+    while let Some(start) = rest.find(is_letter) {
+        let (before, word) = rest.split_at(start);
+        let end = word.find(|c| !is_letter(c)).unwrap_or(word.len());
+        let (word, after) = word.split_at(end);
+        text.push_str(before);
+        let is_field = before.ends_with('.') || (before.is_empty() && text.ends_with('.'));
+        match other(word).filter(|_| !is_field) {
+            Some(new) => text.push_str(&new),
+            None => text.push_str(word),
+        }
+        rest = after;
+    }
+    text.push_str(rest);
+    text.push_str(comment);
+}
