@@ -99,7 +99,13 @@ mod tests {
     ]}"#;
 
     fn now(size: (u32, u32), kernels: [&str; 2]) -> Entry {
-        let pass = |kernel: &str| PassEntry { kernel: kernel.into(), seconds: 1e-3, pixels: 48, bytes: None, work: None };
+        let pass = |kernel: &str| PassEntry {
+            kernel: kernel.into(),
+            seconds: 1e-3,
+            pixels: 48,
+            bytes: None,
+            work: None,
+        };
         Entry {
             node: "gaussian".into(),
             backend: "cpu",

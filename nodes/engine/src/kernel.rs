@@ -99,16 +99,15 @@ pub struct Import {
 
 impl Parts {
     /// Of a kernel that always has passes of its own.
-    pub const NONE: Self =
-        Self {
-            imports: &[],
-            own: "",
-            is_per_pixel: false,
-            around: &[],
-            can_produce: false,
-            filtered: &[],
-            can_lead: false,
-        };
+    pub const NONE: Self = Self {
+        imports: &[],
+        own: "",
+        is_per_pixel: false,
+        around: &[],
+        can_produce: false,
+        filtered: &[],
+        can_lead: false,
+    };
 }
 
 impl PartialEq for &'static Kernel {

@@ -16,6 +16,14 @@ pub enum Precision {
     Fast,
 }
 
+impl Precision {
+    /// Whether the rows and the columns of small windows run in one dispatch: the same numbers with fewer bytes and more
+    /// arithmetic, which drivers that compute on the CPU are slow at. Those who ask for speed have a graphics card.
+    pub(super) const fn fuses_windows(self) -> bool {
+        !matches!(self, Self::Exact)
+    }
+}
+
 /// Format of a texture's texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Format {
@@ -42,7 +50,9 @@ impl Format {
     /// That of a virtual image.
     pub fn of(desc: ImageDesc, precision: Precision) -> Self {
         match Self::exact(desc.channels) {
-            Self::Rg32 | Self::Rgba32 if precision != Precision::Exact && desc.class == Class::Colour => Self::Rgba16,
+            Self::Rg32 | Self::Rgba32 if precision != Precision::Exact && desc.class == Class::Colour => {
+                Self::Rgba16
+            }
             exact => exact,
         }
     }

@@ -73,7 +73,13 @@ impl Fused {
         let mut name = String::new();
         for (place, link) in self.links.iter().enumerate() {
             let is_lead = place < self.lead.len();
-            let between = if place == 0 { "" } else if is_lead { "&" } else { "+" };
+            let between = if place == 0 {
+                ""
+            } else if is_lead {
+                "&"
+            } else {
+                "+"
+            };
             let _ = write!(name, "{between}{}", link.kernel.name);
             let taken: Vec<usize> = (0..link.values.len()).filter(|at| link.values[*at].is_some()).collect();
             match taken[..] {
@@ -81,7 +87,8 @@ impl Fused {
                 [0] if link.values[0] == Some(place - 1) => {}
                 [at] if link.values[at] == Some(place - 1) => drop(write!(name, "@{at}")),
                 _ => {
-                    let value = |value: &Option<usize>| value.map_or("t".to_owned(), |place| place.to_string());
+                    let value =
+                        |value: &Option<usize>| value.map_or("t".to_owned(), |place| place.to_string());
                     let values: Vec<String> = link.values.iter().map(value).collect();
                     let _ = write!(name, "@({})", values.join(","));
                 }
@@ -132,10 +139,14 @@ impl Fused {
         for (place, link) in self.links.iter().enumerate() {
             let pair = link.kernel.pair.as_ref().filter(|_| self.is_of_pair(place));
             let imports = pair.map_or(link.kernel.parts.imports, |pair| pair.imports);
-            for Import { text: loaded, filtered, .. } in imports.iter().filter(|import| known.insert(import.name)) {
+            for Import { text: loaded, filtered, .. } in
+                imports.iter().filter(|import| known.insert(import.name))
+            {
                 // Only what the first kernel imports may know of its parameters.
                 for line in filtered.filter(|_| self.is_filtered).unwrap_or(loaded).lines() {
-                    rename(line, &mut text, |word| (word == "params").then(|| "uniforms.params_0".to_owned()));
+                    rename(line, &mut text, |word| {
+                        (word == "params").then(|| "uniforms.params_0".to_owned())
+                    });
                     text.push('\n');
                 }
             }
@@ -353,7 +364,8 @@ impl Own {
     fn place(&mut self, slots: &[Option<usize>]) {
         let lines = self.text.lines().map(|line| {
             let slot = line.starts_with("const INPUT_").then(|| line.split_once('=')).flatten();
-            let slot = slot.and_then(|(start, n)| Some((start, n.trim().trim_end_matches("u;").parse::<usize>().ok()?)));
+            let slot = slot
+                .and_then(|(start, n)| Some((start, n.trim().trim_end_matches("u;").parse::<usize>().ok()?)));
             match slot.and_then(|(start, n)| Some((start, slots.get(n).copied()??))) {
                 Some((start, slot)) => format!("{start}= {slot}u;\n"),
                 None => format!("{line}\n"),

@@ -48,8 +48,11 @@ const MAX_OUTPUTS: usize = 3;
 ///
 /// A dispatch of several passes runs where its last pass stands, or, where it stores more than one image, where its first
 /// does. No other pass reads what lies between its passes, so that none is missed that stands among them.
-pub(super) fn fusions(plan: &Plan) -> Vec<Fusion> {
-    let mut fusing = Fusing { plan, readers: readers(plan), done: Vec::new() };
+///
+/// Windows are fused if `windows` says so: that moves fewer bytes and computes more, which devices without memory of their
+/// own for workgroups, such as drivers that compute on the CPU, pay for dearly.
+pub(super) fn fusions(plan: &Plan, windows: bool) -> Vec<Fusion> {
+    let mut fusing = Fusing { plan, windows, readers: readers(plan), done: Vec::new() };
     for (index, pass) in plan.passes().iter().enumerate() {
         fusing.add(index, pass);
     }
@@ -87,14 +90,14 @@ fn readers(plan: &Plan) -> Vec<usize> {
 /// A plan on its way to dispatches.
 struct Fusing<'p> {
     plan: &'p Plan,
+    windows: bool,
     readers: Vec<usize>,
     done: Vec<Fusion>,
 }
 
 impl Fusing<'_> {
     fn add(&mut self, index: usize, pass: &Pass) {
-        let alone =
-            || Fusion { passes: vec![index], lead: Lead::Single, outputs: pass.outputs.clone() };
+        let alone = || Fusion { passes: vec![index], lead: Lead::Single, outputs: pass.outputs.clone() };
         let fused = self
             .columns(index, pass)
             .or_else(|| pass.kernel.parts.is_per_pixel.then(|| self.end(index, pass)).flatten());
@@ -117,10 +120,11 @@ impl Fusing<'_> {
 
     /// The dispatch of a window whose columns `pass` sums.
     fn columns(&mut self, index: usize, pass: &Pass) -> Option<Fusion> {
-        let pair = pass.kernel.pair.as_ref()?;
+        let pair = pass.kernel.pair.as_ref().filter(|_| self.windows)?;
         let rows = self.only_read_by(pass.inputs[0])?;
         let [first] = self.done[rows].passes[..] else { return None };
-        let is_pair = self.pass(first).kernel == pass.kernel && (pair.fits)(&self.pass(first).params, &pass.params);
+        let is_pair =
+            self.pass(first).kernel == pass.kernel && (pair.fits)(&self.pass(first).params, &pass.params);
         let mut passes = vec![first, index];
         reaches(self.plan, &passes, Lead::Pair).filter(|_| is_pair)?;
         self.done.remove(rows);

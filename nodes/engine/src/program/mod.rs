@@ -10,7 +10,8 @@
 //! directions, clamped to the edge.
 //!
 //! Passes are fused where what lies between them need not exist: those that compute each pixel from the same pixel of what
-//! another pass has computed run in the dispatch of that one, as do the rows and the columns of small windows.
+//! another pass has computed run in the dispatch of that one, as do, where precision may be traded for speed, the rows and
+//! the columns of small windows.
 
 mod format;
 mod fused;
@@ -22,8 +23,8 @@ pub use shader::Shader;
 
 use crate::error::{Error, Result};
 use crate::image::Rect;
-pub use crate::kernel::SAMPLER_BINDING;
 use crate::kernel::MAX_INPUTS;
+pub use crate::kernel::SAMPLER_BINDING;
 use crate::plan::{Class, ImageId, Pass, Plan, Port, Support};
 use fused::{Fused, Link, padded};
 use fusion::{Fusion, Lead, external, fusions, reaches};
@@ -131,7 +132,7 @@ impl Program {
         // The windows of the whole picture are whole, however far the passes read.
         let [width, height] = plan.size();
         let is_whole = region == Rect::of_size(width, height);
-        let fusions = fusions(plan);
+        let fusions = fusions(plan, precision.fuses_windows());
         let mut lowering = Lowering::new(plan, plan.windows(region), precision);
         fusions.iter().for_each(|fusion| lowering.align(fusion));
         lowering.add_ports()?;

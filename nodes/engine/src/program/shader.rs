@@ -100,4 +100,3 @@ fn stored_as(source: &str, outputs: &[Format]) -> String {
     }
     text
 }
-

@@ -193,7 +193,7 @@ pub static SHIFT: LazyLock<Kernel> = LazyLock::new(|| {
         outputs: &[4],
         params_size: size_of::<ShiftParams>(),
         parts: Parts::NONE,
-    pair: None,
+        pair: None,
         cpu: shift_cpu,
         cost: |_| 1.0,
         tolerance: EXACT,

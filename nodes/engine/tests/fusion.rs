@@ -1,4 +1,4 @@
-//! Passes of single pixels run in the dispatch of the pass before them, and give what they give by themselves.
+//! Passes that are fused run in one dispatch, and give what they give by themselves.
 #![cfg(feature = "gpu")]
 
 mod support;
@@ -24,6 +24,9 @@ struct Amount {
 
 macro_rules! kernel {
     ($kernel:ident, $inputs:expr, $channels:expr, $is_per_pixel:expr, $main:expr, $own:expr, $cpu:expr) => {
+        kernel!($kernel, $inputs, $channels, $is_per_pixel, &[], $main, $own, $cpu);
+    };
+    ($kernel:ident, $inputs:expr, $channels:expr, $is_per_pixel:expr, $around:expr, $main:expr, $own:expr, $cpu:expr) => {
         static $kernel: Kernel = Kernel {
             name: stringify!($kernel),
             shader: concat!(include_str!("../../../shaders/gpu/grid.wgsl"), $own, $main),
@@ -34,6 +37,7 @@ macro_rules! kernel {
                 imports: &[&GRID],
                 own: $own,
                 is_per_pixel: $is_per_pixel,
+                around: $around,
                 can_lead: true,
                 ..Parts::NONE
             },
@@ -152,6 +156,43 @@ fn of_pixel(id: vec3u, picture: vec4f, factor: vec4f) -> vec4f {
     }
 );
 
+// A picture's right neighbour times a number of another one.
+kernel!(
+    BESIDE,
+    2,
+    4,
+    true,
+    &[0],
+    "
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) {
+        return;
+    }
+    textureStore(target_image, vec2i(id.xy), of_pixel(id, fetch(factor, 1u, pixel(id))));
+}
+",
+    "
+struct Params { amount: f32 }
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var picture: texture_2d<f32>;
+@group(0) @binding(3) var factor: texture_2d<f32>;
+@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+const INPUT_PICTURE: u32 = 0u;
+fn of_pixel(id: vec3u, factor: vec4f) -> vec4f {
+    return params.amount * factor.x * fetch(picture, INPUT_PICTURE, pixel(id) + vec2i(1, 0));
+}
+",
+    |pass, band| {
+        let amount = pass.params::<Amount>().amount;
+        let [picture, factor] = pass.inputs else { return };
+        each(band, 4, |x, y, out| {
+            let (v, f) = (picture.pixel4(x + 1, y), factor.pixel1(x, y));
+            (0..4).for_each(|c| out[c] = amount * f * v[c]);
+        });
+    }
+);
+
 fn each(band: &mut Band<'_>, channels: usize, mut of: impl FnMut(i32, i32, &mut [f32])) {
     let window = band.window;
     for y in window.y0..window.y1 {
@@ -170,6 +211,10 @@ fn sum(b: &mut PlanBuilder, image: ImageId, amount: f32) -> ImageId {
 
 fn blend(b: &mut PlanBuilder, images: [ImageId; 2], amount: f32) -> ImageId {
     b.pass(&BLEND, &images, &Amount { amount }, Class::Colour, Support::Pixels(0))
+}
+
+fn beside(b: &mut PlanBuilder, images: [ImageId; 2], amount: f32) -> ImageId {
+    b.pass(&BESIDE, &images, &Amount { amount }, Class::Colour, Support::Pixels(1))
 }
 
 /// Slopes, their sum, and the source times that.
@@ -224,10 +269,10 @@ fn worst(a: &Image, b: &Image) -> f32 {
 fn single_pixels_follow_in_one_dispatch() {
     assert_eq!(names(&plan(2.0)), ["SLOPE+SUM+BLEND@1"]);
     let program = Program::lower(&plan(2.0), Rect::of_size(53, 37)).unwrap();
-    // The source, for both kernels that read it, and the result.
+    // The source, which two kernels read, and the result.
     assert_eq!(program.textures.len(), 2);
     assert_eq!(program.dispatches[0].params.len(), 48);
-    assert_eq!(program.bytes_moved(), 3 * 53 * 37 * 16);
+    assert_eq!(program.bytes_moved(), 2 * 53 * 37 * 16);
     let Some(device) = device() else { return };
     let (plan, source, region) = (plan(2.0), picture(), Rect::of_size(53, 37));
     let expected = on_cpu(&plan, &source, region);
@@ -251,6 +296,70 @@ fn what_several_read_or_what_leaves_is_written() {
     b.output("result", blended);
     b.output("sums", sums);
     assert_eq!(names(&b.finish().unwrap()), ["SLOPE", "SUM", "BLEND"]);
+}
+
+/// Runs a plan as a whole and in part on both executors.
+fn compare(plan: &Plan) {
+    let Some(device) = device() else { return };
+    let source = picture();
+    let mut executor = Executor::new(device);
+    for region in [Rect::of_size(53, 37), Rect { x0: 13, y0: 5, x1: 44, y1: 30 }] {
+        let results = executor.run_images(plan, &[("source", &source)], region, Control::default()).unwrap();
+        assert!(worst(&on_cpu(plan, &source, region), &results[0]) < 1e-5);
+    }
+}
+
+#[test]
+fn what_follows_from_a_stored_pixel_is_stored_besides() {
+    let mut b = PlanBuilder::new(53, 37).unwrap();
+    let source = b.input("source", 4, Class::Colour);
+    let first = slope(&mut b, source, 1.0);
+    // Reads farther than what is stored besides.
+    let second = slope(&mut b, first, 0.5);
+    let factor = sum(&mut b, first, 0.5);
+    let third = slope(&mut b, second, 0.5);
+    let blended = blend(&mut b, [third, factor], 0.0);
+    b.output("result", blended);
+    let plan = b.finish().unwrap();
+    assert_eq!(names(&plan), ["SLOPE*+SUM", "SLOPE", "SLOPE+BLEND"]);
+    compare(&plan);
+}
+
+#[test]
+fn several_chains_of_single_pixels_join() {
+    let mut b = PlanBuilder::new(53, 37).unwrap();
+    let source = b.input("source", 4, Class::Colour);
+    let first = slope(&mut b, source, 1.0);
+    let factor = sum(&mut b, source, 0.5);
+    let blended = blend(&mut b, [first, factor], 0.01);
+    b.output("result", blended);
+    let plan = b.finish().unwrap();
+    assert_eq!(names(&plan), ["SLOPE+SUM@(t)+BLEND@(0,1)"]);
+    compare(&plan);
+}
+
+#[test]
+fn what_a_kernel_reads_itself_stays_a_texture() {
+    let mut b = PlanBuilder::new(53, 37).unwrap();
+    let source = b.input("source", 4, Class::Colour);
+    let first = slope(&mut b, source, 1.0);
+    let factor = sum(&mut b, first, 0.5);
+    let shifted = beside(&mut b, [source, factor], 0.5);
+    b.output("result", shifted);
+    let plan = b.finish().unwrap();
+    assert_eq!(names(&plan), ["SLOPE+SUM+BESIDE@1"]);
+    compare(&plan);
+
+    let mut b = PlanBuilder::new(53, 37).unwrap();
+    let source = b.input("source", 4, Class::Colour);
+    let first = slope(&mut b, source, 1.0);
+    let factor = sum(&mut b, source, 0.5);
+    // The neighbours of the slopes are not those of a single pixel.
+    let shifted = beside(&mut b, [first, factor], 0.5);
+    b.output("result", shifted);
+    let plan = b.finish().unwrap();
+    assert_eq!(names(&plan), ["SLOPE", "SUM+BESIDE@1"]);
+    compare(&plan);
 }
 
 #[test]
@@ -293,7 +402,7 @@ fn half_precision_halves_the_bytes_and_rounds() {
     let formats: Vec<Format> = program.textures.iter().map(|texture| texture.format).collect();
     assert_eq!(formats, [Format::Rgba32, Format::Rgba16]);
     assert_eq!(program.dispatches[0].shader.name, "SLOPE+SUM+BLEND@1/half");
-    assert_eq!(program.bytes_moved(), 53 * 37 * (2 * 16 + 8));
+    assert_eq!(program.bytes_moved(), 53 * 37 * (16 + 8));
     let Some(device) = device() else { return };
     let mut executor = Executor::new(device);
     executor.set_precision(Precision::Half);
