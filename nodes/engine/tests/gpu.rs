@@ -93,14 +93,44 @@ fn tiles_equal_the_whole() {
         let tiled = on_gpu(&mut executor, &plan, &source, region);
         let after = device.counts();
         assert!(after.submissions - before.submissions >= 4, "nothing was cut");
-        // All tiles run in the textures of one program.
-        assert_eq!((after.textures, after.buffers), (before.textures, before.buffers));
+        // All tiles run in the textures of one program; two of them are on their way at once.
+        assert_eq!(after.textures, before.textures);
+        assert!(after.buffers <= before.buffers + 1);
         assert_eq!(tiled, whole);
+        on_gpu(&mut executor, &plan, &source, region);
+        assert_eq!((device.counts().textures, device.counts().buffers), (after.textures, after.buffers));
     }
     assert_eq!(submissions, 1);
     executor.set_limits(24, u64::MAX);
     let refused = executor.run_images(&plan, &[("source", &source)], region, Control::default());
     assert!(matches!(refused, Err(Error::Geometry(_))), "{refused:?}");
+}
+
+#[test]
+fn much_work_is_cut() {
+    let Some(device) = device() else { return };
+    let plan = plan(203, 151, 1.0);
+    let source = noise(203, 151, 4);
+    let region = Rect::of_size(203, 151);
+    let operations: Vec<f64> = Program::lower(&plan, region).unwrap().operations(&plan).collect();
+    let most = operations.iter().copied().fold(0.0, f64::max);
+    let mut executor = Executor::new(Arc::clone(&device));
+    let mut submissions = |work: f64| {
+        executor.set_work(work);
+        let before = device.counts().submissions;
+        let result = on_gpu(&mut executor, &plan, &source, region);
+        (result, device.counts().submissions - before)
+    };
+    let (whole, one) = submissions(f64::INFINITY);
+    assert_eq!(one, 1);
+    // Every dispatch is allowed, but not all of them in one submission.
+    let (parts, several) = submissions(1.5 * most);
+    assert!(several > 1 && several <= operations.len() as u64, "{several}");
+    assert_eq!(parts, whole);
+    // The dearest dispatch is too much for one.
+    let (tiles, many) = submissions(0.3 * most);
+    assert!(many > several, "{many}");
+    assert_eq!(tiles, whole);
 }
 
 #[test]

@@ -12,11 +12,15 @@ use std::sync::Arc;
 pub struct Executor {
     pub(super) device: Arc<Device>,
     pool: Arc<Pool>,
-    pub(super) warm: Vec<Warm>,
+    /// Programs with textures of their own, kept between runs.
+    pub(super) warm: Vec<Prepared>,
+    /// Buffers to read results back, while no results are on their way in them.
+    pub(super) readbacks: Vec<wgpu::Buffer>,
     /// Pixels on their way to a texture.
     pub(super) staged: Vec<u8>,
     pub(super) max_side: u32,
     pub(super) budget: u64,
+    pub(super) work: f64,
     pub(super) precision: Precision,
 }
 
@@ -25,16 +29,24 @@ impl Executor {
     /// the smaller graphics cards of today can spare.
     pub const DEFAULT_BUDGET: u64 = 2 << 30;
 
+    /// Operations of a dispatch and of a submission at most, unless set otherwise: half a second on the slowest graphics
+    /// devices. Systems reset a device that does not answer for two.
+    pub const DEFAULT_WORK: f64 = 5e10;
+
     /// An executor on `device`.
     pub fn new(device: Arc<Device>) -> Self {
         let max_side = device.max_side();
+        // Nothing waits for a driver that computes on the CPU but who called it.
+        let work = if device.is_software() { f64::INFINITY } else { Self::DEFAULT_WORK };
         Self {
             device,
             pool: Arc::default(),
             warm: Vec::new(),
+            readbacks: Vec::new(),
             staged: Vec::new(),
             max_side,
             budget: Self::DEFAULT_BUDGET,
+            work,
             precision: Precision::default(),
         }
     }
@@ -49,6 +61,12 @@ impl Executor {
     pub fn set_limits(&mut self, max_side: u32, budget: u64) {
         self.max_side = max_side.clamp(1, self.device.max_side());
         self.budget = budget;
+    }
+
+    /// Sets how much [`Executor::run_images`] gives the device to do at once: operations (fused multiply-adds, or others of
+    /// like cost) of a dispatch, above which a picture is cut into tiles, and of a submission.
+    pub fn set_work(&mut self, operations: f64) {
+        self.work = operations;
     }
 
     /// Sets how precisely [`Executor::run_images`] computes; exactly, unless set otherwise.
@@ -76,20 +94,8 @@ impl Executor {
     /// Gives back all memory kept for later runs; pipelines stay with the device.
     pub fn purge(&mut self) {
         self.warm.clear();
+        self.readbacks.clear();
         self.pool.clear();
         self.staged = Vec::new();
-    }
-}
-
-/// A prepared program with textures of its own and the way back to the CPU, kept between runs.
-#[derive(Debug)]
-pub(super) struct Warm {
-    pub(super) prepared: Prepared,
-    pub(super) readback: wgpu::Buffer,
-}
-
-impl Warm {
-    pub(super) fn bytes(&self) -> u64 {
-        self.prepared.bytes() + self.readback.size()
     }
 }

@@ -8,6 +8,7 @@ use crate::cpu::PassTime;
 use crate::error::{Error, Result};
 use crate::program::{Format, Grid, Program, Role, SAMPLER_BINDING, Shader};
 use std::num::NonZeroU64;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// One texture of the program.
@@ -304,6 +305,11 @@ impl Prepared {
     /// [`Error::Input`] naming the input or output that is not bound, [`Error::Device`] when the
     /// device is lost.
     pub fn encode(&self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
+        self.encode_some(encoder, 0..self.passes.len())
+    }
+
+    /// Records some of the dispatches, which are timed only together with all others.
+    pub(super) fn encode_some(&self, encoder: &mut wgpu::CommandEncoder, some: Range<usize>) -> Result<()> {
         self.device.check()?;
         if let Some(slot) = self.slots.iter().find(|s| s.view.is_none()) {
             return Err(Error::Input(format!("no texture is bound to the program's {:?}", slot.role)));
@@ -314,12 +320,12 @@ impl Prepared {
             compute.set_bind_group(0, &pass.group, &[]);
             compute.dispatch_workgroups(x, y, z);
         };
-        let Some(timer) = &self.timer else {
+        let Some(timer) = self.timer.as_ref().filter(|_| some.len() == self.passes.len()) else {
             let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("isophote"),
                 timestamp_writes: None,
             });
-            self.passes.iter().for_each(|pass| record(&mut compute, pass));
+            self.passes[some].iter().for_each(|pass| record(&mut compute, pass));
             return Ok(());
         };
         for (index, pass) in self.passes.iter().enumerate() {

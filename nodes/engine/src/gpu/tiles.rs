@@ -1,7 +1,8 @@
-//! Plans on images in memory: upload, run, read back, in tiles where the device is too small.
+//! Plans on images in memory: upload, run, read back, in tiles where the device is too small. While it computes one tile, the
+//! next is uploaded and the one before read back.
 
 use super::device::count;
-use super::executor::{Executor, Warm};
+use super::executor::Executor;
 use super::prepared::Prepared;
 use super::timing::read_buffer;
 use super::transfer::{self, Part, extent, parts};
@@ -11,14 +12,25 @@ use crate::image::{Image, Rect};
 use crate::kernel::WORKGROUP;
 use crate::plan::{Plan, Support};
 use crate::program::{Format, Program, Role, Texture};
+use std::collections::VecDeque;
 
 /// The smallest tile side worth computing; below it the halo would be nearly everything.
 const LEAST_TILE: u32 = 32;
+
+/// Tiles that are on their way at once: one that the device computes, and one that goes there or comes back.
+const IN_FLIGHT: usize = 2;
 
 /// One tile: its program, and which part of the picture it computes.
 struct Tile {
     region: Rect,
     program: Program,
+}
+
+/// A tile that was submitted, and whose results are not read back yet.
+struct Flight {
+    parts: Vec<Part>,
+    readback: wgpu::Buffer,
+    submission: wgpu::SubmissionIndex,
 }
 
 impl Executor {
@@ -49,19 +61,37 @@ impl Executor {
             let desc = plan.desc(port.image);
             results.push(Image::with_window(plan.region_at(region, desc.level), desc.channels)?);
         }
-        let total = tiles.len() as f32;
-        for (index, tile) in tiles.iter().enumerate() {
-            control.check()?;
-            let done = self.run_tile(plan, inputs, tile, &mut results);
-            if matches!(done, Err(Error::Memory(_))) && !self.warm.is_empty() {
-                self.purge();
-                self.run_tile(plan, inputs, tile, &mut results)?;
-            } else {
-                done?;
-            }
+        let mut flights = VecDeque::with_capacity(IN_FLIGHT);
+        let mut landed = 0;
+        let mut land = |executor: &mut Self, flight: Flight, results: &mut [Image]| {
+            executor.land(flight, results)?;
+            landed += 1;
             if let Some(progress) = control.progress {
-                progress((index + 1) as f32 / total);
+                progress(landed as f32 / tiles.len() as f32);
             }
+            Ok::<(), Error>(())
+        };
+        for tile in &tiles {
+            control.check()?;
+            let flight = match self.submit(plan, inputs, tile) {
+                Err(Error::Memory(_)) if !(self.warm.is_empty() && flights.is_empty()) => {
+                    for flight in flights.drain(..) {
+                        land(self, flight, &mut results)?;
+                    }
+                    self.purge();
+                    self.submit(plan, inputs, tile)?
+                }
+                flight => flight?,
+            };
+            flights.push_back(flight);
+            if flights.len() == IN_FLIGHT
+                && let Some(flight) = flights.pop_front()
+            {
+                land(self, flight, &mut results)?;
+            }
+        }
+        for flight in flights {
+            land(self, flight, &mut results)?;
         }
         control.check()?;
         Ok(results)
@@ -79,7 +109,7 @@ impl Executor {
                 self.max_side
             )));
         }
-        if global || self.allows(plan, &whole, region) {
+        if global || self.allows(plan, &whole, region, 1) {
             return Ok(vec![Tile { region, program: whole }]);
         }
         let mut size = [region.width(), region.height()];
@@ -111,7 +141,7 @@ impl Executor {
                 let (x1, y1) = (x0 + size[0] as i32, y0 + size[1] as i32);
                 let tile = Rect { x0, y0, x1: x1.min(region.x1), y1: y1.min(region.y1) };
                 let program = Program::lower_as(plan, tile, self.precision)?;
-                if !self.allows(plan, &program, tile) {
+                if !self.allows(plan, &program, tile, IN_FLIGHT as u64) {
                     return Ok(None);
                 }
                 tiles.push(Tile { region: tile, program });
@@ -123,7 +153,8 @@ impl Executor {
         Ok(Some(tiles))
     }
 
-    fn allows(&self, plan: &Plan, program: &Program, region: Rect) -> bool {
+    /// Whether the limits allow a program for `region`, of so many in flight at once.
+    fn allows(&self, plan: &Plan, program: &Program, region: Rect, in_flight: u64) -> bool {
         let fits_side = |t: &Texture| t.window.width() <= self.max_side && t.window.height() <= self.max_side;
         let textures: u64 = program.textures.iter().map(Texture::bytes).sum();
         let is_input = |t: &&Texture| matches!(t.role, Role::Input(_));
@@ -131,56 +162,68 @@ impl Executor {
         let readback: u64 = parts(plan, program, region).iter().map(|p| p.bytes()).sum();
         let largest = self.device.raw().limits().max_buffer_size;
         program.textures.iter().all(fits_side)
-            && textures + staged + readback <= self.budget
+            && textures + in_flight * (staged + readback) <= self.budget
+            && program.operations(plan).all(|operations| operations <= self.work)
             && staged <= largest
             && readback <= largest
     }
 
-    fn run_tile(
-        &mut self,
-        plan: &Plan,
-        inputs: &[(&str, &Image)],
-        tile: &Tile,
-        results: &mut [Image],
-    ) -> Result<()> {
+    /// Uploads what a tile needs and submits its dispatches, in several submissions if they are much work.
+    fn submit(&mut self, plan: &Plan, inputs: &[(&str, &Image)], tile: &Tile) -> Result<Flight> {
         let parts = parts(plan, &tile.program, tile.region);
-        let mut warm = self.warmed(&tile.program, &parts)?;
-        self.upload(inputs, &tile.program, &mut warm.prepared)?;
-        let views: Vec<_> =
-            parts.iter().map(|part| warm.prepared.own_output(&part.name)).collect::<Result<_>>()?;
+        let readback = self.readback(parts.iter().map(Part::bytes).sum())?;
+        let mut warm = self.warmed(&tile.program)?;
+        self.upload(inputs, &tile.program, &mut warm)?;
+        let views: Vec<_> = parts.iter().map(|part| warm.own_output(&part.name)).collect::<Result<_>>()?;
         let device = &self.device;
-        let mut encoder =
-            device.raw.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("isophote") });
-        warm.prepared.encode(&mut encoder)?;
+        let encoder = || {
+            let label = Some("isophote");
+            device.raw.create_command_encoder(&wgpu::CommandEncoderDescriptor { label })
+        };
+        let (mut first, mut work, mut commands) = (0, 0.0, encoder());
+        for (index, operations) in tile.program.operations(plan).enumerate() {
+            if index > first && work + operations > self.work {
+                warm.encode_some(&mut commands, first..index)?;
+                let full = std::mem::replace(&mut commands, encoder());
+                device.guarded("running a part of the plan", |_| device.queue.submit([full.finish()]))?;
+                count(&device.counters.submissions);
+                (first, work) = (index, 0.0);
+            }
+            work += operations;
+        }
+        warm.encode_some(&mut commands, first..tile.program.dispatches.len())?;
         let submission = device.guarded("running the plan", |_| {
             for (part, view) in parts.iter().zip(&views) {
-                part.copy(view.texture(), &warm.readback, &mut encoder);
+                part.copy(view.texture(), &readback, &mut commands);
             }
-            device.queue.submit([encoder.finish()])
+            device.queue.submit([commands.finish()])
         })?;
         count(&device.counters.submissions);
+        self.keep(warm);
+        Ok(Flight { parts, readback, submission })
+    }
+
+    /// Waits for a tile and stores its results.
+    fn land(&mut self, flight: Flight, results: &mut [Image]) -> Result<()> {
+        let Flight { parts, readback, submission } = flight;
         let size = parts.iter().map(Part::bytes).sum();
-        read_buffer(device, &warm.readback, size, Some(submission), |bytes| {
+        read_buffer(&self.device, &readback, size, Some(submission), |bytes| {
             for (part, image) in parts.iter().zip(results) {
                 part.store(bytes, image);
             }
         })?;
-        self.keep(warm);
+        self.readbacks.push(readback);
+        let surplus = self.readbacks.len().saturating_sub(IN_FLIGHT);
+        self.readbacks.drain(..surplus);
         Ok(())
     }
 
-    /// A program made ready earlier that `program` fits, or a new one.
-    fn warmed(&mut self, program: &Program, parts: &[Part]) -> Result<Warm> {
-        let size: u64 = parts.iter().map(Part::bytes).sum();
-        if let Some(index) =
-            self.warm.iter().rposition(|w| w.readback.size() >= size && w.prepared.fits(program))
-        {
-            let mut warm = self.warm.remove(index);
-            warm.prepared.repack(program)?;
-            return Ok(warm);
+    /// A buffer of at least `size` bytes to read results back.
+    fn readback(&mut self, size: u64) -> Result<wgpu::Buffer> {
+        if let Some(index) = self.readbacks.iter().position(|buffer| buffer.size() >= size) {
+            return Ok(self.readbacks.remove(index));
         }
-        let prepared = self.prepare(program)?;
-        let readback = self.device.guarded("the buffer to read results back", |raw| {
+        let buffer = self.device.guarded("the buffer to read results back", |raw| {
             raw.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("isophote readback"),
                 size,
@@ -189,16 +232,26 @@ impl Executor {
             })
         })?;
         count(&self.device.counters.buffers);
-        Ok(Warm { prepared, readback })
+        Ok(buffer)
     }
 
-    /// Keeps `warm` for later, and as many of those used before it as the budget allows.
-    fn keep(&mut self, warm: Warm) {
-        self.warm.push(warm);
-        let mut bytes = 0;
+    /// A program made ready earlier that `program` fits, or a new one.
+    fn warmed(&mut self, program: &Program) -> Result<Prepared> {
+        if let Some(index) = self.warm.iter().rposition(|prepared| prepared.fits(program)) {
+            let mut prepared = self.warm.remove(index);
+            prepared.repack(program)?;
+            return Ok(prepared);
+        }
+        self.prepare(program)
+    }
+
+    /// Keeps a program for later, and as many of those used before it as the budget allows.
+    fn keep(&mut self, prepared: Prepared) {
+        self.warm.push(prepared);
+        let mut bytes: u64 = self.readbacks.iter().map(wgpu::Buffer::size).sum();
         let mut kept = 0;
-        for warm in self.warm.iter().rev() {
-            bytes += warm.bytes();
+        for prepared in self.warm.iter().rev() {
+            bytes += prepared.bytes();
             if kept > 0 && bytes > self.budget {
                 break;
             }

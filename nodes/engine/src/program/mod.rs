@@ -208,6 +208,15 @@ impl Program {
         self.dispatches.iter().map(bytes).sum()
     }
 
+    /// By dispatch: its operations on a plan that it was lowered from, fused multiply-adds or others of like cost.
+    pub fn operations(&self, plan: &Plan) -> impl Iterator<Item = f64> {
+        self.dispatches.iter().zip(&self.origins).map(|(dispatch, origin)| {
+            let pixels: f64 = dispatch.grid.size.iter().map(|side| f64::from(*side)).product();
+            let passes = origin.passes.iter().filter_map(|index| plan.passes().get(*index));
+            pixels * passes.map(|pass| (pass.kernel.cost)(&pass.params)).sum::<f64>()
+        })
+    }
+
     /// Index of the input texture of this name.
     pub fn input(&self, name: &str) -> Option<usize> {
         self.textures.iter().position(|t| matches!(&t.role, Role::Input(n) if n == name))
