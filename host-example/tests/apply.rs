@@ -290,9 +290,9 @@ fn the_benchmark_reports_every_pass() {
     // A dispatch may do the work of several passes, where the last of them stands. An adapter without timestamps tells
     // nothing of either.
     let sorted = |names: Vec<String>| {
-        let single = names.iter().flat_map(|name| name.split('+'));
+        let single = names.iter().flat_map(|name| name.split(['+', '&']));
         let mut single: Vec<String> =
-            single.map(|name| name.split('@').next().unwrap_or_default().to_owned()).collect();
+            single.map(|name| name.split(['@', '*']).next().unwrap_or_default().to_owned()).collect();
         single.sort();
         single
     };

@@ -67,7 +67,7 @@ fn applied(path: &Path, name: &str, space: Option<Space>, backend: Backend) -> P
     let style = Style::load(&library, name, &[]).expect("a style");
     let wanted = filter::usable_guides(&library, &style).expect("the library answers");
     let source = read::read(path, &Selection { wanted, ..Selection::default() }).expect("a picture");
-    let budget = Budget::new(u64::MAX);
+    let budget = Budget::new(u64::MAX, 1);
     let format = if source.exr.is_some() { Format::Exr } else { Format::Tiff };
     let own = Arc::new(Held::new(None, source, true, budget.share()));
     let exr = own.take_exr();

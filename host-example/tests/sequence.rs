@@ -171,6 +171,38 @@ fn damaged_frames_are_left_out_and_reported() {
     assert!(at("rest.1003.exr").is_file() && at("rest.1005.exr").is_file() && !at("rest.1004.exr").exists());
 }
 
+/// Two frames at a time are on their way to the device, and each comes back as the one that it is.
+#[test]
+fn a_device_takes_frames_in_turn() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    frames(folder.path(), 1..=7, 48);
+    fs::write(at("in.0004.exr"), b"not a picture").expect("a file");
+    fs::create_dir(at("out")).expect("a folder");
+    let run = |input: &str, output: &str| {
+        let mut command = isophote();
+        command.current_dir(folder.path()).args(["apply", "gaussian", input, output, "--backend", "gpu"]);
+        command.args(IN_PIXELS);
+        command
+    };
+    // Lines tell of frames in their order, however many are on their way.
+    let output = run(INPUT, OUTPUT).arg("--json").output().expect("it starts");
+    assert!(!output.status.success());
+    let text = String::from_utf8(output.stdout).expect("lines of text");
+    let events = text.lines().map(|line| serde_json::from_str::<Value>(line).expect("a line of JSON"));
+    let written = events.filter(|event| event["status"] == "written");
+    let written: Vec<i64> = written.filter_map(|event| event["frame"].as_i64()).collect();
+    assert_eq!(written, [1, 2, 3, 5, 6, 7]);
+    for frame in written {
+        let (input, result) = (format!("in.{frame:04}.exr"), format!("out/o.{frame:04}.exr"));
+        succeeds(&mut run(&input, "single.exr"));
+        assert!(
+            fs::read(at("single.exr")).expect("a result") == fs::read(at(&result)).expect("a result"),
+            "{frame}"
+        );
+    }
+}
+
 /// All files of a folder with their contents.
 fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
     listing(folder).into_iter().map(|n| (n.clone(), fs::read(folder.join(n)).expect("a file"))).collect()

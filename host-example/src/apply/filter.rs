@@ -1,6 +1,7 @@
 //! What is done to every frame: the graph on each of its pictures.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use super::asked::Asked;
 use super::backend::Backend;
@@ -45,7 +46,7 @@ impl Look {
 pub struct Filter {
     library: Library,
     layers: Vec<Layer>,
-    device: Option<Device>,
+    device: Option<Arc<Device>>,
     space: Option<Space>,
     threads: u32,
 }
@@ -186,8 +187,26 @@ impl Filter {
         space: Option<Space>,
         threads: u32,
     ) -> Result<Self> {
-        let device = backend.device(&library)?;
+        let device = backend.device(&library)?.map(Arc::new);
         Ok(Self { library, layers: layers(looks)?, device, space, threads })
+    }
+
+    /// Another one beside it on the same device, of the same looks.
+    ///
+    /// # Errors
+    /// As [`Filter::new`].
+    pub fn beside(&self, looks: Vec<Look>) -> Result<Self> {
+        let (library, device) = (self.library.clone(), self.device.clone());
+        Ok(Self { library, layers: layers(looks)?, device, space: self.space, threads: self.threads })
+    }
+
+    /// How many of them should work on the frames of a sequence. Two on a graphics device: while it computes one frame,
+    /// another one is uploaded or read back. Frames that depend on others are done by one, which knows them.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the library fails.
+    pub fn best_count(&self) -> Result<usize> {
+        Ok(if self.device.is_some() && self.frames()? == [0, 0] { 2 } else { 1 })
     }
 
     /// Frames before and after its own that a frame depends on.
@@ -273,7 +292,7 @@ impl Filter {
             let mut control =
                 Control { threads: self.threads, progress: Some(&mut report), ..Control::default() };
             let bad = layer
-                .process((&self.library, self.device.as_ref()), job, &mut result, &mut control)
+                .process((&self.library, self.device.as_deref()), job, &mut result, &mut control)
                 .map_err(|e| e.at(name, "choose another picture or style"))?;
             // All of them read the same picture.
             replaced = bad.max(replaced);

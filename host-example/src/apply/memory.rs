@@ -59,6 +59,7 @@ pub struct Needs {
 #[derive(Debug)]
 pub struct Budget {
     most: u64,
+    filtered_at_once: usize,
     held: Mutex<Vec<(u64, Needs)>>,
     freed: Condvar,
 }
@@ -83,9 +84,9 @@ impl Needs {
 }
 
 impl Budget {
-    /// So many bytes for all frames together.
-    pub fn new(most: u64) -> Self {
-        Self { most, held: Mutex::new(Vec::new()), freed: Condvar::new() }
+    /// So many bytes for all frames together, of which so many are filtered at once.
+    pub fn new(most: u64, filtered_at_once: usize) -> Self {
+        Self { most, filtered_at_once, held: Mutex::new(Vec::new()), freed: Condvar::new() }
     }
 
     /// Room for a frame of which nothing is known yet. One thread takes frames.
@@ -116,8 +117,10 @@ impl Share<'_> {
         loop {
             let others = || held.iter().filter(|(number, _)| *number != self.number).map(|(_, needs)| needs);
             let frames = others().map(|needs| needs.frame).fold(needs.frame, u64::saturating_add);
-            // One frame is filtered at a time.
-            let filter = others().map(|needs| needs.filter).fold(needs.filter, u64::max);
+            let mut filters: Vec<u64> = others().map(|needs| needs.filter).chain([needs.filter]).collect();
+            filters.sort_unstable();
+            let most_at_once = filters.iter().rev().take(self.budget.filtered_at_once);
+            let filter = most_at_once.copied().fold(0, u64::saturating_add);
             if frames.saturating_add(filter) <= most {
                 break;
             }
@@ -172,7 +175,7 @@ mod tests {
 
     #[test]
     fn frames_wait_for_room_and_one_is_filtered_at_a_time() {
-        let budget = Budget::new(20);
+        let budget = Budget::new(20, 1);
         let needs = |frame, filter| Needs { frame, filter };
         let large = budget.share();
         assert_eq!(large.grow(needs(15, 6), 21), Err(Bytes(20)));

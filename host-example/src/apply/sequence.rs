@@ -1,7 +1,8 @@
 //! The frames of a run: read, filtered and written at the same time, within a bound of memory.
 //!
 //! One thread reads and decodes, the calling one filters, one encodes and writes; decoding and encoding use all
-//! cores within a frame. Where the system gives no threads the calling one does it all, frame by frame.
+//! cores within a frame. On a graphics device two others filter in turn, so that it computes one frame while another one goes
+//! there or comes back. Where the system gives no threads the calling one does it all, frame by frame.
 
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{Builder, Scope, ScopedJoinHandle};
@@ -55,36 +56,85 @@ struct Done<'a> {
 
 impl<'a> Run<'a> {
     /// Does all frames. Frames that cannot be read or filtered are reported and left out; a run of one picture ends
-    /// with its error. `reader` reads these frames for the filter's style.
+    /// with its error. `reader` reads these frames for the filters' style; there is at least one filter.
     ///
     /// # Errors
     /// What kept a frame from being written, [`Error::Failure`] of the library or the device.
-    pub fn all(&self, filter: &mut Filter, mut reader: Reader<'a>) -> Result<()> {
-        if self.threads == Threads::Calling {
-            let mut result = Ok(());
-            self.read(&mut reader, &mut |ready| {
-                result = self
-                    .filter_one(filter, ready)
-                    .and_then(|done| done.map_or(Ok(()), |d| self.write_one(d)));
-                result.is_ok()
-            })?;
-            return result;
+    pub fn all(&self, filters: &mut [Filter], mut reader: Reader<'a>) -> Result<()> {
+        match (self.threads, filters) {
+            (_, []) => Ok(()),
+            (Threads::Calling, [filter, ..]) => {
+                let mut result = Ok(());
+                self.read(&mut reader, &mut |ready| {
+                    let done = self.filter_one(filter, ready);
+                    result = done.and_then(|done| done.map_or(Ok(()), |done| self.write_one(done)));
+                    result.is_ok()
+                })?;
+                result
+            }
+            (Threads::Several, filters) => self.at_once(filters, reader),
         }
+    }
+
+    /// The same on several threads.
+    fn at_once(&self, filters: &mut [Filter], mut reader: Reader<'a>) -> Result<()> {
         std::thread::scope(|scope| {
             let (send, decoded) = sync_channel(1);
-            let (finished, receive) = sync_channel(1);
             // Nobody takes it when the run ends early.
             let mut sink = move |ready| SyncSender::send(&send, ready).is_ok();
             let reading = spawn(scope, move || self.read(&mut reader, &mut sink))?;
-            let writing =
-                spawn(scope, move || receive.into_iter().try_for_each(|done| self.write_one(done)))?;
-            let filtered = self.filter(filter, decoded, &finished);
+            let (finished, results): (Vec<_>, Vec<_>) = filters.iter().map(|_| sync_channel(1)).unzip();
+            let writing = spawn(scope, move || self.write(&results))?;
+            let filtered = match filters {
+                [filter] => self.filter(filter, decoded, &finished[0]),
+                filters => self.filter_in_turn(scope, filters, decoded, &finished),
+            };
             drop(finished);
             let read = reading.join().unwrap_or_else(|_| Err(broken("reading")));
             let written = writing.join().unwrap_or_else(|_| Err(broken("writing")));
             // What could not be written is why the others ended.
             written.and(filtered).and(read)
         })
+    }
+
+    /// Hands frames out to filters in turn, each of which works on a thread of its own.
+    fn filter_in_turn<'scope>(
+        &'scope self,
+        scope: &'scope Scope<'scope, '_>,
+        filters: &'scope mut [Filter],
+        decoded: Receiver<Ready<'a>>,
+        finished: &[SyncSender<Option<Done<'a>>>],
+    ) -> Result<()>
+    where
+        'a: 'scope,
+    {
+        let (mut inputs, mut lanes) = (Vec::new(), Vec::new());
+        for (filter, finished) in filters.iter_mut().zip(finished) {
+            let (input, frames) = sync_channel(0);
+            let finished = finished.clone();
+            lanes.push(spawn(scope, move || self.filter(filter, frames, &finished))?);
+            inputs.push(input);
+        }
+        for (ready, input) in decoded.into_iter().zip(inputs.iter().cycle()) {
+            if input.send(ready).is_err() {
+                break;
+            }
+        }
+        drop(inputs);
+        let ends = lanes.into_iter().map(|lane| lane.join().unwrap_or_else(|_| Err(broken("filtering"))));
+        ends.fold(Ok(()), Result::and)
+    }
+
+    /// Writes what filters hand over in turn.
+    fn write(&self, results: &[Receiver<Option<Done<'a>>>]) -> Result<()> {
+        for result in results.iter().cycle() {
+            match result.recv() {
+                Ok(Some(done)) => self.write_one(done)?,
+                Ok(None) => {}
+                Err(_) => break,
+            }
+        }
+        Ok(())
     }
 
     fn read(&self, reader: &mut Reader<'a>, sink: &mut dyn FnMut(Ready<'a>) -> bool) -> Result<()> {
@@ -115,15 +165,10 @@ impl<'a> Run<'a> {
         &self,
         filter: &mut Filter,
         decoded: Receiver<Ready<'a>>,
-        finished: &SyncSender<Done<'a>>,
+        finished: &SyncSender<Option<Done<'a>>>,
     ) -> Result<()> {
         for ready in decoded {
-            if self.stop.is_requested() {
-                break;
-            }
-            if let Some(done) = self.filter_one(filter, ready)?
-                && finished.send(done).is_err()
-            {
+            if self.stop.is_requested() || finished.send(self.filter_one(filter, ready)?).is_err() {
                 break;
             }
         }

@@ -64,7 +64,7 @@ pub fn measure(
     }
     let selection = Selection { wanted: planner.guides().to_vec(), ..Selection::default() };
     let mut filter_seconds = 0.0;
-    let (budget, report) = (Budget::new(bound), Report::new(tasks.len(), false, false));
+    let (budget, report) = (Budget::new(bound, 1), Report::new(tasks.len(), false, false));
     let masks = Masks::default();
     let footage =
         Footage { frames: None, motion: None, selection: &selection, masks: &masks, budget: &budget };
@@ -90,7 +90,7 @@ pub fn measure(
     };
     forget_peak();
     let started = Instant::now();
-    let result = run.all(&mut filter, Reader::new(footage, planner, &tasks, None));
+    let result = run.all(std::slice::from_mut(&mut filter), Reader::new(footage, planner, &tasks, None));
     let seconds = started.elapsed().as_secs_f64();
     let counts = report.end(false);
     result?;

@@ -1,19 +1,15 @@
 //! Graphics devices of the library's own, for verbs that have none themselves.
 
-use std::cell::Cell;
-use std::marker::PhantomData;
-
 use super::contract::{IsophoteApi, IsophoteDevice, IsophoteStatus};
 use super::library::Library;
 use super::refusal::{Answer, check};
 use super::text;
 
-/// A graphics device of the library's own. One thread at a time may use it.
+/// A graphics device of the library's own. Graphs on several threads may share it.
 #[derive(Debug)]
 pub struct Device {
     api: &'static IsophoteApi,
     pub(super) handle: IsophoteDevice,
-    one_thread: PhantomData<Cell<()>>,
 }
 
 impl Library {
@@ -31,7 +27,7 @@ impl Library {
             unsafe { (self.api.device_create)(adapter, error, &raw mut handle) }
         });
         check(status, || message)?;
-        Ok(Device { api: self.api, handle, one_thread: PhantomData })
+        Ok(Device { api: self.api, handle })
     }
 }
 

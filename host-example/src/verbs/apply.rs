@@ -22,7 +22,7 @@ use crate::apply::write::Format;
 use crate::error::{Error, Result};
 use crate::files;
 use crate::frames::{FrameList, Pattern};
-use crate::limits;
+use crate::limits::{self, Threads};
 use crate::loader::Library;
 use crate::stop::Stop;
 use crate::stylize::style::{Setting, Style};
@@ -170,7 +170,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let opened = args.open_first(&tasks, &selection)?;
     let backend = if args.dry_run { Backend::Cpu } else { args.backend };
     let mut planner = Planner::new(library.clone(), args.looks(&library, files.style, &entries)?)?;
-    let mut filter = Filter::new(library, looks, backend, args.space, args.threads)?;
+    let filter = Filter::new(library.clone(), looks, backend, args.space, args.threads)?;
     let most = args.memory.unwrap_or_else(memory::usual);
     let first = &tasks.ready[0];
     let needs = match &opened {
@@ -202,7 +202,13 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     for task in &tasks.missing {
         report.frame(task, &Outcome::Missing);
     }
-    let budget = Budget::new(most.0);
+    let mut filters = vec![filter];
+    if tasks.is_sequence() && threads == Threads::Several {
+        while filters.len() < filters[0].best_count()? {
+            filters.push(filters[0].beside(args.looks(&library, files.style, &entries)?)?);
+        }
+    }
+    let budget = Budget::new(most.0, filters.len());
     let footage = Footage {
         frames: tasks.sequence.as_ref(),
         motion: motion.as_ref(),
@@ -218,7 +224,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         report: &report,
         stop: &stop,
     };
-    let result = run.all(&mut filter, Reader::new(footage, planner, &tasks.ready, opened));
+    let result = run.all(&mut filters, Reader::new(footage, planner, &tasks.ready, opened));
     let counts = report.end(result.is_ok());
     result?;
     check_complete(files.input, &counts, tasks.ready.len())

@@ -79,7 +79,7 @@ impl Job<'_> {
             at(decode::start(self.input, stream, None), self.input, "name a video that ffmpeg reads")?;
         let (from, into) = (decoder.child().stdout.take(), decoder.child().stdin.take());
         let Some(mut from) = from else { return Err(broken("decoding")) };
-        let budget = Budget::new(u64::MAX);
+        let budget = Budget::new(u64::MAX, 1);
         let count = std::thread::scope(|scope| {
             if let Some(mut into) = into {
                 // It ends with standard input, or with the decoder.
