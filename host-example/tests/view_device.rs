@@ -32,6 +32,8 @@ const TICK: Duration = Duration::from_millis(2);
 /// Names the folder of the screen to the process that has the window.
 const FOLDER: &str = "ISOPHOTE_TEST_SCREEN";
 const SIZE: (u32, u32) = (700, 420);
+/// A window that is drawn soon, for what is done many times.
+const SMALL: (u32, u32) = (320, 240);
 /// The canvas, above what is said at its lower border.
 const CANVAS: Part = [0, 60, 340, 250];
 
@@ -47,11 +49,11 @@ struct Script {
 }
 
 impl Script {
-    /// Opens a window, does all steps, and closes it; returns what it was then.
-    fn run(session: Session, steps: Vec<(&'static str, Step)>) -> App {
+    /// Opens a window of a size, does all steps, and closes it; returns what it was then.
+    fn run(session: Session, size: (u32, u32), steps: Vec<(&'static str, Step)>) -> App {
         let mut builder = EventLoop::<Event>::with_user_event();
         let event_loop = builder.with_x11().with_any_thread(true).build().unwrap();
-        let app = App::new(session, Some(SIZE), event_loop.create_proxy()).unwrap();
+        let app = App::new(session, Some(size), event_loop.create_proxy()).unwrap();
         let mut script = Self { app, steps, at: 0, since: Instant::now() };
         event_loop.run_app(&mut script).unwrap();
         script.app
@@ -217,7 +219,7 @@ fn a_device_that_is_lost_is_replaced_and_nothing_else_is_lost() {
                 }),
             ),
         ];
-        let app = Script::run(session, steps);
+        let app = Script::run(session, SIZE, steps);
         assert!(app.failure.is_none(), "{:?}", app.failure);
     });
 }
@@ -247,7 +249,7 @@ fn a_device_that_is_lost_at_once_again_and_again_ends_the_window_with_the_reason
             }
             false
         });
-        let app = Script::run(session, vec![("the picture", Box::new(is_at_rest)), ("the end", spoil)]);
+        let app = Script::run(session, SIZE, vec![("the picture", Box::new(is_at_rest)), ("the end", spoil)]);
         let failure = app.failure.expect("a reason").to_string();
         assert!(failure.contains("the graphics device was lost"), "{failure}");
     });
@@ -285,19 +287,37 @@ struct Held {
     memory: u64,
     objects: Vec<(&'static str, usize)>,
     made: u64,
+    uploads: u64,
 }
 
 impl Held {
     fn now(app: &App) -> Self {
         let counts = app.counts().unwrap();
         let gpu = app.gpu().unwrap();
-        Self { memory: resident(), objects: objects(gpu), made: counts.objects }
+        Self { memory: resident(), objects: objects(gpu), made: counts.objects, uploads: counts.uploads }
+    }
+
+    /// Bytes of memory more than before.
+    fn grown_since(&self, before: &Self, what: &str) -> u64 {
+        let grown = self.memory.saturating_sub(before.memory);
+        eprintln!("{what}: {} KiB more of {} MiB", grown >> 10, self.memory >> 20);
+        grown
     }
 }
 
-/// Does something in the window so many times, each after the one before has been drawn, and hands over what was held after
-/// the first ones, and what is held at the end.
+/// When something is done again.
+#[derive(Clone, Copy, PartialEq)]
+enum Pause {
+    /// As soon as a picture has been shown, as while a slider is dragged.
+    Frame,
+    /// When nothing is left to be done.
+    Rest,
+}
+
+/// Does something in the window so many times, and hands over what was held after the first ones, and what is held at the
+/// end, both at rest.
 fn repeat(
+    pause: Pause,
     times: usize,
     first: usize,
     mut act: impl FnMut(&mut App, usize) + 'static,
@@ -307,7 +327,9 @@ fn repeat(
     let mut drawn = 0;
     let mut warm = None;
     Box::new(move |app| {
-        if done > 0 && !(frames(app) > drawn && app.is_idle()) {
+        let is_looked_at = done == first || done == times;
+        let rests = pause == Pause::Rest || is_looked_at;
+        if done > 0 && (frames(app) == drawn || rests && !app.is_idle()) {
             return false;
         }
         if done == first {
@@ -331,34 +353,58 @@ const OF_A_MOVE: u64 = 40 << 10;
 const OF_A_SWITCH: u64 = 400 << 10;
 
 #[test]
-fn a_thousand_moves_of_a_slider_and_two_hundred_switches_of_the_style_leave_nothing_behind() {
-    let name = "a_thousand_moves_of_a_slider_and_two_hundred_switches_of_the_style_leave_nothing_behind";
-    alone(name, |folder| {
-        let session = session(folder, &["gaussian", "cartoon", "blueprint", "ink"], (96, 64));
-        // It changes the passes, so that each move makes all of them anew.
+fn a_thousand_moves_of_a_slider_only_rewrite_uniform_bytes() {
+    alone("a_thousand_moves_of_a_slider_only_rewrite_uniform_bytes", |folder| {
+        let session = session(folder, &["gaussian"], (96, 64));
+        // All of these need the same number of taps.
         let moves = repeat(
+            Pause::Frame,
             1000,
             100,
+            |app, step| set(app, "sigma", 2.01 + (step % 50) as f32 / 100.0),
+            |warm, end| {
+                let (made, uploads) = (end.made - warm.made, end.uploads - warm.uploads);
+                eprintln!("900 moves: {made} objects, {uploads} uploads");
+                assert!(uploads >= 800, "{uploads} uploads");
+                // Where the machine stalls, the picture is smaller for a while: once for each size, its look is built.
+                assert!(made < 90, "{made} objects are made");
+                let is_kept = |((_, warm), (_, end)): (&(_, usize), &(_, usize))| *end < warm + 90;
+                assert!(warm.objects.iter().zip(&end.objects).all(is_kept), "{:?}", end.objects);
+                assert!(end.grown_since(&warm, "1000 moves") < 900 * OF_A_MOVE);
+            },
+        );
+        let app = Script::run(
+            session,
+            SMALL,
+            vec![("the picture", Box::new(is_at_rest) as Step), ("moves", moves)],
+        );
+        assert!(app.failure.is_none(), "{:?}", app.failure);
+    });
+}
+
+#[test]
+fn moves_that_change_the_passes_and_two_hundred_switches_of_the_style_leave_nothing_behind() {
+    let name = "moves_that_change_the_passes_and_two_hundred_switches_of_the_style_leave_nothing_behind";
+    alone(name, |folder| {
+        let session = session(folder, &["gaussian", "cartoon", "blueprint", "ink"], (96, 64));
+        let moves = repeat(
+            Pause::Rest,
+            200,
+            50,
             |app, step| set(app, "mix", 0.2 + (step % 50) as f32 / 100.0),
             |warm, end| {
-                assert_eq!(
-                    warm.objects, end.objects,
-                    "what a move has made anew takes the place of what was"
-                );
-                assert_eq!(warm.made, end.made);
-                let grown = end.memory.saturating_sub(warm.memory);
-                eprintln!("1000 moves: {} KiB more of {} MiB", grown >> 10, end.memory >> 20);
-                assert!(grown < 900 * OF_A_MOVE, "{} MiB to {} MiB", warm.memory >> 20, end.memory >> 20);
+                let kept = "what a move has made anew takes the place of what was";
+                assert_eq!(warm.objects, end.objects, "{kept}");
+                assert!(end.grown_since(&warm, "200 moves") < 150 * OF_A_MOVE);
             },
         );
         let switches = repeat(
+            Pause::Rest,
             200,
             12,
             |app, _| app.session_mut().choose_next(),
             |warm, end| {
-                let grown = end.memory.saturating_sub(warm.memory);
-                eprintln!("200 switches: {} KiB more of {} MiB", grown >> 10, end.memory >> 20);
-                assert!(grown < 188 * OF_A_SWITCH, "{} MiB to {} MiB", warm.memory >> 20, end.memory >> 20);
+                assert!(end.grown_since(&warm, "200 switches") < 188 * OF_A_SWITCH);
                 for ((kind, warm), (_, end)) in warm.objects.iter().zip(&end.objects) {
                     // The styles have different numbers of them, which are 188 switches apart.
                     assert!(*end < warm + 188, "{kind}: {warm} to {end}");
@@ -367,7 +413,7 @@ fn a_thousand_moves_of_a_slider_and_two_hundred_switches_of_the_style_leave_noth
         );
         let steps =
             vec![("the picture", Box::new(is_at_rest) as Step), ("moves", moves), ("switches", switches)];
-        let app = Script::run(session, steps);
+        let app = Script::run(session, SMALL, steps);
         assert!(app.failure.is_none(), "{:?}", app.failure);
     });
 }

@@ -18,6 +18,7 @@
 //! barriers between passes; `tests/c/vulkan.c` does the same work by hand.
 
 use std::num::NonZeroU64;
+use std::ops::AddAssign;
 use std::sync::Arc;
 
 use super::history::{self, Past, Rings};
@@ -33,6 +34,13 @@ pub struct Counts {
     pub objects: u64,
     /// Uploads of uniform bytes.
     pub uploads: u64,
+}
+
+impl AddAssign for Counts {
+    fn add_assign(&mut self, more: Self) {
+        self.objects += more.objects;
+        self.uploads += more.uploads;
+    }
 }
 
 /// A plan, ready to be recorded again and again.

@@ -61,6 +61,8 @@ pub struct LiveLook {
     spare: Option<Ready>,
     /// What was last asked of the worker, or refused.
     asked: Option<Recipe>,
+    /// What was made for looks that are gone.
+    gone: Counts,
     revision: u64,
     /// The last picture that was whole, its kind, and what its colours are.
     shown: Option<(wgpu::TextureView, Kind, IsophoteSpace)>,
@@ -77,7 +79,8 @@ impl LiveLook {
             (job.recipe, built)
         })?;
         let kernels = Arc::clone(kernels);
-        Ok(Self { worker, kernels, ready: None, spare: None, asked: None, revision: 0, shown: None })
+        let (asked, gone) = (None, Counts::default());
+        Ok(Self { worker, kernels, ready: None, spare: None, asked, gone, revision: 0, shown: None })
     }
 
     /// Follows `look` for pictures as `asked`: at once where only values change, and behind the picture otherwise.
@@ -89,7 +92,8 @@ impl LiveLook {
         let wanted = Recipe { look: look.clone(), asked };
         if look.is_plain() {
             self.revision += u64::from(self.ready.is_some());
-            (self.ready, self.spare, self.asked, self.shown) = (None, None, None, None);
+            self.forget();
+            (self.asked, self.shown) = (None, None);
             return Ok(());
         }
         if let Some((recipe, built)) = answer.filter(|_| self.asked.is_some()) {
@@ -114,7 +118,7 @@ impl LiveLook {
         }
         let followed = self.ready.as_mut().map_or(Ok(false), |ready| ready.follow(&wanted));
         self.asked = Some(wanted.clone());
-        if followed.inspect_err(|_| self.ready = None)? {
+        if followed.inspect_err(|_| self.forget())? {
             self.revision += 1;
             self.asked = None;
             return Ok(());
@@ -126,18 +130,31 @@ impl LiveLook {
     /// Records this from now on. What was recorded before is kept if it is for pictures of another scale.
     fn take(&mut self, ready: Ready) {
         let scale = ready.recipe.asked.scale;
-        let old = self.ready.replace(ready);
-        self.spare = old.into_iter().chain(self.spare.take()).find(|old| old.recipe.asked.scale != scale);
+        for old in [self.ready.replace(ready), self.spare.take()].into_iter().flatten() {
+            if self.spare.is_none() && old.recipe.asked.scale != scale {
+                self.spare = Some(old);
+            } else {
+                self.gone += old.stylizer.counts();
+            }
+        }
         self.revision += 1;
+    }
+
+    /// Lets go of what was built.
+    fn forget(&mut self) {
+        self.gone = self.counts();
+        (self.ready, self.spare) = (None, None);
     }
 
     fn is_for(&self, asked: IsophoteRequest) -> bool {
         self.ready.as_ref().is_some_and(|ready| ready.recipe.asked == asked)
     }
 
-    /// What was made on the device for the look that is shown.
+    /// What was made on the device for the look that is shown, and for all before it.
     pub fn counts(&self) -> Counts {
-        self.ready.as_ref().map_or_else(Counts::default, |ready| ready.stylizer.counts())
+        let mut counts = self.gone;
+        self.ready.iter().chain(&self.spare).for_each(|ready| counts += ready.stylizer.counts());
+        counts
     }
 
     /// Whether the look that is wanted is being built.
