@@ -3,8 +3,10 @@
 
 mod support;
 
-use std::path::Path;
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use isophote_host::loader::Library;
@@ -144,81 +146,81 @@ fn lose(app: &App) -> usize {
     app.devices()
 }
 
+/// What was so when a device was lost: how many devices there had been, what was to be seen, pictures shown.
+type Loss = Rc<RefCell<(usize, Vec<u8>, usize)>>;
+
+/// A picture whose look is edited, loses its device, and has it again.
+fn lost_at_rest(folder: &Path, loss: &Loss) -> Vec<(&'static str, Step)> {
+    let folder = folder.to_owned();
+    let see = move || screen(&folder, CANVAS);
+    let (see_before, see_after, lost, again) = (see.clone(), see, Rc::clone(loss), Rc::clone(loss));
+    let edit = |app: &mut App| {
+        set(app, "line_amount", 0.9);
+        app.session_mut().let_go();
+        true
+    };
+    let lose = move |app: &mut App| {
+        *lost.borrow_mut() = (lose(app), see_before(), frames(app));
+        // Something is to be drawn: who shows nothing new needs no device.
+        set(app, "line_amount", 0.8);
+        app.session_mut().undo();
+        true
+    };
+    let recover = move |app: &mut App| {
+        let (lost, picture, before) = &*again.borrow();
+        if app.devices() == *lost || !is_at_rest(app) || frames(app) <= *before {
+            return false;
+        }
+        let session = app.session();
+        let knob = session.knobs.iter().find(|knob| knob.name == "line_amount").unwrap();
+        assert_eq!(session.look().value(knob), Value::Float(0.9));
+        assert_eq!((session.name.as_str(), session.can()), ("photo.png", [true, true]));
+        see_after() == *picture
+    };
+    vec![
+        ("the picture", Box::new(is_at_rest)),
+        ("an edit", Box::new(edit)),
+        ("the picture after it", Box::new(is_at_rest)),
+        ("a moment", Box::new(pause(Duration::from_millis(700)))),
+        ("the loss", Box::new(lose)),
+        ("another device", Box::new(recover)),
+    ]
+}
+
+/// A scene that plays loses its device, and plays on.
+fn lost_while_it_plays(scene: PathBuf, loss: &Loss) -> Vec<(&'static str, Step)> {
+    let (playing, played) = (Rc::clone(loss), Rc::clone(loss));
+    let open = move |app: &mut App| {
+        let session = app.session_mut();
+        session.undo();
+        assert!(!session.look().is_changed());
+        let scene = Scene::load(&scene, None).unwrap();
+        session.show_scene(Scenery::new(scene, Staging::default(), 1.5), None, "scene".into());
+        true
+    };
+    let lose = move |app: &mut App| {
+        *playing.borrow_mut() = (lose(app), Vec::new(), frames(app));
+        true
+    };
+    let plays_on = move |app: &mut App| {
+        let (lost, _, before) = &*played.borrow();
+        app.devices() > *lost && frames(app) > *before + 5
+    };
+    vec![
+        ("undo, and a scene that plays", Box::new(open)),
+        ("frames", Box::new(|app| app.session().name == "scene" && frames(app) > 5)),
+        ("the loss while it plays", Box::new(lose)),
+        ("more frames", Box::new(plays_on)),
+    ]
+}
+
 #[test]
 fn a_device_that_is_lost_is_replaced_and_nothing_else_is_lost() {
     alone("a_device_that_is_lost_is_replaced_and_nothing_else_is_lost", |folder| {
         let session = session(folder, &["cartoon"], (120, 80));
-        let screen_folder = folder.to_owned();
-        let see = move || screen(&screen_folder, CANVAS);
-        let (see_before, see_after) = (see.clone(), see);
-        let state = std::rc::Rc::new(std::cell::RefCell::new((0, Vec::new(), 0)));
-        let (lost, again, playing, played) = (state.clone(), state.clone(), state.clone(), state);
-        let scene = support::turning_triangle(folder);
-        let steps: Vec<(&'static str, Step)> = vec![
-            ("the picture", Box::new(is_at_rest)),
-            (
-                "an edit",
-                Box::new(|app| {
-                    set(app, "line_amount", 0.9);
-                    app.session_mut().let_go();
-                    true
-                }),
-            ),
-            ("the picture after it", Box::new(is_at_rest)),
-            ("a moment", Box::new(pause(Duration::from_millis(700)))),
-            (
-                "the loss",
-                Box::new(move |app| {
-                    let mut state = lost.borrow_mut();
-                    *state = (lose(app), see_before(), frames(app));
-                    // Something is to be drawn: who shows nothing new needs no device.
-                    set(app, "line_amount", 0.8);
-                    app.session_mut().undo();
-                    true
-                }),
-            ),
-            (
-                "another device",
-                Box::new(move |app| {
-                    let state = again.borrow();
-                    let (lost, picture, before) = &*state;
-                    if app.devices() == *lost || !is_at_rest(app) || frames(app) <= *before {
-                        return false;
-                    }
-                    let session = app.session();
-                    let knob = session.knobs.iter().find(|knob| knob.name == "line_amount").unwrap();
-                    assert_eq!(session.look().value(knob), Value::Float(0.9));
-                    assert_eq!((session.name.as_str(), session.can()), ("photo.png", [true, true]));
-                    see_after() == *picture
-                }),
-            ),
-            (
-                "undo, and a scene that plays",
-                Box::new(move |app| {
-                    let session = app.session_mut();
-                    session.undo();
-                    assert!(!session.look().is_changed());
-                    let scene = Scene::load(&scene, None).unwrap();
-                    session.show_scene(Scenery::new(scene, Staging::default(), 1.5), None, "scene".into());
-                    true
-                }),
-            ),
-            ("frames", Box::new(|app| app.session().name == "scene" && frames(app) > 5)),
-            (
-                "the loss while it plays",
-                Box::new(move |app| {
-                    *playing.borrow_mut() = (lose(app), Vec::new(), frames(app));
-                    true
-                }),
-            ),
-            (
-                "more frames",
-                Box::new(move |app| {
-                    let state = played.borrow();
-                    app.devices() > state.0 && frames(app) > state.2 + 5
-                }),
-            ),
-        ];
+        let loss = Loss::default();
+        let mut steps = lost_at_rest(folder, &loss);
+        steps.extend(lost_while_it_plays(support::turning_triangle(folder), &loss));
         let app = Script::run(session, SIZE, steps);
         assert!(app.failure.is_none(), "{:?}", app.failure);
     });

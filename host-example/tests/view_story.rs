@@ -55,27 +55,10 @@ fn a_photograph_is_dropped_looked_at_saved_reopened_and_exported() {
         let slider = place(label, Role::Slider);
         let x = |share: f32| (slider.left() + slider.width() * share) as i32;
         let y = slider.center().y as i32;
-        // On a machine that is busy a drag may come to nothing; a person would drag once more.
-        let mut tried = Instant::now();
-        window.drag([x(0.5), y], [x(share), y]);
-        window.wait_for(label, |window| {
-            if tried.elapsed() > AGAIN {
-                window.drag([x(0.5), y], [x(share), y]);
-                tried = Instant::now();
-            }
-            screen(display.folder(), CANVAS) != seen
-        });
+        drag_until_seen(&mut window, &display, ([x(0.5), y], [x(share), y]), &seen);
         seen = window.settled(CANVAS);
     }
-    let look = window.settled(LEFT);
-    window.key("w");
-    window.changes("the original on the left of the wipe", LEFT, &look);
-    let wiped = window.settled(LEFT);
-    let middle = 326;
-    window.drag([middle, 330], [20, 330]);
-    window.changes("the look on the right of it", LEFT, &wiped);
-    window.becomes("what is right of the wipe", LEFT, &look);
-    window.key("w");
+    wipe(&mut window);
     window.becomes("the look alone", CANVAS, &seen);
     window.key("ctrl+s");
     window.wait_for("the preset", |_| {
@@ -106,4 +89,35 @@ fn a_photograph_is_dropped_looked_at_saved_reopened_and_exported() {
     assert!(exported == applied, "the export is what the command line makes with the preset");
     let plain = image::open(at("photo.png")).unwrap();
     assert!(image::open(at("apply.png")).unwrap() != plain);
+}
+
+/// Drags until the canvas is another: on a machine that is busy a drag may come to nothing, and a person would drag once more.
+fn drag_until_seen(
+    window: &mut Window<'_>,
+    display: &Display,
+    (from, to): ([i32; 2], [i32; 2]),
+    seen: &[u8],
+) {
+    let mut tried = Instant::now();
+    window.drag(from, to);
+    window.wait_for("another picture", |window| {
+        if tried.elapsed() > AGAIN {
+            window.drag(from, to);
+            tried = Instant::now();
+        }
+        screen(display.folder(), CANVAS) != seen
+    });
+}
+
+/// Wipes the look over the original from the middle to the left, and away.
+fn wipe(window: &mut Window<'_>) {
+    let look = window.settled(LEFT);
+    window.key("w");
+    window.changes("the original on the left of the wipe", LEFT, &look);
+    let wiped = window.settled(LEFT);
+    let middle = 326;
+    window.drag([middle, 330], [20, 330]);
+    window.changes("the look on the right of it", LEFT, &wiped);
+    window.becomes("what is right of the wipe", LEFT, &look);
+    window.key("w");
 }

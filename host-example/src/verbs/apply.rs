@@ -11,7 +11,7 @@ use crate::apply::exr::{Convention, Guide, GuideChoice, MaskSource, OnUnknown, S
 use crate::apply::filter::{self, Filter, Look, Planner};
 use crate::apply::looks::{self, Entry};
 use crate::apply::masks::{MaskChoice, Masks};
-use crate::apply::memory::{self, Budget, Bytes, too_large};
+use crate::apply::memory::{self, Budget, Bytes, Needs, too_large};
 use crate::apply::read::{self, Opened};
 use crate::apply::reader::{Footage, Reader};
 use crate::apply::report::{Counts, Outcome, Report};
@@ -172,22 +172,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let mut planner = Planner::new(library.clone(), args.looks(&library, files.style, &entries)?)?;
     let filter = Filter::new(library.clone(), looks, backend, args.space, args.threads)?;
     let most = args.memory.unwrap_or_else(memory::usual);
-    let first = &tasks.ready[0];
-    let needs = match &opened {
-        Some(opened) => planner.needs(&first.input, first.frame, opened)?,
-        None => None,
-    };
-    let span = planner.span(first.frame)?;
-    if let Some(needs) = needs.map(|needs| needs.of(span)).filter(|needs| needs.total() > most.0) {
-        return Err(too_large(&first.input, span, needs, most));
-    }
-    if span > 1 && tasks.is_in_place && args.into.is_none() {
-        return Err(Error::file(
-            files.output,
-            "would take the place of frames that others depend on",
-            "name another folder for the results, or leave --steadiness out",
-        ));
-    }
+    let needs = args.needs(&mut planner, &tasks, opened.as_ref(), most)?;
     if args.dry_run {
         let (skip_existing, json) = (args.skip_existing, args.json);
         let run = DryRun { tasks: &tasks, selection: &selection, most, skip_existing, json };
@@ -261,6 +246,33 @@ struct Files<'a> {
 }
 
 impl ApplyArgs {
+    /// What the first picture needs of memory, where that can be known: no more than there is.
+    fn needs(
+        &self,
+        planner: &mut Planner,
+        tasks: &Tasks,
+        opened: Option<&Opened>,
+        most: Bytes,
+    ) -> Result<Option<Needs>> {
+        let first = &tasks.ready[0];
+        let needs = match opened {
+            Some(opened) => planner.needs(&first.input, first.frame, opened)?,
+            None => None,
+        };
+        let span = planner.span(first.frame)?;
+        if let Some(needs) = needs.map(|needs| needs.of(span)).filter(|needs| needs.total() > most.0) {
+            return Err(too_large(&first.input, span, needs, most));
+        }
+        if span > 1 && tasks.is_in_place && self.into.is_none() {
+            return Err(Error::file(
+                self.files()?.output,
+                "would take the place of frames that others depend on",
+                "name another folder for the results, or leave --steadiness out",
+            ));
+        }
+        Ok(needs)
+    }
+
     /// With a preset the style is left out, and the other two move up.
     fn files(&self) -> Result<Files<'_>> {
         match (&self.output, self.preset.as_ref().or(self.layered.as_ref())) {

@@ -1,11 +1,12 @@
 //! The window: its events, and when a frame is drawn.
 
+mod opening;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use egui_winit::State;
 use winit::application::ApplicationHandler;
-use winit::dpi::PhysicalSize;
 use winit::event::{ElementState, KeyEvent, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
 use winit::keyboard::{Key, ModifiersState, NamedKey};
@@ -25,16 +26,10 @@ use crate::error::{Error, Result};
 use crate::render::gpu::Gpu;
 use crate::stylize::plan_runner::Counts;
 
-/// How often a device is opened anew, in vain, before what is open is put away, and then before the window gives up.
-const REVIVALS: u32 = 3;
-/// Time until the next attempt, where none can be opened: a driver that starts again takes a while.
-const PAUSE: Duration = Duration::from_secs(1);
 /// Time between two looks at whether what is to end with the window has ended.
 const CLOSING: Duration = Duration::from_millis(20);
 /// Time between two updates of the title.
 const TITLE: Duration = Duration::from_millis(250);
-/// Size of the window in pixels where nobody says anything else.
-const SIZE: (u32, u32) = (1440, 900);
 
 /// What arrives at the window besides its own events.
 #[derive(Debug)]
@@ -143,91 +138,6 @@ impl App {
         let is_due = self.due.is_some_and(|due| due <= Instant::now());
         let is_at_work = self.stage.as_ref().is_none_or(|stage| stage.is_waiting() || stage.is_busy());
         !is_due && !is_at_work && self.background.busy().is_none()
-    }
-
-    fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
-        let window = match &self.window {
-            Some(window) => Arc::clone(window),
-            None => {
-                let (width, height) = self.size.or(self.session.settings.window).unwrap_or(SIZE);
-                let attributes = Window::default_attributes()
-                    .with_title(self.session.title())
-                    // What reads the window aloud must be there before it is seen.
-                    .with_visible(false)
-                    .with_inner_size(PhysicalSize::new(width, height));
-                let window = event_loop.create_window(attributes).map_err(|e| {
-                    Error::failure(
-                        format!("no window can be opened: {e}"),
-                        "start the viewer in a desktop session",
-                    )
-                })?;
-                Arc::clone(self.window.insert(Arc::new(window)))
-            }
-        };
-        let mut stage = Stage::new(&window, event_loop.owned_display_handle(), &self.wake, &self.landed)?;
-        if self.session.record.is_wanted {
-            stage.measure();
-        }
-        if self.input.is_none() {
-            let context = egui::Context::default();
-            ui::theme::apply(&context);
-            // Where frames are slow, a click takes as long as two of them.
-            context.options_mut(|options| {
-                options.input_options.max_click_duration = f64::INFINITY;
-                options.input_options.max_double_click_delay = 0.6;
-            });
-            let scale = Some(window.scale_factor() as f32);
-            let side = Some(stage.most_texels());
-            let mut input = State::new(context, egui::ViewportId::ROOT, event_loop, scale, None, side);
-            input.init_accesskit(event_loop, &window, self.proxy.clone());
-            self.input = Some(input);
-        } else {
-            self.session.previews.forget_textures();
-        }
-        // What letters look like was on the device that is gone.
-        stage.panel.restore(&self.textures);
-        if self.devices == 0 {
-            window.set_visible(true);
-        }
-        self.session.record.adapter = stage.adapter();
-        self.pace.is_software = stage.is_software();
-        self.stage = Some(stage);
-        self.devices += 1;
-        self.due = Some(Instant::now());
-        Ok(())
-    }
-
-    /// Goes on after an error with a new device, and with nothing open where that does not help. Ends the window where even
-    /// that does not, and where there was no device yet.
-    fn handle(&mut self, event_loop: &ActiveEventLoop, result: Result<()>) {
-        let Err(error) = result else { return };
-        let was_open = self.stage.take().is_some() || self.revival.is_some();
-        if self.revivals >= REVIVALS && self.session.has_picture() {
-            self.session.close();
-            self.revivals = 0;
-        }
-        if !was_open || self.revivals >= REVIVALS {
-            self.failure = Some(error);
-            return event_loop.exit();
-        }
-        self.session.notes.complain(&error);
-        let pause = if self.revivals == 0 { Duration::ZERO } else { PAUSE };
-        self.revivals += 1;
-        self.revival = Some(Instant::now() + pause);
-    }
-
-    /// Opens a device in the place of the one that is gone, when it is time; says when that is otherwise.
-    fn revive(&mut self, event_loop: &ActiveEventLoop) -> Option<Instant> {
-        let at = self.revival?;
-        if at > Instant::now() {
-            return Some(at);
-        }
-        let opened = self.open(event_loop);
-        if opened.is_ok() {
-            self.revival = None;
-        }
-        self.handle(event_loop, opened);
-        self.revival
     }
 
     fn draw(&mut self) -> Result<()> {
@@ -389,8 +299,9 @@ impl App {
         let (Some(window), Some(input)) = (&self.window, &mut self.input) else { return };
         let tab = matches!(event, WindowEvent::KeyboardInput { event, .. }
             if event.logical_key == Key::Named(NamedKey::Tab));
-        // Tab goes from style to style, unless something is being typed or chosen.
-        if tab && !input.egui_ctx().text_edit_focused() && !self.session.is_covered() {
+        // Tab goes from style to style, unless nothing is open or something is being typed or chosen.
+        let switches = self.session.has_picture() && !self.session.is_covered();
+        if tab && switches && !input.egui_ctx().text_edit_focused() {
             return;
         }
         if input.on_window_event(window, event).repaint && !matches!(event, WindowEvent::RedrawRequested) {

@@ -2,7 +2,7 @@
 
 mod preset;
 
-use self::preset::{GRAIN, Look, Style, TONE};
+use self::preset::{GRAIN, Look, Preset, Style, TONE};
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::ink_sheet::{self, Drawing, Sheet};
 use crate::kernels::colour::tone_marks::{self, HATCHING, Inputs, Tones};
@@ -143,6 +143,42 @@ fn lines_on_white(
     line_integral_convolution::pass(scope.plan, drawn, tensor, &options)
 }
 
+/// The lines of a drawing.
+fn flow(scope: &Scope<'_>, drawing: &Preset, guide_weight: f32) -> FlowDog {
+    let scale = scope.scale();
+    FlowDog {
+        sigma_e: drawing.sigma_e * scale,
+        k: scope.float("k"),
+        sigma_m: drawing.sigma_m * scale,
+        xdog: Xdog::sharpen(drawing.p, drawing.epsilon, drawing.phi, Threshold::Tanh),
+        iterations: 1,
+        stepping: Stepping::Along(Integrator::TwoStep),
+        kernel: Kernel::Separable,
+        guide_weight: guide_weight * GUIDES,
+        texture: scope.float(lines::TEXTURE_LINES.id),
+        widths: lines::guide_widths(scope),
+    }
+}
+
+/// The paper of a drawing, and how its lines lie on it.
+fn sheet(scope: &Scope<'_>, drawing: &Preset) -> Sheet {
+    let mut line = scope.color("line_color");
+    line[3] *= drawing.opacity;
+    Sheet {
+        line,
+        paper: scope.color("paper_color"),
+        follow: drawing.follow,
+        grain: drawing.grain,
+        grain_size: drawing.grain_size,
+        dryness: drawing.dryness,
+        scale: scope.scale(),
+        origin: scope.origin(),
+        colour: drawing.colour,
+        texture: drawing.texture,
+        cover: scope.bool("cover"),
+    }
+}
+
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let scale = scope.scale();
     let own = scope.option::<Style>("style").preset();
@@ -156,18 +192,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let guide_weight = scope.float("guide_weight");
     let options = TensorOptions { rho: drawing.rho * scale, ..TensorOptions::at_scale(scale) };
     let (abstraction, n_e) = (Abstraction::of(scope), scope.int("n_e"));
-    let flow = FlowDog {
-        sigma_e: drawing.sigma_e * scale,
-        k: scope.float("k"),
-        sigma_m: drawing.sigma_m * scale,
-        xdog: Xdog::sharpen(drawing.p, drawing.epsilon, drawing.phi, Threshold::Tanh),
-        iterations: 1,
-        stepping: Stepping::Along(Integrator::TwoStep),
-        kernel: Kernel::Separable,
-        guide_weight: guide_weight * GUIDES,
-        texture: scope.float(lines::TEXTURE_LINES.id),
-        widths: lines::guide_widths(scope),
-    };
+    let flow = flow(scope, &drawing, guide_weight);
     let Steadied { stages: [smooth, tensor, response], shares } =
         steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
             let color = scope.required("color");
@@ -205,20 +230,6 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     };
     let toned = lightness::pass_lab(scope.plan, smooth);
     let marks = tone_marks::pass(scope.plan, &Inputs { tones: toned, tensor, strokes, hatching }, &tones);
-    let mut line = scope.color("line_color");
-    line[3] *= drawing.opacity;
-    let sheet = Sheet {
-        line,
-        paper: scope.color("paper_color"),
-        follow: drawing.follow,
-        grain: drawing.grain,
-        grain_size: drawing.grain_size,
-        dryness: drawing.dryness,
-        scale,
-        origin: scope.origin(),
-        colour: drawing.colour,
-        texture: drawing.texture,
-        cover: scope.bool("cover"),
-    };
+    let sheet = sheet(scope, &drawing);
     ink_sheet::pass(scope.plan, &Drawing { lines, color: tinted, strokes, marks }, &sheet)
 }
