@@ -192,3 +192,11 @@ fn frames_are_written_plain_and_stylized() {
     assert_eq!(listing(&out).iter().filter(|n| n.starts_with("turn.")).count(), 3);
     assert!(listing(&out).iter().all(|n| !n.starts_with('.')), "temporary files are left");
 }
+
+#[test]
+fn a_kernel_reads_textures_of_both_precisions_in_one_plan() {
+    // Its levels are sampled in half precision, but for the one that the host gives.
+    let nodes = ["--node", "painting", "--node", "cartoon"];
+    let bench = ["bench", "--backend", "gpu", "--precision", "fast", "--size", "320x200", "--runs", "1"];
+    succeeds(isophote().args(bench).args(nodes));
+}

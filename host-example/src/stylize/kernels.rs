@@ -19,7 +19,8 @@ pub struct Kernels {
     /// Whether kernels hold windows of neighbours in workgroup memory, which pays on hardware alone.
     shared_windows: bool,
     sampler: wgpu::Sampler,
-    compiled: Mutex<HashMap<String, Kernel>>,
+    /// By name, and by which of the textures that are read have half precision: samplers read no others.
+    compiled: Mutex<HashMap<(String, Vec<bool>), Kernel>>,
 }
 
 /// A compiled kernel, and what it binds.
@@ -78,7 +79,9 @@ impl Kernels {
         textures: &[Texture<'_>],
     ) -> Result<(Kernel, bool)> {
         let mut compiled = self.compiled.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(kernel) = compiled.get(pass.kernel) {
+        let half = |at: &u32| textures.get(*at as usize).is_some_and(|t| t.format == Format::Rgba16Float);
+        let key = (pass.kernel.to_owned(), pass.inputs.iter().map(half).collect());
+        if let Some(kernel) = compiled.get(&key) {
             return Ok((kernel.clone(), false));
         }
         let shader = plan.wgsl(index).map_err(refused)?;
@@ -114,7 +117,7 @@ impl Kernels {
             });
             Ok(Kernel { pipeline, layout, sampler: shader.sampler })
         })?;
-        compiled.insert(pass.kernel.to_owned(), kernel.clone());
+        compiled.insert(key, kernel.clone());
         Ok((kernel, true))
     }
 }
