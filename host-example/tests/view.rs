@@ -92,6 +92,35 @@ fn a_slider_is_moved_and_taken_back_and_a_wipe_shows_the_original() {
     assert!(remembered.contains("cube.gltf") && remembered.contains("blueprint"), "{remembered}");
 }
 
+#[test]
+fn half_precision_shows_all_but_the_same_and_says_so() {
+    let Some(display) = Display::open("800x600") else { return };
+    let folder = support::folder();
+    let photo = folder.path().join("photo.png");
+    support::picture(240, 160).save(&photo).unwrap();
+    let [exact, half] = ["exact", "half"].map(|precision| {
+        let mut command = view(folder.path(), "700x420");
+        command.args(["--report", "--precision", precision, "--style", "gaussian", "--set", "sigma=3"]);
+        let mut window = Window::open(&display, command.arg(&photo));
+        window.point(ASIDE, &[]);
+        window.shows("photo.png", "gaussian");
+        let says = |window: &mut Window<'_>| window.title().ends_with(" - half precision");
+        match precision {
+            "half" => window.wait_for("the precision", says),
+            _ => assert!(!says(&mut window), "{}", window.title()),
+        }
+        let picture = window.settled(CANVAS);
+        let report = window.close();
+        assert!(report.contains(&format!(", {precision} precision\n")), "{report}");
+        picture
+    });
+    let differences = exact.iter().zip(&half).map(|(a, b)| a.abs_diff(*b));
+    let (largest, count) =
+        differences.fold((0, 0), |(most, count), d| (most.max(d), count + usize::from(d > 0)));
+    eprintln!("half precision: {count} of {} bytes differ by at most {largest}", exact.len());
+    assert!((1..=2).contains(&largest), "colours are rounded to 16 bits, which is seen in last bits alone");
+}
+
 /// Within the picture of the first card of the browser in a window of 700x420 pixels.
 const CARD: Part = [50, 215, 190, 285];
 /// The middle of that card.

@@ -16,13 +16,16 @@ use isophote_host::view::session::Session;
 use isophote_host::view::settings::Settings;
 
 use support::others::{self, Cover, drop_files};
-use support::places::places;
+use support::places::{places, tabs_to};
 use support::window::{Display, Part, Window, screen, view};
 use support::{folder, listing, picture};
 
 const SIZE: (u32, u32) = (700, 420);
 /// The canvas of a window of that size, above what is said at its lower border.
 const CANVAS: Part = [0, 60, 350, 290];
+
+/// A window that has room for all of the start.
+const START: (u32, u32) = (900, 560);
 
 fn size() -> String {
     format!("{}x{}", SIZE.0, SIZE.1)
@@ -35,6 +38,38 @@ fn session(style: &Path, file: &Path) -> Session {
     let mut session = Session::new(library, vec![look], Settings::default()).unwrap();
     session.show_reel(Reel::new(Document::open(file, &Options::default()).unwrap()).unwrap());
     session
+}
+
+#[test]
+fn pictures_that_come_with_the_program_are_opened_by_mouse_and_by_keys() {
+    let Some(display) = Display::open("1000x700") else { return };
+    let start = || {
+        let library = Library::from_file(support::library()).unwrap();
+        let look = Look::open(&library, "none".as_ref()).unwrap();
+        Session::new(library, vec![look], Settings::default()).unwrap()
+    };
+    let folders = [folder(), folder()];
+    let open = |folder: &Path, name: &str, ask: &dyn Fn(&mut Window<'_>)| {
+        let mut command = view(folder, &format!("{}x{}", START.0, START.1));
+        let mut window = Window::open(&display, command.args(["--style", "none"]));
+        window.wait_for("the start", |window| window.title() == "Isophote");
+        let before = window.settled(CANVAS);
+        ask(&mut window);
+        window.shows(name, "none");
+        window.changes("the picture", CANVAS, &before);
+        let written = image::open(folder.join("pictures").join(name)).unwrap();
+        assert!(written.width() >= START.0, "it is opened as a file");
+        window.close();
+        assert_eq!(window.said(), "");
+        assert_eq!(listing(folder), ["pictures", "view.json"]);
+    };
+    let statue = places(start(), START)("A statue", Role::Button).center();
+    open(folders[0].path(), "statue.jpg", &|window| window.click([statue.x as i32, statue.y as i32]));
+    let steps = tabs_to(start(), START, "Roofs");
+    open(folders[1].path(), "roofs.jpg", &|window| {
+        (0..steps).for_each(|_| window.key("Tab"));
+        window.key("Return");
+    });
 }
 
 #[test]

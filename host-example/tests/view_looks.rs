@@ -240,6 +240,7 @@ fn names_and_tags_are_written_to_the_file() {
     let folder = presets();
     let file = folder.path().join("dusk.json");
     let before = preset(&file);
+    let bytes = fs::read(&file).expect("it is there");
     let mut session = session(folder.path());
     let dusk = id(&session, &file);
     session.apply(dusk, false);
@@ -254,7 +255,7 @@ fn names_and_tags_are_written_to_the_file() {
         (after.title.tags.join("|"), after.title.about.as_deref()),
         ("dim|blue hour".into(), Some("Indigo lines."))
     );
-    assert_eq!((after.style, after.params), (before.style, before.params));
+    assert_eq!((&after.style, &after.params), (&before.style, &before.params));
     let session = harness.state_mut();
     assert!(session.browser.is_outdated && session.look().name == "Twilight" && !session.look().is_changed());
     // The window's own writing is no change from outside.
@@ -263,6 +264,13 @@ fn names_and_tags_are_written_to_the_file() {
     assert_eq!(session.look().name, "Twilight");
     session.list(read(folder.path()));
     assert!(shown(session).contains(&"Twilight".to_owned()));
+    // They are a step like any other.
+    session.undo();
+    assert_eq!((fs::read(&file).expect("it is there"), session.look().name.as_str()), (bytes, "Dusk"));
+    assert!(std::mem::take(&mut session.browser.is_outdated), "the looks are read again");
+    session.redo();
+    assert_eq!((preset(&file).title, session.look().name.as_str()), (after.title, "Twilight"));
+    assert!(session.browser.is_outdated && !session.look().is_changed());
     // What is broken meanwhile stays as it is, and the window says so.
     let id = id(session, &file);
     session.ask_title(id);
@@ -273,9 +281,10 @@ fn names_and_tags_are_written_to_the_file() {
 }
 
 #[test]
-fn a_file_is_deleted_only_when_that_was_asked() {
+fn a_file_is_deleted_only_when_that_was_asked_and_undo_brings_it_back() {
     let folder = presets();
     let file = folder.path().join("dusk.json");
+    let bytes = fs::read(&file).expect("it is there");
     let mut session = session(folder.path());
     session.browser.selected = Some(id(&session, &file));
     let mut harness = harness(session);
@@ -287,6 +296,19 @@ fn a_file_is_deleted_only_when_that_was_asked() {
     click(&mut harness, Role::Button, "Delete…");
     click(&mut harness, Role::Button, "Delete the file");
     assert!(!file.exists() && harness.state().browser.is_outdated);
+    // It is kept until the window is closed, whatever is opened meanwhile.
+    let session = harness.state_mut();
+    let picture = Document::open(&folder.path().join("picture.png"), &Options::default()).expect("a picture");
+    session.show_reel(Reel::new(picture).expect("a picture"));
+    session.undo();
+    assert_eq!(fs::read(&file).expect("it is back"), bytes);
+    session.redo();
+    assert!(!file.exists());
+    // What somebody else has put there meanwhile stays.
+    fs::write(&file, "theirs").expect("it is writable");
+    session.undo();
+    assert_eq!(fs::read_to_string(&file).expect("it is there"), "theirs");
+    assert!(session.notes.present().iter().any(|note| note.is_bad && note.text.contains("somebody else")));
 }
 
 #[test]

@@ -11,6 +11,7 @@ mod gpu_cost;
 mod header;
 mod looks;
 mod readme;
+mod samples;
 mod scene;
 mod setup;
 mod test;
@@ -41,6 +42,8 @@ enum Chore {
     Gallery(gallery::Options),
     /// Every look that ships with the host, as one sheet
     Looks(looks::Options),
+    /// The pictures that come with the host, to try looks on
+    Samples(samples::Options),
     /// Counts what the shaders cost on a graphics card, without one
     GpuCost(gpu_cost::Options),
     /// Runs the host's benchmark, built for speed
@@ -66,6 +69,7 @@ fn main() -> ExitCode {
         Chore::Experiments(options) => experiments::run(&options),
         Chore::Gallery(options) => gallery::run(&options),
         Chore::Looks(options) => looks::run(&options),
+        Chore::Samples(options) => samples::run(&options),
         Chore::GpuCost(options) => gpu_cost::run(&options),
         Chore::Bundle(options) => bundle::run(&options),
         Chore::Dist(options) => dist::run(&options),

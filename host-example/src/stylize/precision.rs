@@ -30,6 +30,15 @@ impl Precision {
         }
     }
 
+    /// As options have it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Half => "half",
+            Self::Fast => "fast",
+        }
+    }
+
     /// Lets graphics devices compute a style so.
     ///
     /// # Errors

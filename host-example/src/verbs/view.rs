@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::shared::{LengthArgs, ReadingArgs, parse_size};
+use super::shared::{LengthArgs, PrecisionArgs, ReadingArgs, parse_size};
 use super::staging::StagingArgs;
 use crate::error::Result;
 use crate::loader::Library;
@@ -41,13 +41,15 @@ pub struct ViewArgs {
     set: Vec<Setting>,
     #[command(flatten)]
     lengths: LengthArgs,
+    #[command(flatten)]
+    precision: PrecisionArgs,
     /// Size of the window in pixels [default: what it was last, at first 1440x900].
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
     /// Closes the window after so many frames.
     #[arg(long, value_name = "N")]
     frames: Option<u32>,
-    /// Prints the adapter, and the frames and milliseconds of each style, when the window is closed.
+    /// Prints the adapter and the precision, and the frames and milliseconds of each style, when the window is closed.
     #[arg(long)]
     report: bool,
 }
@@ -67,6 +69,7 @@ pub fn run(args: &ViewArgs) -> Result<()> {
     problem.iter().for_each(|problem| session.notes.complain(problem));
     session.prepare(&args.set, args.lengths.lengths);
     session.record.limit = args.frames;
+    session.precision = args.precision.precision;
     session.resume(last.as_deref());
     if let Some(path) = &args.file {
         open(&mut session, path, args)?;
@@ -112,6 +115,7 @@ fn looks(library: &Library, args: &ViewArgs) -> Result<Vec<Look>> {
     let looks: Vec<Look> = names.iter().map(|name| Look::open(library, name)).collect::<Result<_>>()?;
     let styles: Vec<Style> =
         looks.iter().filter_map(|look| look.style(library).transpose()).collect::<Result<_>>()?;
+    styles.iter().try_for_each(|style| args.precision.precision.apply(style))?;
     for setting in &args.set {
         let mut refusals = styles.iter().map(|style| style.set(setting));
         if let Some(refusal) = refusals.next().filter(|_| !refusals.any(|r| r.is_ok())) {

@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
+use egui::ColorImage;
+
 use super::command;
 use super::demo;
 use super::dialogs;
@@ -16,6 +18,7 @@ use super::look_work::LookWork;
 use super::pictures;
 use super::plan::What;
 use super::reel::Reel;
+use super::samples::{self, SAMPLES, Sample};
 use super::saving::Saving;
 use super::scenery::{Scenery, Staging};
 use super::session::{Session, Wish};
@@ -32,6 +35,8 @@ use crate::scene::{Scene, camera, floor};
 /// What is to be opened.
 enum Job {
     Demo,
+    /// A picture that comes with the program, whose file is in a folder.
+    Sample(&'static Sample, PathBuf),
     /// The first of them that can be opened.
     Files(Library, Vec<PathBuf>),
     /// The file that is open, read in another way.
@@ -81,6 +86,8 @@ pub struct Background {
     reader: Worker<(Library, PathBuf), (PathBuf, Result<Look>)>,
     watch: Watch,
     looks: LookWork,
+    /// Makes the pictures of the start small.
+    reducer: Worker<(), Vec<Arc<ColorImage>>>,
     /// What the critic was asked last.
     asked: Option<(Look, Option<IsophoteRequest>)>,
     chosen: Receiver<(Dialog, Result<Option<PathBuf>>)>,
@@ -108,6 +115,7 @@ impl Background {
             })?,
             watch: Watch::new(wake)?,
             looks: LookWork::new(wake)?,
+            reducer: Worker::new("samples", Arc::clone(wake), |()| samples::small())?,
             asked: None,
             chosen,
             choose,
@@ -179,6 +187,9 @@ impl Background {
         }
         self.follow_export(session);
         self.looks.collect(session);
+        if let Some(small) = self.reducer.answer() {
+            session.thumbnails.take(small);
+        }
         if let Some(opened) = self.opener.answer() {
             match opened {
                 Ok(opened) => take(session, opened),
@@ -228,6 +239,11 @@ impl Background {
                 }
                 Wish::ChooseOutput => self.choose(Dialog::Export, session),
                 Wish::OpenDemo => self.opener.ask(Job::Demo),
+                Wish::OpenSample(index) => {
+                    if let Some(sample) = SAMPLES.get(index) {
+                        self.opener.ask(Job::Sample(sample, session.settings.place_for_samples()));
+                    }
+                }
                 Wish::ChooseFile => self.choose(Dialog::File, session),
                 Wish::ChooseLook => self.choose(Dialog::Look, session),
                 Wish::ChooseSurroundings => self.choose(Dialog::Surroundings, session),
@@ -248,6 +264,9 @@ impl Background {
         }
         if !files.is_empty() {
             self.opener.ask(Job::Files(session.library.clone(), files));
+        }
+        if !session.has_picture() && !std::mem::replace(&mut session.thumbnails.are_asked, true) {
+            self.reducer.ask(());
         }
         if let Err(error) = self.looks.grant(session) {
             session.notes.complain(&error);
@@ -290,6 +309,7 @@ impl Background {
                 What::Picture if session.reel.is_none() => words.extend(command::moment(session)),
                 What::Picture | What::Frames => {}
             }
+            words.extend(command::precision(session));
             job.arguments = words.into_iter().map(Into::into).collect();
             Export::start(job)
         });
@@ -379,6 +399,10 @@ fn is_look(path: &Path) -> bool {
 fn open(job: Job) -> Result<Opened> {
     Ok(match job {
         Job::Demo => Opened::Scene(Box::new(demo::scene()?), None),
+        Job::Sample(sample, folder) => {
+            let document = Document::open(&sample.file_in(&folder)?, &Options::default())?;
+            Opened::Pictures(Box::new(Reel::new(document)?))
+        }
         Job::Files(library, files) => first_of(&library, files)?,
         Job::Again(path, selection) => {
             let options = Options { selection: *selection, ..Options::default() };

@@ -8,6 +8,7 @@ use crate::apply::space::srgb_encode;
 use crate::render::background::Background;
 use crate::scene::floor;
 use crate::stylize::lengths::Lengths;
+use crate::stylize::precision::Precision;
 
 /// The command line, quoted for a shell.
 pub fn line(session: &Session) -> String {
@@ -36,7 +37,16 @@ pub fn line(session: &Session) -> String {
     if look.preset.lengths == Some(Lengths::Pixels) {
         words.push("--lengths pixels".into());
     }
+    words.extend(precision(session));
     words.join(" ")
+}
+
+/// The option for a precision that is not the usual one.
+pub fn precision(session: &Session) -> Vec<String> {
+    match session.precision {
+        Precision::Exact => Vec::new(),
+        precision => vec!["--precision".into(), precision.name().into()],
+    }
 }
 
 /// A name for the result beside the input.

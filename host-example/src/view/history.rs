@@ -41,6 +41,18 @@ impl<S: Clone + PartialEq> History<S> {
         }
     }
 
+    /// Takes something out of all states, and forgets steps that changed nothing else.
+    pub fn strip(&mut self, now: &S, strip: impl Fn(&mut S)) {
+        self.open = None;
+        for states in [&mut self.past, &mut self.future] {
+            states.iter_mut().for_each(&strip);
+            states.dedup();
+            while states.last() == Some(now) {
+                states.pop();
+            }
+        }
+    }
+
     /// Whether something is being changed.
     pub fn is_open(&self) -> bool {
         self.open.is_some()
@@ -91,6 +103,21 @@ mod tests {
         assert_eq!(history.undo(&4), Some(0));
         assert_eq!(history.undo(&0), None);
         assert_eq!((history.redo(&0), history.redo(&4), history.redo(&9)), (Some(4), Some(9), None));
+    }
+
+    #[test]
+    fn steps_that_changed_only_what_is_taken_out_are_forgotten() {
+        let mut history = History::default();
+        for state in [(0, 0), (1, 0), (1, 5), (2, 5), (2, 6)] {
+            history.record("a", &state);
+            history.close(&(9, 9));
+        }
+        assert_eq!(history.undo(&(2, 7)), Some((2, 6)));
+        history.strip(&(2, 0), |state| state.1 = 0);
+        assert!(!history.can_redo());
+        assert_eq!(history.undo(&(2, 0)), Some((1, 0)));
+        assert_eq!(history.undo(&(1, 0)), Some((0, 0)));
+        assert!(!history.can_undo());
     }
 
     #[test]

@@ -11,6 +11,7 @@ use crate::loader::contract::{IsophoteRequest, IsophoteSpace};
 use crate::stylize::Stylizer;
 use crate::stylize::kernels::Kernels;
 use crate::stylize::plan_runner::Counts;
+use crate::stylize::precision::Precision;
 use crate::stylize::preset::Track;
 use crate::stylize::style::Setting;
 
@@ -24,6 +25,7 @@ struct Job {
 #[derive(Clone, Debug, PartialEq)]
 struct Recipe {
     look: Look,
+    precision: Precision,
     /// What pictures the look is for; the reference of lengths is the look's own affair, and frames come later.
     asked: IsophoteRequest,
 }
@@ -87,9 +89,15 @@ impl LiveLook {
     ///
     /// # Errors
     /// What the library or the device has against the look; the look before stays.
-    pub fn follow(&mut self, library: &Library, look: &Look, asked: IsophoteRequest) -> Result<()> {
+    pub fn follow(
+        &mut self,
+        library: &Library,
+        look: &Look,
+        precision: Precision,
+        asked: IsophoteRequest,
+    ) -> Result<()> {
         let answer = self.worker.answer();
-        let wanted = Recipe { look: look.clone(), asked };
+        let wanted = Recipe { look: look.clone(), precision, asked };
         if look.is_plain() {
             self.revision += u64::from(self.ready.is_some());
             self.forget();
@@ -233,7 +241,7 @@ impl Ready {
             && old.preset.lengths == new.preset.lengths
             && old.has_graph_of(new)
             && old.style_name() == new.style_name();
-        if !is_same || self.recipe.asked != wanted.asked {
+        if !is_same || (self.recipe.asked, self.recipe.precision) != (wanted.asked, wanted.precision) {
             return Ok(false);
         }
         let track = |look: &Look, knob: &Knob| {
@@ -271,9 +279,10 @@ impl Ready {
 
 fn build(job: &Job) -> Result<Ready> {
     let Job { library, kernels, recipe } = job;
-    let Recipe { look, asked } = recipe;
+    let Recipe { look, precision, asked } = recipe;
     let missing = || Error::failure("the plain look has no style", "choose a style");
     let style = look.style(library)?.ok_or_else(missing)?;
+    precision.apply(&style)?;
     let request = IsophoteRequest { reference_height: style.lengths.reference_height(), ..*asked };
     let stylizer = Stylizer::with_request(kernels, library, style, request)?;
     stylizer.compile_all()?;

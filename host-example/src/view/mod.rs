@@ -3,7 +3,8 @@
 //! | what | where |
 //! |---|---|
 //! | the window's events, and when a frame is drawn | `app`, `clicks`, `pace` |
-//! | all that is known of what is shown, and steps back | `session`, `history`, `look`, `chain`, `value`, `scenery`, `reel`, `viewport` |
+//! | all that is known of what is shown, and steps back | `session`, `history`, `file_steps`, `look`, `chain`, `value`, `scenery`, `reel`, `viewport` |
+//! | what comes with the program to try looks on | `demo`, `samples` |
 //! | looks to choose from | `browser`, `preview`, `comparison`, `saving` |
 //! | work beside the window | `worker`, `background`, `dialogs`, `look_work`, `watch`, `idle`, `document`, `export` |
 //! | what lives on the device | `stage`, `shown`, `screen`, `sources`, `source`, `pictures`, `snapshot`, `live_look`, `canvas`, `probe`, `panel` |
@@ -21,6 +22,7 @@ mod demo;
 mod dialogs;
 pub mod document;
 pub mod export;
+mod file_steps;
 mod history;
 mod idle;
 mod live_look;
@@ -35,6 +37,7 @@ pub mod preview;
 mod probe;
 pub mod record;
 pub mod reel;
+pub mod samples;
 pub mod saving;
 pub mod scenery;
 mod screen;
@@ -82,7 +85,7 @@ pub fn show(mut session: Session, size: Option<(u32, u32)>, with_report: bool) -
     let mut app = App::new(session, size, event_loop.create_proxy())?;
     event_loop.run_app(&mut app).map_err(|e| failed(&e))?;
     if with_report {
-        app.session().record.report()?;
+        app.session().record.report(app.session().precision)?;
     }
     app.failure.map_or(Ok(()), Err)
 }

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use crate::error::Result;
 use crate::output;
+use crate::stylize::precision::Precision;
 
 /// Frames of one look and size.
 #[derive(Clone, Debug)]
@@ -106,13 +107,13 @@ impl Record {
         self.stretches.iter().map(|stretch| stretch.times.len()).sum()
     }
 
-    /// Prints the adapter, the frames and milliseconds of each look, the longest time that the window answered nobody, and what
+    /// Prints the adapter and the precision, the frames and milliseconds of each look, the longest time that the window answered nobody, and what
     /// its controls took on the device.
     ///
     /// # Errors
     /// As [`output::print`].
-    pub fn report(&self) -> Result<()> {
-        let mut text = format!("{}\n", self.adapter);
+    pub fn report(&self, precision: Precision) -> Result<()> {
+        let mut text = format!("{}, {} precision\n", self.adapter, precision.name());
         for Stretch { look, size: (width, height), times } in &self.stretches {
             let median = median(times);
             text += &format!("{look} {width}x{height}: {} frames, {median:.1} ms each\n", times.len());

@@ -13,6 +13,7 @@ use super::browser::Browser;
 use super::chain::{self, Chain, Watched};
 use super::comparison::Comparison;
 use super::document::kind::Kind;
+use super::file_steps::FileSteps;
 use super::history::History;
 use super::look::{Knob, Look};
 use super::notes::Notes;
@@ -20,6 +21,7 @@ use super::plan::Plan;
 use super::preview::Previews;
 use super::record::Record;
 use super::reel::Reel;
+use super::samples::Thumbnails;
 use super::saving::Saving;
 use super::scenery::{Lighting, Scenery};
 use super::settings::Settings;
@@ -28,6 +30,7 @@ use crate::apply::exr::{Guide, Layer};
 use crate::error::Result;
 use crate::loader::Library;
 use crate::loader::catalogue::Node;
+use crate::stylize::precision::Precision;
 
 /// What only the window itself can do, asked for by its controls.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +41,8 @@ pub enum Wish {
     ChooseFile,
     /// Open the scene that comes with the program.
     OpenDemo,
+    /// Open a picture that comes with the program.
+    OpenSample(usize),
     /// Show a dialog and take the look that is chosen.
     ChooseLook,
     /// Show a dialog and take the folder that is chosen among those of looks.
@@ -66,6 +71,8 @@ pub struct State {
     current: usize,
     looks: Vec<Arc<Look>>,
     lighting: Option<Lighting>,
+    /// Changes of files that were made.
+    files: usize,
 }
 
 /// What a picture is made of, as the canvas has it.
@@ -85,6 +92,8 @@ pub enum Which {
 pub struct Session {
     /// The dynamic library.
     pub library: Library,
+    /// How precisely looks are computed.
+    pub precision: Precision,
     /// Looks in the order of the keys 1, 2, ...
     pub looks: Vec<Arc<Look>>,
     /// Parameters of the present look.
@@ -117,6 +126,8 @@ pub struct Session {
     pub comparison: Option<Comparison>,
     /// A look that is about to be saved.
     pub saving: Option<Saving>,
+    /// Pictures that come with the program, small.
+    pub thumbnails: Thumbnails,
     /// What looks make of the picture, small.
     pub previews: Previews,
     /// What there is to say.
@@ -143,6 +154,7 @@ pub struct Session {
     is_unframed: bool,
     current: usize,
     edits: History<State>,
+    files: FileSteps,
 }
 
 impl Session {
@@ -156,6 +168,7 @@ impl Session {
         Ok(Self {
             fitting: chain::fitting(&library),
             library,
+            precision: Precision::default(),
             looks: looks.into_iter().map(Arc::new).collect(),
             knobs,
             chain,
@@ -171,6 +184,7 @@ impl Session {
             browser: Browser::default(),
             comparison: None,
             saving: None,
+            thumbnails: Thumbnails::default(),
             previews: Previews::default(),
             notes: Notes::default(),
             record: Record::default(),
@@ -185,6 +199,7 @@ impl Session {
             is_unframed: false,
             current: 0,
             edits: History::default(),
+            files: FileSteps::default(),
         })
     }
 
@@ -340,7 +355,7 @@ impl Session {
         self.viewport.fit();
         self.viewport.overlay = Overlay::None;
         self.record.begin();
-        self.edits = History::default();
+        self.forget_lighting();
     }
 
     /// Title of the window: what is open, the look, frames shown since the last switch, time of the last one.
@@ -349,11 +364,16 @@ impl Session {
         if !self.has_picture() {
             return "Isophote".into();
         }
+        let precision = match self.precision {
+            Precision::Exact => String::new(),
+            precision => format!(" - {} precision", precision.name()),
+        };
         match self.record.present() {
             Some((frames, time)) => {
-                format!("{} - {style} - frame {frames} - {:.1} ms", self.name, time.as_secs_f64() * 1e3)
+                let time = time.as_secs_f64() * 1e3;
+                format!("{} - {style} - frame {frames} - {time:.1} ms{precision}", self.name)
             }
-            None => format!("{} - {style}", self.name),
+            None => format!("{} - {style}{precision}", self.name),
         }
     }
 }

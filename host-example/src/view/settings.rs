@@ -101,6 +101,12 @@ impl Settings {
         self.look_folder.clone().or_else(own).unwrap_or_default()
     }
 
+    /// Where pictures that come with the program are written: beside this file.
+    pub fn place_for_samples(&self) -> PathBuf {
+        let own = self.place.as_deref().and_then(Path::parent).map(|folder| folder.join("pictures"));
+        own.unwrap_or_else(|| env::temp_dir().join("isophote-pictures"))
+    }
+
     /// A file was opened.
     pub fn remember(&mut self, file: &Path) {
         let file = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());

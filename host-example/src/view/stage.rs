@@ -204,7 +204,7 @@ impl Stage {
         let compared = session.compared.clone().unwrap_or_else(Look::plain);
         let asked = source.asked();
         for (live, look) in self.looks.iter_mut().zip([&*seen, &compared, &overlay]) {
-            problems.extend(live.follow(&session.library, look, asked).err());
+            problems.extend(live.follow(&session.library, look, session.precision, asked).err());
             if let Source::Scene(source) = source
                 && live.wants_rest_positions()?
                 && source.add_rest_positions()

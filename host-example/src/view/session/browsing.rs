@@ -148,11 +148,7 @@ impl Session {
     pub fn write_title(&mut self) {
         let Some(Titling { file, words }) = self.browser.titling.take() else { return };
         let title = words.title(&file);
-        match titling::write(&file, &title) {
-            Ok(()) => self.retitle(&file, &title),
-            Err(error) => self.notes.complain(&error),
-        }
-        self.browser.is_outdated = true;
+        self.edit_file(&file, || titling::write(&file, &title), |session| session.retitle(&file, &title));
     }
 
     /// The window's own copies of a look whose file has a new title.
@@ -162,18 +158,17 @@ impl Session {
         }
     }
 
-    /// Deletes the file of a look, which its owner has agreed to.
+    /// Deletes the file of a look, which its owner has agreed to, until undo brings it back.
     pub fn delete(&mut self) {
         let Some(file) = self.browser.deleting.take() else { return };
-        match std::fs::remove_file(&file) {
-            Ok(()) => self.notes.say(format!("Deleted {}", file.display())),
-            Err(problem) => self.notes.complain(&Error::file(
-                &file,
-                format!("cannot be deleted: {problem}"),
-                "delete it in a file manager",
-            )),
-        }
-        self.browser.is_outdated = true;
+        let remove = || {
+            std::fs::remove_file(&file).map_err(|e| {
+                Error::file(&file, format!("cannot be deleted: {e}"), "delete it in a file manager")
+            })
+        };
+        self.edit_file(&file, remove, |session| {
+            session.notes.say(format!("Deleted {}; undo brings it back", file.display()));
+        });
     }
 
     /// Saves the present look: to its own file, or after its name has been asked.

@@ -1,8 +1,10 @@
 //! Steps that are taken back and taken again: everything that makes the picture.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use super::{Session, State};
+use crate::error::Result;
 use crate::view::look::Look;
 use crate::view::scenery::Lighting;
 
@@ -13,17 +15,54 @@ impl Session {
             current: self.current,
             looks: self.looks.clone(),
             lighting: self.scenery.as_ref().map(|scenery| scenery.lighting.clone()),
+            files: self.files.done(),
         }
     }
 
     fn restore(&mut self, state: State) {
-        let State { current, looks, lighting } = state;
+        let State { current, looks, lighting, files } = state;
         self.looks = looks;
         self.turn_to(current);
         if let (Some(scenery), Some(lighting)) = (&mut self.scenery, lighting) {
             scenery.lighting = lighting;
             scenery.relight();
         }
+        let restored = self.files.go_to(files);
+        self.browser.is_outdated |= !restored.is_empty();
+        for file in restored {
+            match file {
+                Ok(file) if file.exists() => self.notes.say(format!("Restored {}", file.display())),
+                Ok(file) => self.notes.say(format!("Deleted {}", file.display())),
+                Err(problem) => self.notes.complain(&problem),
+            }
+        }
+    }
+
+    /// Changes a file of a look by `change`, as one step with what `then` changes in the window.
+    pub(super) fn edit_file(
+        &mut self,
+        file: &Path,
+        change: impl FnOnce() -> Result<()>,
+        then: impl FnOnce(&mut Self),
+    ) {
+        self.let_go();
+        let before = self.state();
+        match self.files.change(file, change) {
+            Ok(()) => {
+                then(self);
+                self.edits.record("file", &before);
+                self.let_go();
+            }
+            Err(problem) => self.notes.complain(&problem),
+        }
+        self.browser.is_outdated = true;
+    }
+
+    /// Another scene is open, which has its own light: steps bring that of the one before back no more.
+    pub(super) fn forget_lighting(&mut self) {
+        let mut now = self.state();
+        now.lighting = None;
+        self.edits.strip(&now, |state| state.lighting = None);
     }
 
     /// Changes the look; changes of the same thing are one step until [`Session::let_go`].

@@ -117,7 +117,7 @@ fn deleting(context: &Context, session: &mut Session) {
     let (mut open, mut closes, mut done) = (true, false, false);
     window(context, "Delete this look?", &mut open, |ui| {
         ui.set_max_width(FIELD + 90.0);
-        ui.label("The file is deleted from the disk, which cannot be undone.");
+        ui.label("The file is deleted from the disk. Undo brings it back until the window is closed.");
         file(ui, &path);
         ui.horizontal(|ui| {
             done = ui.button(RichText::new("Delete the file").color(theme::BAD)).clicked();

@@ -47,7 +47,8 @@ pub fn press(session: &mut Session, key: &Key) {
         Key::Named(NamedKey::Escape) if session.shows_help => session.shows_help = false,
         Key::Named(NamedKey::Escape) | Key::Character("q") => session.wishes.push(Wish::Quit),
         Key::Named(NamedKey::Space) => session.toggle_playing(),
-        Key::Named(NamedKey::Tab) => session.choose_next(),
+        // Before anything is open it goes from control to control.
+        Key::Named(NamedKey::Tab) if session.has_picture() => session.choose_next(),
         Key::Named(key @ (NamedKey::ArrowLeft | NamedKey::ArrowRight)) => {
             if let Some(reel) = &mut session.reel {
                 reel.step(if key == NamedKey::ArrowLeft { -1 } else { 1 });
