@@ -308,6 +308,7 @@ fn unsafe_code_stays_in_its_rooms_and_each_block_has_a_reason() {
         // The tests' loader loads as a host does; what asks a driver for machine code calls it through pointers.
         let rooms = [
             "nodes/plugin",
+            "nodes/python",
             "host-example",
             "tests/tests",
             "tests/src/library.rs",

@@ -2,7 +2,7 @@
 //! every effect, and its installation.
 
 use crate::error::{Context, Failure, Result};
-use crate::tools::{build_with_host, heading, host, program, run as run_command, target_dir};
+use crate::tools::{build_with_host, heading, host, library_file, program, run as run_command, target_dir};
 use std::path::{Path, PathBuf};
 
 /// Options of `cargo xtask bundle`.
@@ -79,8 +79,7 @@ pub fn write(bundle: &Path, profile: &str) -> Result<()> {
     for folder in [&binaries, &resources] {
         std::fs::create_dir_all(folder).context(|| format!("cannot create {}", folder.display()))?;
     }
-    let library = format!("{}isophote{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    let library = target_dir(profile).join(library);
+    let library = library_file(profile);
     std::fs::copy(&library, binaries.join(NAME)).context(|| format!("cannot copy {}", library.display()))?;
     let list = contents.join("Info.plist");
     std::fs::write(&list, property_list()).context(|| format!("cannot write {}", list.display()))?;

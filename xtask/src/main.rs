@@ -10,6 +10,7 @@ mod gallery;
 mod gpu_cost;
 mod header;
 mod looks;
+mod python;
 mod readme;
 mod samples;
 mod scene;
@@ -54,6 +55,10 @@ enum Chore {
     Dist(dist::Options),
     /// Writes include/isophote.h from the Rust declarations
     Header(header::Options),
+    /// Makes the wheel for Python
+    Wheel(python::WheelOptions),
+    /// Writes what editors know of the Python package's nodes from their declarations
+    Stubs(python::StubsOptions),
     /// Writes the README's table of nodes from their declarations
     Readme(readme::Options),
     /// Writes the demo scene (glTF) and the house (OBJ)
@@ -74,6 +79,8 @@ fn main() -> ExitCode {
         Chore::Bundle(options) => bundle::run(&options),
         Chore::Dist(options) => dist::run(&options),
         Chore::Bench(options) => bench::run(&options),
+        Chore::Wheel(options) => python::wheel(&options),
+        Chore::Stubs(options) => python::stubs(&options),
         Chore::Readme(options) => readme::run(&options),
         Chore::Header(options) => header::run(&options),
         Chore::Scene(options) => scene::run(&options),

@@ -68,6 +68,18 @@ pub const PACKAGING: Need = Need {
     packages: &["cmake", "make", "pkg-config", "man-db"],
 };
 
+/// Python with virtual environments.
+pub const PYTHON: Need = Need {
+    what: "Python with virtual environments",
+    present: || {
+        let python = if cfg!(windows) { "python" } else { "python3" };
+        let mut modules = Command::new(python);
+        modules.args(["-c", "import venv, ensurepip"]).stdout(Stdio::null()).stderr(Stdio::null());
+        modules.status().is_ok_and(|status| status.success())
+    },
+    packages: &["python3", "python3-venv"],
+};
+
 /// What reads and writes videos.
 pub const FFMPEG: Need =
     Need { what: "ffmpeg", present: || program("ffmpeg") && program("ffprobe"), packages: &["ffmpeg"] };

@@ -1,11 +1,12 @@
 //! `cargo xtask test`: everything that must hold before a change lands, or the tests of one thing.
 
 use crate::error::{Context, Failure, Result};
+use crate::python;
 use crate::setup::{
-    self, BINUTILS, BROWSER, C_COMPILER, CLANG, CPP_COMPILER, FFMPEG, PACKAGING, VALGRIND, VULKAN,
+    self, BINUTILS, BROWSER, C_COMPILER, CLANG, CPP_COMPILER, FFMPEG, PACKAGING, PYTHON, VALGRIND, VULKAN,
     VULKAN_HEADERS, XVFB,
 };
-use crate::tools::{cargo, cargo_command, heading, root, target_dir};
+use crate::tools::{cargo, cargo_command, heading, library_file, root, target_dir};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::Mutex;
@@ -43,6 +44,7 @@ pub fn run(options: &Options) -> Result<()> {
         &BROWSER,
         &CLANG,
         &PACKAGING,
+        &PYTHON,
     ])?;
     let is_everything = options.filter.is_none() && !options.list;
     if is_everything && !options.tests_only {
@@ -62,6 +64,7 @@ pub fn run(options: &Options) -> Result<()> {
     if is_everything {
         let [documents, interface] = [documents(), interface()];
         failed.extend(documents.is_err().then(|| "the examples of the documents".to_owned()));
+        failed.extend(python::test(None).err().map(|failure| format!("the Python package: {failure}")));
         failed.extend(interface.is_err().then(|| "the OpenFX interface".to_owned()));
     }
     if failed.is_empty() { Ok(()) } else { Err(Failure(format!("these tests fail: {}", failed.join(", ")))) }
@@ -120,12 +123,10 @@ struct Program {
 impl Program {
     fn command(&self) -> Command {
         let mut command = Command::new(&self.path);
-        let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-        let library = target_dir("debug").join(format!("{prefix}isophote{suffix}"));
         command
             .current_dir(&self.folder)
             .env("CARGO_MANIFEST_DIR", &self.folder)
-            .env("ISOPHOTE_LIBRARY", library)
+            .env("ISOPHOTE_LIBRARY", library_file("debug"))
             .env("ISOPHOTE_REQUIRE_GPU", "1")
             .env("NODEVICE_SELECT", "1");
         command
@@ -180,7 +181,19 @@ fn list(programs: &[Program], filter: Option<&str>) -> Result<()> {
             println!("{}: {test}", program.name);
         }
     }
+    for test in python_tests(filter.unwrap_or_default())? {
+        println!("{PYTHON_TESTS}: {test}");
+    }
     Ok(())
+}
+
+/// What the tests of the Python package are called together.
+const PYTHON_TESTS: &str = "python";
+
+/// Those whose name contains the filter, or all of them when their common name does.
+fn python_tests(filter: &str) -> Result<Vec<String>> {
+    let tests = python::tests()?.into_iter();
+    Ok(tests.filter(|test| PYTHON_TESTS.contains(filter) || test.contains(filter)).collect())
 }
 
 /// Runs the tests that the filter means, one program after the other. Returns the programs that fail.
@@ -200,6 +213,11 @@ fn run_named(programs: &[Program], filter: &str) -> Result<Vec<String>> {
         if crate::tools::run(&mut command).is_err() {
             failed.push(program.name.clone());
         }
+    }
+    if !python_tests(filter)?.is_empty() {
+        found += 1;
+        let named = (!PYTHON_TESTS.contains(filter)).then_some(filter);
+        failed.extend(python::test(named).err().map(|_| PYTHON_TESTS.to_owned()));
     }
     if found == 0 {
         return Err(Failure(format!("no test's name contains '{filter}'; --list shows them all")));

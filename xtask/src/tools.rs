@@ -70,12 +70,34 @@ fn chosen(profile: &str) -> Vec<&str> {
     if profile == "debug" { Vec::new() } else { vec!["--profile", profile] }
 }
 
+/// Builds the dynamic library, and the others of the workspace as [`build_with_host`] does.
+///
+/// # Errors
+/// The command line, when it fails.
+pub fn build_library(profile: &str) -> Result<()> {
+    run(cargo_command(&["build", "--quiet", "--workspace", "--lib"]).args(chosen(profile)))
+}
+
+/// The dynamic library of a build.
+pub fn library_file(profile: &str) -> PathBuf {
+    let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    target_dir(profile).join(format!("{prefix}isophote{suffix}"))
+}
+
+fn program_file(name: &str, profile: &str) -> PathBuf {
+    target_dir(profile).join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
+}
+
 /// A program of a build.
 pub fn program(name: &str, profile: &str) -> Command {
-    let file = format!("{name}{}", std::env::consts::EXE_SUFFIX);
-    let mut command = Command::new(target_dir(profile).join(file));
+    let mut command = Command::new(program_file(name, profile));
     command.env("NODEVICE_SELECT", "1");
     command
+}
+
+/// The file of the sample host of a build.
+pub fn host_file(profile: &str) -> PathBuf {
+    program_file("isophote", profile)
 }
 
 /// The sample host of a build.

@@ -1,0 +1,89 @@
+"""Arrays in and out of the library, as they lie in memory where that is possible."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .errors import InvalidValueError
+
+Array = np.ndarray[Any, Any]
+
+_FORMATS = "uint8, uint16, float16 or float32"
+
+
+def pixels(image: Any, name: str) -> Array:
+    """An array of rows, columns and channels that the library reads: `image` itself where its layout allows, else a copy.
+
+    `name` is the input's, which says what other types of numbers mean.
+    """
+    array = np.asarray(image)
+    if array.ndim == 2:
+        array = array[:, :, np.newaxis]
+    if array.ndim != 3:
+        raise InvalidValueError(
+            f"input image '{name}' has the shape {array.shape}; pictures have rows, columns and perhaps channels"
+        )
+    if array.dtype == np.bool_:
+        array = array.astype(np.uint8) * 255 if name == "mask" else array.astype(np.uint8)
+    elif name == "object_id" and array.dtype.kind in "iu" and array.dtype.itemsize > 2:
+        array = array.astype(np.float32)
+    array = array.astype(_format(array.dtype, f"input image '{name}'"), copy=False)
+    if name == "color" and array.shape[2] == 2:
+        # Grey and alpha.
+        array = array[:, :, [0, 0, 0, 1]]
+    return dense(array)
+
+
+def _format(dtype: np.dtype[Any], what: str) -> np.dtype[Any]:
+    """The same type in the machine's byte order."""
+    if dtype.kind not in "uf" or dtype.itemsize not in ((1, 2) if dtype.kind == "u" else (2, 4)):
+        raise InvalidValueError(f"{what} has numbers of type {dtype}, not {_FORMATS}; use its method astype")
+    native: np.dtype[Any] = dtype.newbyteorder("=")
+    return native
+
+
+def dense(array: Array) -> Array:
+    """The array, or a copy, with the pixels of each row one after the other. Rows may lie in any order and distance."""
+    _, width, channels = array.shape
+    row, column, channel = array.strides
+    size = array.itemsize
+    one_after_the_other = (channels <= 1 or channel == size) and (width <= 1 or column == channels * size)
+    apart = array.shape[0] <= 1 or abs(row) >= width * channels * size
+    return array if one_after_the_other and apart else np.ascontiguousarray(array)
+
+
+class Target:
+    """Where a result is written: the caller's array, or a new one."""
+
+    def __init__(self, image: Any, kind: str, out: Array | None) -> None:
+        """`image` is the picture that a result of this kind is made of, `out` the caller's array."""
+        source = np.asarray(image)
+        height, width = source.shape[:2]
+        if kind == "color":
+            shape, dtype = source.shape, source.dtype
+        elif kind == "scalar":
+            shape, dtype = (height, width), source.dtype
+        else:
+            shape, dtype = (height, width, 2 if kind == "motion" else 4), np.dtype(np.float32)
+        if out is None:
+            out = np.empty(shape, dtype.newbyteorder("="))
+        elif out.ndim not in (2, 3) or out.shape[:2] != (height, width):
+            raise InvalidValueError(f"out has the shape {out.shape}, and the picture has {height} rows of {width} pixels")
+        self.out = out
+        _format(out.dtype, "out")
+        view = out[:, :, np.newaxis] if out.ndim == 2 else out
+        channels = view.shape[2]
+        # The library writes pictures of 1, 3 or 4 channels.
+        self._picked = [0, 3] if kind == "color" and channels == 2 else list(range(channels))
+        written = {2: 4 if kind == "color" else 3}.get(channels, channels)
+        is_fit = written == channels and out.dtype.isnative and dense(view) is view
+        self.pixels: Array = view if is_fit else np.empty((height, width, written), out.dtype.newbyteorder("="))
+        self._view = view
+
+    def finished(self) -> Array:
+        """The result, in the caller's array or the new one."""
+        if self.pixels is not self._view:
+            self._view[...] = self.pixels[:, :, self._picked]
+        return self.out

@@ -1,0 +1,287 @@
+//! The classes of the extension module. `isophote/_native.pyi` describes them to type checkers.
+
+use crate::array::{Pixels, Use};
+use crate::exception::{raised, usage};
+use crate::loader::contract::{self as c, IsophoteRequest};
+use crate::loader::{self, Answer, Call, DeviceHandle, Report};
+use crate::opened::library;
+use crate::owned::Owned;
+use crate::watch::Watch;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// One of some words, or a `ValueError` that lists them.
+fn word<T: Copy>(what: &str, given: &str, words: &[(&str, T)]) -> PyResult<T> {
+    words.iter().find(|(word, _)| *word == given).map(|(_, value)| *value).ok_or_else(|| {
+        let known: Vec<String> = words.iter().map(|(word, _)| format!("'{word}'")).collect();
+        PyValueError::new_err(format!("{what} is {}, not '{given}'", known.join(" or ")))
+    })
+}
+
+/// What is asked for: the picture, its spaces and where it stands.
+#[pyclass(frozen, module = "isophote._native")]
+#[derive(Debug)]
+pub struct Request(IsophoteRequest);
+
+#[pymethods]
+impl Request {
+    #[new]
+    #[pyo3(signature = (size, *, scale, color_space, alpha_mode, guides, origin, frame, reference_height, canonical_height))]
+    fn new(
+        py: Python<'_>,
+        size: (u32, u32),
+        scale: f32,
+        color_space: &str,
+        alpha_mode: &str,
+        guides: Vec<String>,
+        origin: (f64, f64),
+        frame: i64,
+        reference_height: u32,
+        canonical_height: u32,
+    ) -> PyResult<Self> {
+        const SPACES: [(&str, u32); 3] = [
+            ("srgb", c::ISOPHOTE_SPACE_SRGB),
+            ("linear", c::ISOPHOTE_SPACE_LINEAR),
+            ("acescg", c::ISOPHOTE_SPACE_ACESCG),
+        ];
+        const ALPHAS: [(&str, u32); 3] = [
+            ("straight", c::ISOPHOTE_ALPHA_STRAIGHT),
+            ("premultiplied", c::ISOPHOTE_ALPHA_PREMULTIPLIED),
+            ("emissive", c::ISOPHOTE_ALPHA_EMISSIVE),
+        ];
+        const GUIDES: [(&str, u32); 9] = [
+            ("color", 0),
+            ("normal", c::ISOPHOTE_GUIDE_NORMAL),
+            ("depth", c::ISOPHOTE_GUIDE_DEPTH),
+            ("object_id", c::ISOPHOTE_GUIDE_OBJECT_ID),
+            ("mask", c::ISOPHOTE_GUIDE_MASK),
+            ("flow", c::ISOPHOTE_GUIDE_FLOW),
+            ("motion", c::ISOPHOTE_GUIDE_MOTION),
+            ("motion_forward", c::ISOPHOTE_GUIDE_MOTION_FORWARD),
+            ("rest_position", c::ISOPHOTE_GUIDE_REST_POSITION),
+        ];
+        let mut bits = 0;
+        for guide in &guides {
+            bits |= word("a guide", guide, &GUIDES)?;
+        }
+        let whole = library()?.request(size).map_err(|refusal| raised(py, &refusal))?;
+        Ok(Self(IsophoteRequest {
+            scale,
+            space: word("the colour space", color_space, &SPACES)?,
+            alpha: word("alpha", alpha_mode, &ALPHAS)?,
+            guides: bits,
+            origin_x: origin.0,
+            origin_y: origin.1,
+            frame,
+            reference_height,
+            canonical_height,
+            ..whole
+        }))
+    }
+}
+
+/// A graphics device of the library's own.
+#[pyclass(frozen, module = "isophote._native")]
+#[derive(Debug)]
+pub struct Device {
+    device: Owned<loader::Device>,
+    number: DeviceHandle,
+}
+
+#[pymethods]
+impl Device {
+    #[new]
+    #[pyo3(signature = (adapter=None))]
+    fn new(py: Python<'_>, adapter: Option<&str>) -> PyResult<Self> {
+        let library = library()?;
+        let device = py.detach(|| library.device(adapter)).map_err(|refusal| raised(py, &refusal))?;
+        Ok(Self { number: device.number(), device: Owned::new(device) })
+    }
+
+    /// Name of the adapter.
+    #[getter]
+    fn name(&self, py: Python<'_>) -> PyResult<String> {
+        answer(py, self.device.with(py, |device| device.name())?)
+    }
+}
+
+/// A graph of nodes.
+#[pyclass(frozen, module = "isophote._native")]
+#[derive(Debug)]
+pub struct Graph(Owned<loader::Graph>);
+
+#[pymethods]
+impl Graph {
+    /// The graph that a JSON text describes.
+    #[new]
+    fn new(py: Python<'_>, json: &str) -> PyResult<Self> {
+        let graph = answer(py, library()?.graph_from_json(json))?;
+        Ok(Self(Owned::new(graph)))
+    }
+
+    /// A graph of one node whose inputs are the pictures of the same name.
+    #[staticmethod]
+    fn single(py: Python<'_>, node: &str) -> PyResult<Self> {
+        let graph = answer(py, library()?.single(node))?;
+        Ok(Self(Owned::new(graph)))
+    }
+
+    /// Adds a node under a name of its own; its index.
+    fn add(&self, py: Python<'_>, name: &str, node: &str) -> PyResult<u32> {
+        answer(py, self.0.with(py, |graph| graph.add(name, node))?)
+    }
+
+    /// Connects the output of a node to an input of another.
+    fn connect(&self, py: Python<'_>, from_node: u32, to: u32, port: &str) -> PyResult<()> {
+        answer(py, self.0.with(py, |graph| graph.connect(from_node, to, port))?)
+    }
+
+    /// Connects a picture that enters the graph to the input of a node that bears its name.
+    fn connect_input(&self, py: Python<'_>, input: &str, to: u32) -> PyResult<()> {
+        answer(py, self.0.with(py, |graph| graph.connect_input(input, to))?)
+    }
+
+    /// Sets a parameter from text as a person writes it.
+    fn set(&self, py: Python<'_>, node: u32, param: &str, text: &str) -> PyResult<()> {
+        answer(py, self.0.with(py, |graph| graph.set(node, param, text))?)
+    }
+
+    /// Sets how precisely graphics devices compute it.
+    fn set_precision(&self, py: Python<'_>, precision: &str) -> PyResult<()> {
+        const WORDS: [(&str, u32); 3] = [
+            ("exact", c::ISOPHOTE_PRECISION_EXACT),
+            ("half", c::ISOPHOTE_PRECISION_HALF),
+            ("fast", c::ISOPHOTE_PRECISION_FAST),
+        ];
+        let precision = word("the precision", precision, &WORDS)?;
+        answer(py, self.0.with(py, |graph| graph.set_precision(precision))?)
+    }
+
+    /// The name and the node of each node.
+    fn nodes(&self, py: Python<'_>) -> PyResult<Vec<(String, String)>> {
+        let nodes = self.0.with(py, |graph| {
+            let node = |index| Ok((graph.name(index)?, graph.spec(index)?.id.to_owned()));
+            (0..graph.count()).map(node).collect::<Answer<Vec<_>>>()
+        })?;
+        answer(py, nodes)
+    }
+
+    /// What leaves the graph, as the catalogue names it.
+    fn output_kind(&self, py: Python<'_>) -> PyResult<String> {
+        let kind = answer(py, self.0.with(py, |graph| graph.output_kind())?)?;
+        let named = serde_json::to_value(kind).ok();
+        named
+            .as_ref()
+            .and_then(|name| name.as_str())
+            .map(str::to_owned)
+            .ok_or_else(|| usage("a kind has no name"))
+    }
+
+    /// Frames before and after its own that a frame depends on.
+    fn frames(&self, py: Python<'_>) -> PyResult<(u32, u32)> {
+        let library = library()?;
+        answer(py, self.0.with(py, |graph| library.frames(graph))?)
+    }
+
+    /// The graph as JSON.
+    fn to_json(&self, py: Python<'_>) -> PyResult<String> {
+        answer(py, self.0.with(py, |graph| graph.to_json())?)
+    }
+
+    /// Computes the whole picture into an array; how many samples were replaced, and the seconds that it took.
+    #[pyo3(signature = (request, inputs, target, device, threads, progress))]
+    fn process(
+        &self,
+        py: Python<'_>,
+        request: &Request,
+        inputs: &Bound<'_, PyDict>,
+        target: &Bound<'_, PyAny>,
+        device: Option<&Device>,
+        threads: u32,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<(u64, f64)> {
+        let mut images = Vec::new();
+        for (name, array) in inputs {
+            let name: String = name.extract()?;
+            let pixels = Pixels::of(&array, &format!("input image '{name}'"), Use::Read)?;
+            images.push((name, pixels));
+        }
+        let target = Pixels::of(target, "the target image", Use::Write)?;
+        let watch = Watch::new(progress);
+        let call = Call { device: number(device), request: &request.0, threads, watch: &watch };
+        let report = self.0.with(py, |graph| graph.process(&call, &images, &target))?;
+        outcome(py, &watch, report)
+    }
+}
+
+/// What the library keeps of a sequence of frames.
+#[pyclass(frozen, module = "isophote._native")]
+#[derive(Debug)]
+pub struct Sequence(Owned<loader::Sequence>);
+
+#[pymethods]
+impl Sequence {
+    #[new]
+    fn new(py: Python<'_>, memory: u64, max_motion: f32) -> PyResult<Self> {
+        let sequence = answer(py, library()?.sequence(memory, max_motion))?;
+        Ok(Self(Owned::new(sequence)))
+    }
+
+    /// Gives back the memory of all stages.
+    fn forget(&self, py: Python<'_>) -> PyResult<()> {
+        answer(py, self.0.with(py, |sequence| sequence.forget())?)
+    }
+
+    /// Computes the whole picture of the request's frame into an array, from the arrays that `source(name, frame)` gives.
+    #[pyo3(signature = (graph, request, source, target, device, threads, progress))]
+    fn process(
+        &self,
+        py: Python<'_>,
+        graph: &Graph,
+        request: &Request,
+        source: Py<PyAny>,
+        target: &Bound<'_, PyAny>,
+        device: Option<&Device>,
+        threads: u32,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<(u64, f64)> {
+        let target = Pixels::of(target, "the target image", Use::Write)?;
+        let watch = Watch::new(progress);
+        let call = Call { device: number(device), request: &request.0, threads, watch: &watch };
+        let graph = graph.0.with(py, |graph| graph.number())?;
+        let footage = |name: &str, frame: i64| {
+            let asked = Python::attach(|py| {
+                let array = source.bind(py).call1((name, frame))?;
+                if array.is_none() {
+                    return Ok(None);
+                }
+                let what = format!("input image '{name}' of frame {frame}");
+                Pixels::of(&array, &what, Use::Read).map(Some)
+            });
+            asked.unwrap_or_else(|raised| {
+                watch.stop(raised);
+                None
+            })
+        };
+        let report = self.0.with(py, |sequence| sequence.process(graph, &call, &footage, &target))?;
+        outcome(py, &watch, report)
+    }
+}
+
+fn number(device: Option<&Device>) -> DeviceHandle {
+    device.map_or_else(DeviceHandle::default, |device| device.number)
+}
+
+fn answer<T>(py: Python<'_>, answer: Answer<T>) -> PyResult<T> {
+    answer.map_err(|refusal| raised(py, &refusal))
+}
+
+/// What a call came to. What Python raised meanwhile is why the library stopped, or went on without an image.
+fn outcome(py: Python<'_>, watch: &Watch, report: Answer<Report>) -> PyResult<(u64, f64)> {
+    if let Some(raised) = watch.raised() {
+        return Err(raised);
+    }
+    let report = answer(py, report)?;
+    Ok((report.replaced, report.seconds))
+}

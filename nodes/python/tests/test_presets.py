@@ -1,0 +1,140 @@
+"""Presets and looks: the same files as everywhere."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from PIL import Image
+
+import isophote
+
+
+def by_host(host: Path, style: str, picture: np.ndarray, folder: Path, frame: int) -> np.ndarray:
+    """What the sample host makes of a picture."""
+    target = folder / f"out.{frame:04}.png"
+    Image.fromarray(picture).save(folder / f"in.{frame:04}.png")
+    frames = [folder / "in.####.png", folder / "out.####.png", "--frames", str(frame)]
+    command = [host, "apply", style, *frames, "--backend", "cpu"]
+    subprocess.run(command, check=True, env={**os.environ, "NODEVICE_SELECT": "1"}, stdout=subprocess.DEVNULL)
+    return np.asarray(Image.open(target))
+
+
+PRESET = {
+    "name": "Dusk",
+    "about": "Lines that grow softer",
+    "tags": ["comic"],
+    "style": "cartoon",
+    "parameters": {
+        "posterize": {"1001": 6, "1010": 3},
+        "line_color": {"1001": "#10182080", "1010": [1, 0.5, 0]},
+        "sigma_d": {"1001": 2, "1010": 5.5},
+        "abstraction": {"1001": "flow", "1006": "full", "between": "step"},
+        "detail": {"1001": 0.2, "1008": 0.9, "between": "step"},
+        "darks": 0.1,
+    },
+}
+
+
+def test_keyframes_are_those_of_the_host(small: np.ndarray, host: Path, tmp_path: Path) -> None:
+    file = tmp_path / "dusk.json"
+    file.write_text(json.dumps(PRESET), encoding="utf-8")
+    style = isophote.Style(file)
+    for frame in (1000, 1001, 1004, 1006, 1009, 1010, 1023):
+        expected = by_host(host, str(file), small, tmp_path, frame)
+        assert np.array_equal(isophote.apply(style, small, frame=frame), expected), frame
+    assert np.array_equal(isophote.apply(PRESET, small, frame=1023), expected)
+    style.set("posterize", 12)
+    assert not np.array_equal(isophote.apply(style, small, frame=1001), isophote.apply(PRESET, small, frame=1001))
+
+
+@pytest.mark.parametrize("look", ["copperplate", "midnight_blueprint", "wet_in_wet"])
+def test_looks_are_those_of_the_host(small: np.ndarray, host: Path, tmp_path: Path, look: str) -> None:
+    expected = by_host(host, f"look:{look}", small, tmp_path, 1)
+    assert np.array_equal(isophote.apply(f"look:{look}", small, frame=1), expected)
+
+
+def test_all_looks_are_there_and_open() -> None:
+    files = {file.stem for file in (ROOT / "host-example/looks").glob("*.json")}
+    looks = isophote.looks()
+    assert set(looks) == files and len(files) > 40
+    for id, look in looks.items():
+        assert look.name and look.about and look.tags
+        assert isophote.Style(f"look:{id}").output_kind == "color"
+
+
+def test_graphs_are_the_same_files(small: np.ndarray, host: Path, tmp_path: Path) -> None:
+    for file in sorted((ROOT / "host-example/graphs").glob("*.json")):
+        result = isophote.apply(file, small, frame=1)
+        written = json.loads(file.read_text(encoding="utf-8"))
+        assert np.array_equal(isophote.apply(written, small, frame=1), result)
+        assert np.array_equal(isophote.apply(file.read_text(encoding="utf-8"), small, frame=1), result)
+        expected = by_host(host, str(file), small, tmp_path, 1)
+        shown = expected if expected.ndim == result.ndim else expected[..., 0]
+        assert np.array_equal(result, shown), file.name
+        again = isophote.Style(isophote.Style(file).to_json())
+        assert np.array_equal(isophote.apply(again, small, frame=1), result)
+
+
+def test_parameters_of_graphs_are_named_by_node_where_they_must(small: np.ndarray) -> None:
+    node = {"node": "gaussian", "inputs": {"color": "@color"}}
+    graph = {
+        "format": "isophote-graph",
+        "version": 1,
+        "nodes": [
+            {"name": "a", **node},
+            {"name": "b", **node, "inputs": {"color": "a"}},
+            {"name": "c", "node": "kuwahara", "inputs": {"color": "b"}},
+        ],
+        "output": "c",
+    }
+    style = isophote.Style(graph, radius=4, **{"a.sigma": 3})
+    nodes = {node["name"]: node["params"] for node in json.loads(style.to_json())["nodes"] if "params" in node}
+    assert nodes == {"a": {"sigma": 3.0}, "c": {"radius": 4.0}}
+    assert style.inputs == ("color",)
+    for name, words in [
+        ("sigma", "write a.sigma or b.sigma"),
+        ("d.sigma", "choose from a, b, c"),
+        ("posterize", "no node of the graph has a parameter"),
+    ]:
+        with pytest.raises(isophote.InvalidValueError, match=words):
+            style.set(name, 1)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[1]", "an object is wanted"),
+        ("{", "is no JSON"),
+        ('{"stile": "ink"}', "unknown key 'stile'"),
+        ("{}", "names no style"),
+        ('{"style": "ink", "lengths": "long"}', "write relative or pixels"),
+        ('{"style": "ink", "parameters": 3}', "no object"),
+        ('{"style": "ink", "parameters": {"tone": null}}', "parameter 'tone' cannot be None"),
+        ('{"style": "ink", "parameters": {"tone": {}}}', "has no keyframe"),
+        ('{"style": "ink", "parameters": {"tone": {"one": 1}}}', "'one' is no number of a frame"),
+        ('{"style": "ink", "parameters": {"tone": {"1": 1, "between": "x"}}}', "linear"),
+        ('{"style": "ink", "parameters": {"tone": {"1": 0.5, "5": 9}}}', "must be 0 to 1, not 9"),
+        ('{"style": "ink", "parameters": {"ton": 1}}', "did you mean 'tone'?"),
+    ],
+)
+def test_what_is_wrong_with_presets_is_told(tmp_path: Path, text: str, words: str) -> None:
+    file = tmp_path / "preset.json"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(isophote.IsophoteError) as raised:
+        isophote.Style(file)
+    assert words in str(raised.value)
+
+
+def test_a_graph_file_lies_beside_its_preset(small: np.ndarray, tmp_path: Path) -> None:
+    graph = (ROOT / "host-example/graphs/poster.json").read_text(encoding="utf-8")
+    (tmp_path / "graph.json").write_text(graph, encoding="utf-8")
+    preset = tmp_path / "preset.json"
+    preset.write_text('{"style": "graph.json", "parameters": {"bins": 4}}', encoding="utf-8")
+    expected = isophote.apply(graph, small, bins=4)
+    assert np.array_equal(isophote.apply(preset, small), expected)

@@ -1,0 +1,130 @@
+"""Frames of sequences."""
+
+from __future__ import annotations
+
+import ctypes as c
+import weakref
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from c_face import ASK, Face, Frames, image
+
+import isophote
+
+COUNT = 6
+STEP = 3
+
+
+@pytest.fixture(scope="module")
+def footage(scene: np.ndarray) -> dict[int, np.ndarray]:
+    """The scene from a camera that moves to the right, with noise of its own in each frame."""
+    noise = np.random.default_rng(5)
+
+    def frame(n: int) -> np.ndarray:
+        view = scene[10:90, 20 + STEP * n : 150 + STEP * n].astype(float)
+        return np.clip(view + noise.normal(0, 14, view.shape), 0, 255).astype(np.uint8)
+
+    return {n: frame(n) for n in range(1, COUNT + 1)}
+
+
+@pytest.fixture(scope="module")
+def motion(footage: dict[int, np.ndarray]) -> np.ndarray:
+    """Where things were in the frame before: further right."""
+    vectors = np.zeros((*footage[1].shape[:2], 2), np.float32)
+    vectors[..., 0] = STEP
+    return vectors
+
+
+def by_c(footage: dict[int, np.ndarray], motion: np.ndarray, number: int, **params: str) -> np.ndarray:
+    """A frame of the C face's sequence."""
+    face = Face()
+    graph = face.graph("cartoon", **params)
+    extension = face.call_pointer("extension", b"isophote.sequence/1")
+    functions = [c.c_void_p.from_address(extension + 8 * (1 + n)).value for n in range(7)]
+    create, process = functions[1], functions[5]
+    sequence = c.c_uint64()
+    assert c.CFUNCTYPE(c.c_uint32)(create)(c.c_uint64(1 << 28), c.c_float(0), None, c.byref(sequence)) == 0
+
+    @ASK
+    def ask(_: object, name: bytes, frame: int, out: object) -> int:
+        if frame not in footage:
+            return 0
+        out[0] = image(footage[frame] if name == b"color" else motion)
+        return 1
+
+    out = np.empty_like(footage[number])
+    request, target = face.request(out, guides=32, frame=number), image(out)
+    frames = Frames(None, ask, None)
+    status = c.CFUNCTYPE(c.c_uint32)(process)(
+        sequence, graph, c.c_uint64(0), c.byref(request), c.byref(frames), None, c.byref(target), None, None
+    )
+    assert status == 0
+    return out
+
+
+def test_frames_are_those_of_the_c_face_in_any_order(footage: dict[int, np.ndarray], motion: np.ndarray) -> None:
+    expected = {n: by_c(footage, motion, n, steadiness="1", posterize="6") for n in footage}
+    motions = {n: motion for n in footage}
+    sequence = isophote.Sequence("cartoon", {"color": footage, "motion": motions}, steadiness=1, posterize=6)
+    for number in [4, 1, 6, 2, 3, 5, 4]:
+        assert np.array_equal(sequence.frame(number), expected[number]), number
+    in_order = isophote.frames("cartoon", footage.values(), motion=motions.values(), steadiness=1, posterize=6)
+    for number, result in enumerate(in_order, 1):
+        assert np.array_equal(result, expected[number]), number
+    assert number == COUNT
+
+
+def test_motion_makes_frames_steady(footage: dict[int, np.ndarray], motion: np.ndarray) -> None:
+    def flicker(results: list[np.ndarray]) -> float:
+        pairs = zip(results, results[1:])
+        return float(np.mean([np.abs(a[:, STEP:].astype(float) - b[:, :-STEP]).mean() for a, b in pairs]))
+
+    motions = [motion] * COUNT
+    plain = list(isophote.frames("cartoon", footage.values(), motion=motions))
+    steady = list(isophote.frames("cartoon", footage.values(), motion=motions, steadiness=1))
+    assert flicker(steady) < 0.85 * flicker(plain)
+    alone = [isophote.apply("cartoon", picture, frame=n) for n, picture in footage.items()]
+    assert all(np.array_equal(a, b) for a, b in zip(plain, alone))
+
+
+def test_only_what_is_looked_at_is_read_ahead_and_kept(footage: dict[int, np.ndarray]) -> None:
+    given: list[weakref.ref[np.ndarray]] = []
+
+    def pictures() -> Iterator[np.ndarray]:
+        for picture in footage.values():
+            copy = picture.copy()
+            given.append(weakref.ref(copy))
+            yield copy
+
+    style = isophote.Style("cartoon", steadiness=1, window=1)
+    past, future = style.frames
+    for number, _ in enumerate(isophote.frames(style, pictures(), first=101), 1):
+        assert len(given) == min(number + future, COUNT)
+        assert sum(picture() is not None for picture in given) <= past + 1 + future
+    assert (past, future) == (1, 1) and number == COUNT
+
+
+def test_what_the_source_raises_is_raised(footage: dict[int, np.ndarray]) -> None:
+    def source(name: str, frame: int) -> np.ndarray:
+        if frame == 4:
+            raise OSError("the disk is gone")
+        return footage[frame]
+
+    sequence = isophote.Sequence("cartoon", source, steadiness=1)
+    with pytest.raises(OSError, match="the disk is gone"):
+        sequence.frame(3)
+    with pytest.raises(OSError, match="the disk is gone"):
+        sequence.frame(4)
+    whole = isophote.Sequence("cartoon", {"color": footage}, steadiness=1)
+    repaired = isophote.Sequence("cartoon", lambda name, frame: footage.get(frame), steadiness=1)
+    assert np.array_equal(repaired.frame(3), whole.frame(3))
+    with pytest.raises(IndexError, match="no frame 9"):
+        whole.frame(9)
+
+
+def test_presets_change_from_frame_to_frame_in_sequences(footage: dict[int, np.ndarray]) -> None:
+    preset = {"style": "cartoon", "parameters": {"posterize": {"1": 3, "6": 8}}}
+    for number, result in enumerate(isophote.frames(preset, footage.values()), 1):
+        expected = isophote.apply("cartoon", footage[number], posterize=number + 2, frame=number)
+        assert np.array_equal(result, expected), number

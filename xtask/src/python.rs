@@ -1,0 +1,225 @@
+//! `cargo xtask wheel` and `cargo xtask stubs`: the Python package, and its tests for `cargo xtask test`.
+//!
+//! Maturin, pytest and the rest live in a virtual environment below `target`, in the versions of
+//! `nodes/python/requirements.txt`. The extension module has a target folder of its own there: maturin hands its build the
+//! interpreter, which would have it compiled anew with every change between the two.
+
+use crate::error::{Context, Failure, Result};
+use crate::setup::{self, C_COMPILER, PYTHON};
+use crate::tools::{build_library, heading, host_file, library_file, root, run as run_command, target_dir};
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The profile of what users get.
+const RELEASED: &str = "dist";
+
+/// Options of `cargo xtask wheel`.
+#[derive(clap::Args)]
+pub struct WheelOptions {
+    /// Takes the build for development, which is slow
+    #[arg(long)]
+    debug: bool,
+}
+
+/// Builds the wheel and says where it is.
+///
+/// # Errors
+/// The first step that fails.
+pub fn wheel(options: &WheelOptions) -> Result<()> {
+    setup::ensure(&[&C_COMPILER, &PYTHON])?;
+    heading("build");
+    let profile = if options.debug { "debug" } else { RELEASED };
+    build_library(profile)?;
+    let wheel = build_wheel(&Environment::tools()?, profile, &target_dir("wheels"))?;
+    println!("{}", wheel.display());
+    Ok(())
+}
+
+/// Options of `cargo xtask stubs`.
+#[derive(clap::Args)]
+pub struct StubsOptions {
+    /// Only say whether the file is true
+    #[arg(long)]
+    check: bool,
+}
+
+/// Writes or checks `nodes/python/isophote/nodes.pyi`.
+///
+/// # Errors
+/// When the package cannot be built, or (checking) the file is stale.
+pub fn stubs(options: &StubsOptions) -> Result<()> {
+    setup::ensure(&[&C_COMPILER, &PYTHON])?;
+    build_library("debug")?;
+    let environment = installed()?;
+    let mut tool = environment.program("python");
+    tool.arg(package().join("tools/stubs.py")).arg(package().join("isophote/nodes.pyi"));
+    run_command(tool.args(options.check.then_some("--check")))
+}
+
+/// The names of all tests.
+///
+/// # Errors
+/// When their files cannot be read.
+pub fn tests() -> Result<Vec<String>> {
+    let mut names = Vec::new();
+    for file in files(&package().join("tests"), "py")? {
+        let text = std::fs::read_to_string(&file).context(|| format!("cannot read {}", file.display()))?;
+        let functions = text.lines().filter_map(|line| line.strip_prefix("def test_")?.split_once('('));
+        names.extend(functions.map(|(name, _)| format!("test_{name}")));
+    }
+    Ok(names)
+}
+
+/// Runs the tests of the installed wheel whose names contain the filter; without one all, and the linters.
+/// The library and the host must be built.
+///
+/// # Errors
+/// The first step that fails.
+pub fn test(filter: Option<&str>) -> Result<()> {
+    heading("Python");
+    let environment = installed()?;
+    if filter.is_none() {
+        let lint = |program: &str, arguments: &[&str]| {
+            run_command(environment.program(program).args(arguments).current_dir(package()))
+        };
+        lint("ruff", &["check", "--quiet", "."])?;
+        lint("ruff", &["format", "--check", "--quiet", "."])?;
+        lint("mypy", &["--cache-dir", "../../target/python/mypy"])?;
+    }
+    let mut pytest = environment.program("pytest");
+    // Elsewhere than in the package's folder, which has the package without its extension module.
+    pytest.current_dir(target_dir("python")).env("ISOPHOTE_HOST", host_file("debug"));
+    pytest
+        .args(["-q", "-p", "no:cacheprovider", "--durations=5", "-rs"])
+        .arg("-c")
+        .arg(package().join("pyproject.toml"));
+    pytest.args(filter.iter().flat_map(|filter| ["-k", filter])).arg(package().join("tests"));
+    run_command(&mut pytest)
+}
+
+/// The environment with the wheel of the build for development in it.
+fn installed() -> Result<Environment> {
+    let environment = Environment::tools()?;
+    let wheel = build_wheel(&environment, "debug", &target_dir("python").join("wheels"))?;
+    let mut pip = environment.program("python");
+    pip.args([
+        "-m",
+        "pip",
+        "install",
+        "--quiet",
+        "--force-reinstall",
+        "--no-deps",
+        "--disable-pip-version-check",
+    ]);
+    run_command(pip.arg(wheel))?;
+    Ok(environment)
+}
+
+/// Packs the library of a build, the looks, the package and its extension module.
+fn build_wheel(environment: &Environment, profile: &str, out: &Path) -> Result<PathBuf> {
+    put_beside_the_package(profile)?;
+    for old in files(out, "whl").unwrap_or_default() {
+        std::fs::remove_file(&old).context(|| format!("cannot replace {}", old.display()))?;
+    }
+    let mut maturin = environment.program("maturin");
+    maturin.args(["build", "--quiet", "--locked", "--manifest-path"]).arg(package().join("Cargo.toml"));
+    maturin.arg("--target-dir").arg(target_dir("python")).arg("--out").arg(out);
+    maturin.arg("--interpreter").arg(environment.file("python"));
+    maturin.args(["--profile", if profile == "debug" { "dev" } else { profile }]);
+    // The library that is packed needs no later C library than the one that it was linked with.
+    if let Some(version) = environment.c_library()? {
+        maturin.args(["--compatibility", &format!("manylinux_{}", version.replace('.', "_"))]);
+    }
+    run_command(&mut maturin)?;
+    files(out, "whl")?.pop().ok_or_else(|| Failure("maturin has left no wheel".into()))
+}
+
+/// Copies what is no part of the package's sources to where maturin packs it.
+fn put_beside_the_package(profile: &str) -> Result<()> {
+    let copy = |from: &Path, folder: &Path| {
+        let to = folder.join(from.file_name().unwrap_or_default());
+        std::fs::copy(from, &to).context(|| format!("cannot copy {} to {}", from.display(), to.display()))
+    };
+    let (library, inner) = (library_file(profile), package().join("isophote"));
+    copy(&library, &inner)?;
+    let looks = inner.join("looks");
+    if looks.exists() {
+        std::fs::remove_dir_all(&looks).context(|| format!("cannot replace {}", looks.display()))?;
+    }
+    std::fs::create_dir_all(&looks).context(|| format!("cannot create {}", looks.display()))?;
+    for look in files(&root().join("host-example/looks"), "json")? {
+        copy(&look, &looks)?;
+    }
+    Ok(())
+}
+
+/// The folder of the package.
+fn package() -> PathBuf {
+    root().join("nodes/python")
+}
+
+/// The files of a folder with this ending, by name.
+fn files(folder: &Path, ending: &str) -> Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(folder).context(|| format!("cannot read {}", folder.display()))?;
+    let mut files: Vec<PathBuf> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| path.extension().is_some_and(|e| e == ending))
+        .collect();
+    files.sort();
+    Ok(files)
+}
+
+/// A virtual environment of Python.
+struct Environment(PathBuf);
+
+impl Environment {
+    /// The one with what the package is built and tested by.
+    fn tools() -> Result<Self> {
+        let environment = Self(target_dir("python").join("venv"));
+        environment.fill(&package().join("requirements.txt"))?;
+        Ok(environment)
+    }
+
+    /// Makes the environment where it has not these very packages.
+    fn fill(&self, requirements: &Path) -> Result<()> {
+        let wanted =
+            std::fs::read(requirements).context(|| format!("cannot read {}", requirements.display()))?;
+        let filled = self.0.join("requirements.txt");
+        if std::fs::read(&filled).is_ok_and(|has| has == wanted) {
+            return Ok(());
+        }
+        println!("setting up {}", self.0.display());
+        let mut venv = Command::new(if cfg!(windows) { "python" } else { "python3" });
+        run_command(venv.args(["-m", "venv", "--clear"]).arg(&self.0))?;
+        let mut pip = self.program("python");
+        pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"]);
+        run_command(pip.arg(requirements))?;
+        // Last, so that an environment that was left half full is filled again.
+        std::fs::write(&filled, wanted).context(|| format!("cannot write {}", filled.display()))
+    }
+
+    fn file(&self, program: &str) -> PathBuf {
+        let folder = self.0.join(if cfg!(windows) { "Scripts" } else { "bin" });
+        folder.join(format!("{program}{}", std::env::consts::EXE_SUFFIX))
+    }
+
+    fn program(&self, program: impl AsRef<str>) -> Command {
+        let mut command = Command::new(self.file(program.as_ref()));
+        command.env("NODEVICE_SELECT", "1").env("PYTHONDONTWRITEBYTECODE", "1");
+        // Another library or package would be tested instead.
+        for variable in ["ISOPHOTE_LIBRARY", "PYTHONPATH", "PYTHONHOME"] {
+            command.env_remove(OsStr::new(variable));
+        }
+        command
+    }
+
+    /// The version of the GNU C library, where there is one.
+    fn c_library(&self) -> Result<Option<String>> {
+        let mut python = self.program("python");
+        let output = python.args(["-c", "import platform; print(*platform.libc_ver())"]).output();
+        let output = output.context(|| "Python cannot be started".into())?;
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        Ok(text.trim().strip_prefix("glibc ").map(str::to_owned))
+    }
+}
