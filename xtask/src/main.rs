@@ -57,6 +57,8 @@ enum Chore {
     Header(header::Options),
     /// Makes the wheel for Python
     Wheel(python::WheelOptions),
+    /// Makes the extension for Blender, with the wheel inside
+    Blender(python::WheelOptions),
     /// Writes what editors know of the Python package's nodes from their declarations
     Stubs(python::StubsOptions),
     /// Writes the README's table of nodes from their declarations
@@ -80,6 +82,7 @@ fn main() -> ExitCode {
         Chore::Dist(options) => dist::run(&options),
         Chore::Bench(options) => bench::run(&options),
         Chore::Wheel(options) => python::wheel(&options),
+        Chore::Blender(options) => python::blender(&options),
         Chore::Stubs(options) => python::stubs(&options),
         Chore::Readme(options) => readme::run(&options),
         Chore::Header(options) => header::run(&options),

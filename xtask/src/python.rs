@@ -1,4 +1,5 @@
-//! `cargo xtask wheel` and `cargo xtask stubs`: the Python package, and its tests for `cargo xtask test`.
+//! `cargo xtask wheel`, `blender` and `stubs`: the Python package and the Blender extension, and their tests for `cargo xtask
+//! test`.
 //!
 //! Maturin, pytest and the rest live in a virtual environment below `target`, in the versions of
 //! `nodes/python/requirements.txt`. The extension module has a target folder of its own there: maturin hands its build the
@@ -14,7 +15,7 @@ use std::process::Command;
 /// The profile of what users get.
 const RELEASED: &str = "dist";
 
-/// Options of `cargo xtask wheel`.
+/// Options of `cargo xtask wheel` and `cargo xtask blender`.
 #[derive(clap::Args)]
 pub struct WheelOptions {
     /// Takes the build for development, which is slow
@@ -27,13 +28,41 @@ pub struct WheelOptions {
 /// # Errors
 /// The first step that fails.
 pub fn wheel(options: &WheelOptions) -> Result<()> {
+    let (_, wheel) = released(options)?;
+    println!("{}", wheel.display());
+    Ok(())
+}
+
+/// Builds the Blender extension and says where it is.
+///
+/// # Errors
+/// The first step that fails.
+pub fn blender(options: &WheelOptions) -> Result<()> {
+    let (environment, wheel) = released(options)?;
+    let packed = pack_extension(&environment, &wheel, &target_dir("wheels"))?;
+    println!("{}", packed.display());
+    Ok(())
+}
+
+/// The wheel that users get, and what it was built with.
+fn released(options: &WheelOptions) -> Result<(Environment, PathBuf)> {
     setup::ensure(&[&C_COMPILER, &PYTHON])?;
     heading("build");
     let profile = if options.debug { "debug" } else { RELEASED };
     build_library(profile)?;
-    let wheel = build_wheel(&Environment::tools()?, profile, &target_dir("wheels"))?;
-    println!("{}", wheel.display());
-    Ok(())
+    let environment = Environment::tools()?;
+    let wheel = build_wheel(&environment, profile, &target_dir("wheels"))?;
+    Ok((environment, wheel))
+}
+
+/// Packs the Blender extension with a wheel.
+fn pack_extension(environment: &Environment, wheel: &Path, out: &Path) -> Result<PathBuf> {
+    for old in files(out, "zip").unwrap_or_default() {
+        std::fs::remove_file(&old).context(|| format!("cannot replace {}", old.display()))?;
+    }
+    let mut tool = environment.program("python");
+    run_command(tool.arg(package().join("tools/extension.py")).arg(wheel).arg(out))?;
+    files(out, "zip")?.pop().ok_or_else(|| Failure("the extension was not packed".into()))
 }
 
 /// Options of `cargo xtask stubs`.
@@ -51,7 +80,7 @@ pub struct StubsOptions {
 pub fn stubs(options: &StubsOptions) -> Result<()> {
     setup::ensure(&[&C_COMPILER, &PYTHON])?;
     build_library("debug")?;
-    let environment = installed()?;
+    let (environment, _) = installed()?;
     let mut tool = environment.program("python");
     tool.arg(package().join("tools/stubs.py")).arg(package().join("isophote/nodes.pyi"));
     run_command(tool.args(options.check.then_some("--check")))
@@ -63,7 +92,9 @@ pub fn stubs(options: &StubsOptions) -> Result<()> {
 /// When their files cannot be read.
 pub fn tests() -> Result<Vec<String>> {
     let mut names = Vec::new();
-    for file in files(&package().join("tests"), "py")? {
+    let mut sources = files(&package().join("tests"), "py")?;
+    sources.extend(files(&package().join(BLENDER_TESTS), "py")?);
+    for file in sources {
         let text = std::fs::read_to_string(&file).context(|| format!("cannot read {}", file.display()))?;
         let functions = text.lines().filter_map(|line| line.strip_prefix("def test_")?.split_once('('));
         names.extend(functions.map(|(name, _)| format!("test_{name}")));
@@ -78,7 +109,7 @@ pub fn tests() -> Result<Vec<String>> {
 /// The first step that fails.
 pub fn test(filter: Option<&str>) -> Result<()> {
     heading("Python");
-    let environment = installed()?;
+    let (environment, wheel) = installed()?;
     if filter.is_none() {
         let lint = |program: &str, arguments: &[&str]| {
             run_command(environment.program(program).args(arguments).current_dir(package()))
@@ -87,19 +118,55 @@ pub fn test(filter: Option<&str>) -> Result<()> {
         lint("ruff", &["format", "--check", "--quiet", "."])?;
         lint("mypy", &["--cache-dir", "../../target/python/mypy"])?;
     }
-    let mut pytest = environment.program("pytest");
-    // Elsewhere than in the package's folder, which has the package without its extension module.
-    pytest.current_dir(target_dir("python")).env("ISOPHOTE_HOST", host_file("debug"));
-    pytest
-        .args(["-q", "-p", "no:cacheprovider", "--durations=5", "-rs"])
-        .arg("-c")
-        .arg(package().join("pyproject.toml"));
-    pytest.args(filter.iter().flat_map(|filter| ["-k", filter])).arg(package().join("tests"));
-    run_command(&mut pytest)
+    let mut pytest = environment.pytest(filter);
+    pytest.arg(package().join("tests")).env("ISOPHOTE_HOST", host_file("debug"));
+    run_tests(&mut pytest, filter)?;
+    test_in_blender(&environment, &wheel, filter)
 }
 
-/// The environment with the wheel of the build for development in it.
-fn installed() -> Result<Environment> {
+/// Tests of the Blender extension, in the package's folder.
+const BLENDER_TESTS: &str = "blender/tests";
+
+/// The version of Python that the Blender of the tests is for.
+const BLENDER_PYTHON: &str = "3.11";
+
+/// Runs the tests of the extension in Blender, where this machine's Python has one.
+fn test_in_blender(tools: &Environment, wheel: &Path, filter: Option<&str>) -> Result<()> {
+    heading("Blender");
+    let version = tools.printed("import sys; print('%d.%d' % sys.version_info[:2])")?;
+    if version != BLENDER_PYTHON {
+        let why = format!("Blender's module is for Python {BLENDER_PYTHON}, and this one is {version}");
+        if std::env::var_os("CI").is_some() {
+            return Err(Failure(why));
+        }
+        println!("{why}: the extension is not tested");
+        return Ok(());
+    }
+    let environment = Environment(target_dir("python").join("blender"));
+    environment.fill(&package().join("blender/requirements.txt"))?;
+    let extension = pack_extension(tools, wheel, &target_dir("python").join("extension"))?;
+    // Blender's settings of the user stay as they are.
+    let resources = target_dir("python").join("blender-user");
+    if resources.exists() {
+        std::fs::remove_dir_all(&resources).context(|| format!("cannot empty {}", resources.display()))?;
+    }
+    std::fs::create_dir_all(&resources).context(|| format!("cannot create {}", resources.display()))?;
+    let mut pytest = environment.pytest(filter);
+    pytest.arg(package().join(BLENDER_TESTS));
+    pytest.env("ISOPHOTE_EXTENSION", extension).env("BLENDER_USER_RESOURCES", resources);
+    run_tests(&mut pytest, filter)
+}
+
+/// Runs pytest. A filter may leave it none of its tests, which it tells by a code of its own.
+fn run_tests(pytest: &mut Command, filter: Option<&str>) -> Result<()> {
+    const NONE_CHOSEN: i32 = 5;
+    let status = pytest.status().context(|| "pytest cannot be started".into())?;
+    let is_none = filter.is_some() && status.code() == Some(NONE_CHOSEN);
+    if status.success() || is_none { Ok(()) } else { Err(Failure(format!("pytest ended with {status}"))) }
+}
+
+/// The environment with the wheel of the build for development in it, and that wheel.
+fn installed() -> Result<(Environment, PathBuf)> {
     let environment = Environment::tools()?;
     let wheel = build_wheel(&environment, "debug", &target_dir("python").join("wheels"))?;
     let mut pip = environment.program("python");
@@ -112,8 +179,8 @@ fn installed() -> Result<Environment> {
         "--no-deps",
         "--disable-pip-version-check",
     ]);
-    run_command(pip.arg(wheel))?;
-    Ok(environment)
+    run_command(pip.arg(&wheel))?;
+    Ok((environment, wheel))
 }
 
 /// Packs the library of a build, the looks, the package and its extension module.
@@ -214,12 +281,32 @@ impl Environment {
         command
     }
 
+    /// Pytest with the tests whose names contain the filter, elsewhere than in the package's folder, which has the package
+    /// without its extension module.
+    fn pytest(&self, filter: Option<&str>) -> Command {
+        let mut pytest = self.program("pytest");
+        pytest.current_dir(target_dir("python")).args([
+            "-q",
+            "-p",
+            "no:cacheprovider",
+            "--durations=5",
+            "-rs",
+        ]);
+        pytest.arg("-c").arg(package().join("pyproject.toml"));
+        pytest.args(filter.iter().flat_map(|filter| ["-k", filter]));
+        pytest
+    }
+
+    /// What a line of Python prints.
+    fn printed(&self, line: &str) -> Result<String> {
+        let output = self.program("python").args(["-c", line]).output();
+        let output = output.context(|| "Python cannot be started".into())?;
+        Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    }
+
     /// The version of the GNU C library, where there is one.
     fn c_library(&self) -> Result<Option<String>> {
-        let mut python = self.program("python");
-        let output = python.args(["-c", "import platform; print(*platform.libc_ver())"]).output();
-        let output = output.context(|| "Python cannot be started".into())?;
-        let text = String::from_utf8_lossy(&output.stdout).into_owned();
-        Ok(text.trim().strip_prefix("glibc ").map(str::to_owned))
+        let printed = self.printed("import platform; print(*platform.libc_ver())")?;
+        Ok(printed.strip_prefix("glibc ").map(str::to_owned))
     }
 }

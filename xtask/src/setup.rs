@@ -80,6 +80,39 @@ pub const PYTHON: Need = Need {
     packages: &["python3", "python3-venv"],
 };
 
+/// What Blender as a module of Python loads of the system.
+pub const BLENDER: Need = Need {
+    what: "the libraries that Blender loads",
+    present: || {
+        [
+            "libGL.so.1",
+            "libICE.so.6",
+            "libSM.so.6",
+            "libX11.so.6",
+            "libXext.so.6",
+            "libXfixes.so.3",
+            "libXi.so.6",
+            "libXrender.so.1",
+            "libXt.so.6",
+            "libxkbcommon.so.0",
+        ]
+        .into_iter()
+        .all(shared_library)
+    },
+    packages: &[
+        "libgl1",
+        "libice6",
+        "libsm6",
+        "libx11-6",
+        "libxext6",
+        "libxfixes3",
+        "libxi6",
+        "libxrender1",
+        "libxt6",
+        "libxkbcommon0",
+    ],
+};
+
 /// What reads and writes videos.
 pub const FFMPEG: Need =
     Need { what: "ffmpeg", present: || program("ffmpeg") && program("ffprobe"), packages: &["ffmpeg"] };

@@ -3,8 +3,8 @@
 use crate::error::{Context, Failure, Result};
 use crate::python;
 use crate::setup::{
-    self, BINUTILS, BROWSER, C_COMPILER, CLANG, CPP_COMPILER, FFMPEG, PACKAGING, PYTHON, VALGRIND, VULKAN,
-    VULKAN_HEADERS, XVFB,
+    self, BINUTILS, BLENDER, BROWSER, C_COMPILER, CLANG, CPP_COMPILER, FFMPEG, PACKAGING, PYTHON, VALGRIND,
+    VULKAN, VULKAN_HEADERS, XVFB,
 };
 use crate::tools::{cargo, cargo_command, heading, library_file, root, target_dir};
 use std::path::{Path, PathBuf};
@@ -45,6 +45,7 @@ pub fn run(options: &Options) -> Result<()> {
         &CLANG,
         &PACKAGING,
         &PYTHON,
+        &BLENDER,
     ])?;
     let is_everything = options.filter.is_none() && !options.list;
     if is_everything && !options.tests_only {

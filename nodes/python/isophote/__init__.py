@@ -10,9 +10,10 @@ Pictures are arrays of NumPy: rows, columns and, but for grey ones, channels.
 from __future__ import annotations
 
 from . import nodes
+from ._catalogue import Choice, Node, Param, Port, Value, catalogue
 from ._library import native
+from ._motion import motion
 from ._pixels import Array
-from .catalogue import Choice, Node, Param, Port, catalogue
 from .devices import Device, DeviceLike
 from .errors import (
     DeviceError,
@@ -55,10 +56,12 @@ __all__ = [
     "StyleLike",
     "UnknownNameError",
     "UnsupportedError",
+    "Value",
     "apply",
     "catalogue",
     "frames",
     "looks",
+    "motion",
     "nodes",
     "trim",
 ]

@@ -10,8 +10,8 @@ import textwrap
 from collections.abc import Callable
 from typing import Any
 
+from ._catalogue import Node, Param, catalogue
 from ._pixels import Array
-from .catalogue import Node, Param, catalogue
 from .style import apply
 
 __all__ = list(catalogue())

@@ -17,7 +17,7 @@ from typing import Any, Union
 
 import numpy as np
 
-from .catalogue import Param
+from ._catalogue import Node, Param, Value
 from .errors import InvalidValueError, UnknownNameError
 
 LOOK = "look:"
@@ -46,6 +46,19 @@ class Keys:
             return self.values[before][1]
         (first, a), (last, b) = self.values[before], self.values[after]
         return _mixed(_numbers(a), _numbers(b), (frame - first) / (last - first), param.type == "int")
+
+
+def _value(text: str, param: Param) -> Value:
+    """A value that the library reads as text, of the type that it has in the catalogue."""
+    if param.type == "choice":
+        return text
+    if param.type == "bool":
+        return text in ("true", "on", "yes", "1")
+    numbers = _numbers(text)
+    if param.type == "color":
+        # A colour without opacity is opaque.
+        return (*numbers, *[1.0] * (4 - len(numbers)))
+    return int(numbers[0]) if param.type == "int" else numbers[0]
 
 
 def _mixed(a: list[float], b: list[float], share: float, whole: bool) -> str:
@@ -77,6 +90,16 @@ class Preset:
     name: str = ""
     about: str = ""
     tags: tuple[str, ...] = ()
+
+    def values(self, node: Node, frame: int = 0) -> dict[str, Value]:
+        """The parameters at a frame as values of the node that is the style."""
+        found = {}
+        for name, value in self.parameters.items():
+            param = node.param(name)
+            if param is None:
+                raise UnknownNameError(f"node '{node.id}' has no parameter '{name}'")
+            found[name] = _value(value if isinstance(value, str) else value.at(frame, param), param)
+        return found
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Preset:
@@ -125,9 +148,7 @@ def _track(value: Any, place: str) -> str | Keys:
         return as_text(value, place)
     between = value.get("between")
     if between not in (None, "linear", "step"):
-        raise InvalidValueError(
-            f'{place}: does not say how values change between frames; write "between": "linear" or "step"'
-        )
+        raise InvalidValueError(f'{place}: does not say how values change between frames; write "between": "linear" or "step"')
     keys = []
     for frame, entry in value.items():
         if frame != "between":

@@ -9,9 +9,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypedDict
 
+from ._catalogue import Node, Param, catalogue
 from ._library import native
 from ._pixels import Array, Target, pixels
-from .catalogue import Node, Param, catalogue
 from .devices import Device, DeviceLike, open_device
 from .errors import InvalidValueError
 from .presets import LENGTHS, LOOK, Keys, Preset, StyleLike, as_text

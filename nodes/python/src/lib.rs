@@ -12,6 +12,7 @@ pub mod array;
 pub mod error;
 pub mod exception;
 pub mod loader;
+pub mod motion;
 pub mod objects;
 pub mod opened;
 pub mod owned;
@@ -27,6 +28,8 @@ use std::path::PathBuf;
 pub mod native {
     use super::*;
 
+    #[pymodule_export]
+    use crate::motion::motion;
     #[pymodule_export]
     use crate::objects::{Device, Graph, Request, Sequence};
 

@@ -125,9 +125,7 @@ class Face:
         inputs = (Input * len(images))(*(Input(name.encode(), image(array)) for name, array in images.items()))
         request, target = self.request(color, **fields), image(out)
         device = c.c_uint64(0)
-        status = self.call(
-            "process", graph, device, c.byref(request), inputs, len(images), None, c.byref(target), None, None
-        )
+        status = self.call("process", graph, device, c.byref(request), inputs, len(images), None, c.byref(target), None, None)
         assert status == 0, self.message(graph)
         self.call("graph_destroy", graph)
         return out

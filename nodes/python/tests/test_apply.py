@@ -51,9 +51,7 @@ def test_results_are_those_of_the_c_face_to_the_bit(small: np.ndarray, dtype: ty
 
 @pytest.mark.parametrize("dtype", FORMATS)
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_layouts_make_no_difference_and_are_copied_only_where_they_must(
-    small: np.ndarray, dtype: type, layout: str
-) -> None:
+def test_layouts_make_no_difference_and_are_copied_only_where_they_must(small: np.ndarray, dtype: type, layout: str) -> None:
     change, is_taken = LAYOUTS[layout]
     image = change(converted(small, dtype))
     before = image.copy()

@@ -128,3 +128,22 @@ def test_presets_change_from_frame_to_frame_in_sequences(footage: dict[int, np.n
     for number, result in enumerate(isophote.frames(preset, footage.values()), 1):
         expected = isophote.apply("cartoon", footage[number], posterize=number + 2, frame=number)
         assert np.array_equal(result, expected), number
+
+
+def test_motion_vectors_of_renderers_are_understood() -> None:
+    vector = np.arange(24, dtype=np.float32).reshape(2, 3, 4)
+    x, y, z, w = np.moveaxis(vector, -1, 0)
+    found = isophote.motion(vector, convention="blender")
+    assert np.array_equal(found["motion"], np.dstack([x, -y]))
+    assert np.array_equal(found["motion_forward"], np.dstack([-z, w]))
+    arnold = isophote.motion(vector[:, ::-1, :2], convention="arnold,y=down")
+    assert np.array_equal(arnold["motion_forward"], vector[:, ::-1, :2])
+    assert np.array_equal(arnold["motion"], -vector[:, ::-1, :2])
+    own = isophote.motion(vector[..., :2], vector[..., 2:])
+    assert np.array_equal(own["motion"], np.dstack([x, -y])) and np.array_equal(own["motion_forward"], np.dstack([z, -w]))
+    with pytest.raises(ValueError, match="no convention"):
+        isophote.motion(vector, convention="cinema")
+    with pytest.raises(ValueError, match="too few channels"):
+        isophote.motion(vector[..., :1])
+    with pytest.raises(ValueError, match="one size"):
+        isophote.motion(vector[..., :2], vector[:1, :, :2])

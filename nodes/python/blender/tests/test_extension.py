@@ -1,0 +1,190 @@
+"""The extension in Blender, on a rendered scene."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+
+import isophote
+
+
+def shown() -> np.ndarray:
+    """What the image of results shows, rows from top to bottom."""
+    image = bpy.data.images["Stylized Render"]
+    pixels = np.empty(len(image.pixels), np.float32)
+    image.pixels.foreach_get(pixels)
+    return pixels.reshape(image.size[1], image.size[0], 4)[::-1]
+
+
+def test_settings_are_those_of_the_catalogue(scene: Any, extension: ModuleType) -> None:
+    settings = scene.isophote
+    styles = extension.settings.STYLES
+    assert settings.style == "cartoon" and len(styles) > 20
+    for id, node in styles.items():
+        settings.style = id
+        found = extension.settings.values(settings)
+        assert list(found) == [param.id for param in node.params]
+        for param in node.params:
+            exact = isinstance(param.default, (str, bool))
+            assert found[param.id] == (param.default if exact else pytest.approx(param.default, rel=1e-6)), (id, param.id)
+            declared = getattr(settings, f"params_{id}").bl_rna.properties[param.id]
+            assert declared.name == param.label
+            if param.range and param.type in ("float", "int"):
+                assert (declared.hard_min, declared.hard_max) == pytest.approx(param.range, rel=1e-6)
+
+    class Layout:
+        """Notes what is drawn, as no window is there to draw in."""
+
+        def __init__(self) -> None:
+            self.drawn: list[str] = []
+
+        def prop(self, owner: Any, name: str) -> None:
+            assert hasattr(owner, name)
+            self.drawn.append(name)
+
+        def operator(self, name: str, icon: str) -> None:
+            assert hasattr(bpy.ops.isophote, name.split(".")[1])
+
+        def column(self, align: bool) -> Layout:
+            return self
+
+    panels = [name for name in dir(bpy.types) if name.startswith("ISOPHOTE_PT_params")]
+    assert len(panels) == len({param.group for node in styles.values() for param in node.params})
+    for id, node in styles.items():
+        settings.style = id
+        layout = Layout()
+        for panel in (getattr(bpy.types, name) for name in panels):
+            if panel.poll(bpy.context):
+                panel.draw(SimpleNamespace(layout=layout), bpy.context)
+        assert sorted(layout.drawn) == sorted(param.id for param in node.params)
+    bpy.types.ISOPHOTE_PT_style.draw(SimpleNamespace(layout=layout), bpy.context)
+    assert {"style", "colors", "lengths", "device", "output"} <= set(layout.drawn)
+
+
+def test_looks_set_every_parameter(scene: Any, extension: ModuleType) -> None:
+    settings = scene.isophote
+    for id, look in isophote.looks().items():
+        settings.params_ink.tone = 0.123
+        assert bpy.ops.isophote.use_look(look=id) == {"FINISHED"}
+        assert settings.style == look.style
+        chosen = isophote.Style(settings.style, **extension.settings.values(settings))
+        expected = isophote.Style(f"look:{id}")
+        assert chosen.to_json() == expected.to_json(), id
+
+
+def test_passes_are_what_the_library_means(scene: Any, extension: ModuleType) -> None:
+    scene.frame_set(5)
+    before = [getattr(scene.render.image_settings, name) for name in ("file_format", "color_mode", "color_depth")]
+    bpy.ops.render.render()
+    frame = extension.passes.read(scene, "ViewLayer", "linear")
+    after = [getattr(scene.render.image_settings, name) for name in ("file_format", "color_mode", "color_depth")]
+    assert before == after
+    ids = frame.guides["object_id"][..., 0]
+    ball = ids == scene.objects["ball"].pass_index
+    assert 200 < ball.sum() < 4000 and set(np.unique(ids)) >= {0}
+    depth = frame.guides["depth"][..., 0]
+    assert (depth[ids == 0] == 0).all() and 6 < depth[ball].min() < 8.5
+    normal = frame.guides["normal"]
+    rows, columns = np.nonzero(ball)
+    middle = normal[int(rows.mean()), int(columns.mean())]
+    assert middle[2] > 0.9, "the middle of the ball faces the camera"
+    left = normal[int(rows.mean()), columns.min() + 2]
+    top = normal[rows.min() + 1, int(columns.mean())]
+    assert left[0] < -0.7 and top[1] > 0.7
+    # The ball moves to the right: it comes from the left, and goes to the right.
+    motion, forward = frame.guides["motion"][ball], frame.guides["motion_forward"][ball]
+    assert (motion[:, 0] < -0.5).all() and (forward[:, 0] > 0.5).all()
+    assert np.abs(motion[:, 1]).max() < 0.5
+    scene.frame_set(4)
+    bpy.ops.render.render()
+    earlier = extension.passes.read(scene, "ViewLayer", "linear").guides["object_id"][..., 0] == ids[ball][0]
+    came_from = np.nonzero(earlier)[1].mean() - columns.mean()
+    assert came_from == pytest.approx(motion[:, 0].mean(), abs=0.4)
+
+
+@pytest.mark.parametrize("colors", ["display", "linear"])
+def test_a_still_comes_back_as_an_image(scene: Any, extension: ModuleType, colors: str) -> None:
+    settings = scene.isophote
+    settings.colors, settings.lengths = colors, "pixels"
+    settings.params_cartoon.posterize, settings.params_cartoon.detail = 6, 0.4
+    bpy.ops.render.render()
+    assert bpy.ops.isophote.stylize() == {"FINISHED"}
+    frame = extension.passes.read(scene, "ViewLayer", colors)
+    guides = {name: guide for name, guide in frame.guides.items() if "motion" not in name}
+    assert set(guides) == {"depth", "normal", "object_id"}
+    space = {"display": ("srgb", "straight"), "linear": ("linear", "premultiplied")}[colors]
+    common = {"color_space": space[0], "alpha_mode": space[1], "lengths": "pixels", "posterize": 6, "detail": np.float32(0.4)}
+    out = np.empty((*frame.color.shape[:2], 4), np.float32)
+    expected = isophote.apply("cartoon", frame.color, out=out, frame=scene.frame_current, **common, **guides)
+    result = shown()
+    if colors == "linear":
+        assert np.array_equal(result, expected)
+    else:
+        # Images of display colours have eight bits.
+        assert np.abs(result - expected).max() <= 0.6 / 255
+    plain = isophote.apply("cartoon", frame.color, out=np.empty_like(out), **common)
+    ids = guides["object_id"][..., 0]
+    border = ids[:, 1:] != ids[:, :-1]
+    assert np.abs(expected - plain)[:, 1:][border].mean() > 0.05, "passes draw lines where things meet"
+    # Once more, after it was saved, which turns it into a file's image.
+    bpy.data.images["Stylized Render"].filepath_raw = str(Path(bpy.app.tempdir) / "saved.png")
+    bpy.data.images["Stylized Render"].file_format = "PNG"
+    bpy.data.images["Stylized Render"].save()
+    assert bpy.ops.isophote.stylize() == {"FINISHED"}
+    assert np.array_equal(shown(), result)
+
+
+def test_an_animation_is_written_frame_by_frame(scene: Any, extension: ModuleType, tmp_path: Path) -> None:
+    settings = scene.isophote
+    scene.frame_start, scene.frame_end = 3, 6
+    scene.frame_set(8)
+    settings.colors, settings.output = "linear", str(tmp_path / "shot/####")
+    settings.params_cartoon.steadiness = 1
+    settings.params_cartoon.posterize = 4
+    settings.params_cartoon.keyframe_insert("posterize", frame=3)
+    settings.params_cartoon.posterize = 10
+    settings.params_cartoon.keyframe_insert("posterize", frame=6)
+    assert bpy.ops.isophote.stylize_animation() == {"FINISHED"}
+    assert scene.frame_current == 8
+    files = sorted(file.name for file in (tmp_path / "shot").iterdir())
+    assert files == ["0003.exr", "0004.exr", "0005.exr", "0006.exr"]
+    frames, chosen = {}, {}
+    for number in range(3, 7):
+        scene.frame_set(number)
+        bpy.ops.render.render()
+        frames[number] = extension.passes.read(scene, "ViewLayer", "linear")
+        chosen[number] = extension.settings.values(settings)
+    assert {chosen[n]["posterize"] for n in (3, 6)} == {4, 10}
+    source = {"color": {n: frame.color for n, frame in frames.items()}}
+    source.update((name, {n: frame.guides[name] for n, frame in frames.items()}) for name in frames[3].guides)
+    space = {"color_space": "linear", "alpha_mode": "premultiplied"}
+    for number in (3, 5):
+        style = isophote.Style("cartoon", **chosen[number])
+        expected = isophote.Sequence(style, source, **space).frame(number)
+        written = bpy.data.images.load(str(tmp_path / f"shot/{number:04}.exr"))
+        pixels = np.empty(len(written.pixels), np.float32)
+        written.pixels.foreach_get(pixels)
+        assert np.abs(pixels.reshape(expected.shape)[::-1] - expected).max() < 2e-3
+        alone = isophote.apply(style, frames[number].color, frame=number, **space)
+        assert not np.allclose(alone, expected, atol=2e-3), "neighbours count"
+
+
+def test_mistakes_are_told(scene: Any, extension: ModuleType, tmp_path: Path) -> None:
+    for image in list(bpy.data.images):
+        bpy.data.images.remove(image)
+    with pytest.raises(RuntimeError, match="render the image first"):
+        bpy.ops.isophote.stylize()
+    bpy.ops.render.render()
+    scene.isophote.params_cartoon.window = 2
+    (tmp_path / "file").write_text("")
+    scene.isophote.output = str(tmp_path / "file/####")
+    scene.frame_start = scene.frame_end = 1
+    with pytest.raises(RuntimeError, match="file"):
+        bpy.ops.isophote.stylize_animation()
+    assert extension.stylize.path("/a/b", 7, ".png") == Path("/a/b0007.png")
+    assert extension.stylize.path("/a/##.PNG", 123, ".png") == Path("/a/123.PNG")
