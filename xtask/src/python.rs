@@ -208,6 +208,9 @@ fn put_beside_the_package(profile: &str) -> Result<()> {
         let to = folder.join(from.file_name().unwrap_or_default());
         std::fs::copy(from, &to).context(|| format!("cannot copy {} to {}", from.display(), to.display()))
     };
+    for licence in ["LICENSE-APACHE", "LICENSE-MIT"] {
+        copy(&root().join(licence), &package())?;
+    }
     let (library, inner) = (library_file(profile), package().join("isophote"));
     copy(&library, &inner)?;
     let looks = inner.join("looks");

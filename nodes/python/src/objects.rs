@@ -84,10 +84,7 @@ impl Request {
 /// A graphics device of the library's own.
 #[pyclass(frozen, module = "isophote._native")]
 #[derive(Debug)]
-pub struct Device {
-    device: Owned<loader::Device>,
-    number: DeviceHandle,
-}
+pub struct Device(loader::Device);
 
 #[pymethods]
 impl Device {
@@ -96,13 +93,13 @@ impl Device {
     fn new(py: Python<'_>, adapter: Option<&str>) -> PyResult<Self> {
         let library = library()?;
         let device = py.detach(|| library.device(adapter)).map_err(|refusal| raised(py, &refusal))?;
-        Ok(Self { number: device.number(), device: Owned::new(device) })
+        Ok(Self(device))
     }
 
     /// Name of the adapter.
     #[getter]
     fn name(&self, py: Python<'_>) -> PyResult<String> {
-        answer(py, self.device.with(py, |device| device.name())?)
+        answer(py, self.0.name())
     }
 }
 
@@ -270,7 +267,7 @@ impl Sequence {
 }
 
 fn number(device: Option<&Device>) -> DeviceHandle {
-    device.map_or_else(DeviceHandle::default, |device| device.number)
+    device.map_or_else(DeviceHandle::default, |device| device.0.number())
 }
 
 fn answer<T>(py: Python<'_>, answer: Answer<T>) -> PyResult<T> {
