@@ -3,6 +3,9 @@
 
 #![cfg(target_os = "linux")]
 
+#[path = "dist/editors.rs"]
+mod editors;
+
 use isophote::registry;
 use isophote_tests::library;
 use isophote_tests::ofx::plugin::Binary;

@@ -4,6 +4,7 @@ mod bench;
 mod bundle;
 mod demo;
 mod dist;
+mod docs;
 mod error;
 mod experiments;
 mod gallery;
@@ -41,6 +42,8 @@ enum Chore {
     Experiments(experiments::Options),
     /// Every node on pictures, as a page to look at
     Gallery(gallery::Options),
+    /// Makes the documentation as a site, and runs every command on it
+    Docs(docs::Options),
     /// Every look that ships with the host, as one sheet
     Looks(looks::Options),
     /// The pictures that come with the host, to try looks on
@@ -79,6 +82,7 @@ fn main() -> ExitCode {
         Chore::Samples(options) => samples::run(&options),
         Chore::GpuCost(options) => gpu_cost::run(&options),
         Chore::Bundle(options) => bundle::run(&options),
+        Chore::Docs(options) => docs::run(&options),
         Chore::Dist(options) => dist::run(&options),
         Chore::Bench(options) => bench::run(&options),
         Chore::Wheel(options) => python::wheel(&options),

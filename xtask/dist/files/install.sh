@@ -1,18 +1,24 @@
 #!/bin/sh
-# Installs the OpenFX plugin of this folder, or removes it.
+# Installs what is in this folder, or removes it: the OpenFX plugin for all users, panels for Shotcut and Kdenlive for the
+# user who runs this.
 set -eu
 
 usage() {
-    echo "usage: $0 [--to DIR] [--remove]"
-    echo "DIR is $folder unless it is given; see OFX_PLUGIN_PATH for others."
+    echo "usage: $0 [--to DIR] [--remove]      the plugin, into DIR instead of $plugins"
+    echo "       $0 --shotcut|--kdenlive [--to DIR] [--remove]      panels, into the user's own folder or DIR"
 }
 
 here=$(cd "$(dirname "$0")" && pwd)
-name=Isophote.ofx.bundle
-case $(uname -s) in
-    Darwin) folder=/Library/OFX/Plugins ;;
-    *) folder=/usr/OFX/Plugins ;;
-esac
+data=${XDG_DATA_HOME:-$HOME/.local/share}
+shotcut=$data/Meltytech/Shotcut/extensions/filters
+plugins=/usr/OFX/Plugins
+if [ "$(uname -s)" = Darwin ]; then
+    data="$HOME/Library/Application Support"
+    shotcut=$data/Meltytech/Shotcut/extensions/filters
+    plugins=/Library/OFX/Plugins
+fi
+what=plugin
+folder=
 remove=no
 while [ $# -gt 0 ]; do
     case $1 in
@@ -21,28 +27,40 @@ while [ $# -gt 0 ]; do
             folder=$2
             shift
             ;;
+        --shotcut | --kdenlive) what=${1#--} ;;
         --remove) remove=yes ;;
         -h | --help) usage; exit 0 ;;
         *) usage >&2; exit 2 ;;
     esac
     shift
 done
+case $what in
+    plugin) from=$here; names=Isophote.ofx.bundle; folder=${folder:-$plugins} ;;
+    shotcut) from=$here/shotcut; names=$(ls "$from"); folder=${folder:-$shotcut} ;;
+    kdenlive) from=$here/kdenlive; names=$(ls "$from"); folder=${folder:-$data/kdenlive/effects} ;;
+esac
 
-if [ "$remove" = yes ]; then
-    rm -rf "$folder/$name"
-    echo "removed $folder/$name"
-    exit 0
-fi
-if ! mkdir -p "$folder" 2>/dev/null || [ ! -w "$folder" ]; then
+if [ "$remove" = no ] && { ! mkdir -p "$folder" 2>/dev/null || [ ! -w "$folder" ]; }; then
     echo "$0: $folder cannot be written: run this as an administrator (sudo), or name another folder with --to" >&2
     exit 1
 fi
-# Hosts look for names that end in .bundle: it bears the name only when it is whole.
-new="$folder/.$name.new"
-trap 'rm -rf "$new"' EXIT
-rm -rf "$new"
-cp -R "$here/$name" "$new"
-rm -rf "${folder:?}/$name"
-mv "$new" "$folder/$name"
-echo "installed $folder/$name"
-echo "Start the host anew. OPENFX.md says what each host remembers of an older version."
+new=
+trap '[ -z "$new" ] || rm -rf "$new"' EXIT
+for name in $names; do
+    if [ "$remove" = yes ]; then
+        rm -rf "${folder:?}/$name"
+        continue
+    fi
+    # Hosts look for names with their own ending: it bears the name only when it is whole.
+    new="$folder/.$name.new"
+    rm -rf "$new"
+    cp -R "$from/$name" "$new"
+    rm -rf "${folder:?}/$name"
+    mv "$new" "$folder/$name"
+done
+if [ "$remove" = yes ]; then
+    echo "removed from $folder"
+else
+    echo "installed into $folder"
+    echo "Start the host anew. OPENFX.md says what each host remembers of an older version."
+fi

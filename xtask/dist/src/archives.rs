@@ -1,6 +1,7 @@
 //! Which archives there are and what each holds: the one list that everything else walks.
 
 use crate::binary;
+use crate::editors;
 use crate::error::{Error, Result};
 use crate::share::{Names, VERSION, abi_version, add_library, add_licences};
 use crate::tree::{Entry, Tree};
@@ -132,6 +133,8 @@ fn openfx(built: &Built, tree: &mut Tree) -> Result<()> {
     if binaries != 1 {
         return Err(Error::malformed(&built.bundle, format!("holds {binaries} plugins instead of one")));
     }
+    let catalogue = built.bundle.with_extension("json");
+    editors::add(tree, &catalogue, &built.bundle.join("Contents/Resources"))?;
     if cfg!(windows) {
         tree.text("install.ps1", include_str!("../files/install.ps1"));
     } else {

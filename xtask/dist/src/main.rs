@@ -3,6 +3,7 @@
 
 mod archives;
 mod binary;
+mod editors;
 mod error;
 mod licences;
 mod metadata;

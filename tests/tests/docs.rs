@@ -1,0 +1,116 @@
+//! The documentation as a site: made with small pictures, which runs every command that stands on it and follows every
+//! link; and a page that is wrong is named.
+
+#![cfg(target_os = "linux")]
+
+use isophote::registry;
+use isophote_tests::library;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+/// The folder of the build under test.
+fn built() -> &'static Path {
+    library::path().parent().unwrap()
+}
+
+/// The chores' program makes the site.
+fn docs(out: &Path, more: &[&str]) -> Output {
+    let mut docs = Command::new(built().join("xtask"));
+    docs.arg("docs").arg("--out").arg(out).args(["--size", "96x64"]).args(more);
+    docs.env("CARGO_TARGET_DIR", built().parent().unwrap()).current_dir(library::root());
+    docs.output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
+}
+
+#[test]
+fn the_site_is_made_and_all_its_commands_run() {
+    let folder = TempDir::new().unwrap();
+    let site = folder.path().join("site");
+    let output = docs(&site, &[]);
+    let said = said(&output);
+    assert!(output.status.success(), "{said}");
+    let line = said.lines().find(|line| line.contains("blocks of commands run")).unwrap();
+    println!("{line}");
+    let number = |before: &str| {
+        let words = line.split_once(before).unwrap().0.split_whitespace().next_back().unwrap();
+        words.parse::<usize>().unwrap()
+    };
+    assert!(number(" blocks of commands run") >= 30 && number(" links followed") > 1000, "{line}");
+
+    let page = |path: &str| std::fs::read_to_string(site.join(path)).unwrap();
+    for node in registry::nodes() {
+        let reference = page(&format!("nodes/{}.html", node.id));
+        assert!(node.params().all(|p| reference.contains(&format!("<code>{}</code>", p.id))), "{}", node.id);
+        if node.group == "styles" {
+            let style = page(&format!("styles/{}.html", node.id));
+            let looks = node.params().filter(|p| p.group == "look" && p.id != "cover");
+            // Before and after, and each control at two values or more.
+            assert!(style.matches("<img ").count() >= 2 + 2 * looks.count(), "{}", node.id);
+        }
+    }
+    controls_do_something(&site);
+    // Made under another name, which is gone.
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+/// The pictures at both ends of a control differ, but for controls of what the scene does not have.
+fn controls_do_something(site: &Path) {
+    let picture = |node: &str, param: &str, number: usize| -> PathBuf {
+        site.join(format!("pictures/style-{node}-{param}-{number}.jpg"))
+    };
+    let (mut same, mut all) = (Vec::new(), 0);
+    for node in registry::nodes().iter().filter(|node| node.group == "styles") {
+        for param in node.params().filter(|p| p.group == "look" && p.id != "cover") {
+            let last = (1..).take_while(|n| picture(node.id, param.id, *n).exists()).last().unwrap();
+            let [low, high] = [0, last].map(|n| std::fs::read(picture(node.id, param.id, n)).unwrap());
+            all += 1;
+            if low == high {
+                same.push(format!("{}.{}", node.id, param.id));
+            }
+        }
+    }
+    assert!(all > 60 && same.is_empty(), "pictures of these controls show nothing: {same:?}");
+}
+
+/// A copy of the pages with one of them changed.
+fn pages_with(folder: &Path, page: &str, text: &str) -> PathBuf {
+    fn copy(from: &Path, to: &Path) {
+        std::fs::create_dir_all(to).unwrap();
+        for entry in std::fs::read_dir(from).unwrap().map(Result::unwrap) {
+            let target = to.join(entry.file_name());
+            if entry.path().is_dir() {
+                copy(&entry.path(), &target);
+            } else {
+                std::fs::copy(entry.path(), target).unwrap();
+            }
+        }
+    }
+    let pages = folder.join("pages");
+    copy(&library::root().join("xtask/docs/pages"), &pages);
+    std::fs::write(pages.join(page), text).unwrap();
+    pages
+}
+
+#[test]
+fn a_page_that_is_wrong_is_named_and_the_old_site_stays() {
+    for (text, named) in [
+        ("# A\n\n```sh\nisophote apply cartoon absent.png out.png\n```\n", "absent.png"),
+        ("# A\n\n[gone](repo:no/such/file.md)\n", "the repository has no no/such/file.md"),
+        ("# A\n\n![picture](made:out.png)\n", "its commands do not make"),
+    ] {
+        let folder = TempDir::new().unwrap();
+        let site = folder.path().join("site");
+        std::fs::create_dir(&site).unwrap();
+        std::fs::write(site.join("old.html"), "old").unwrap();
+        // The first page of the contents, so that the others are not run before.
+        let pages = pages_with(folder.path(), "index.md", text);
+        let output = docs(&site, &["--pages", pages.to_str().unwrap()]);
+        let said = said(&output);
+        assert!(!output.status.success() && said.contains(named) && said.contains("index"), "{text}: {said}");
+        assert!(site.join("old.html").exists());
+    }
+}

@@ -1,0 +1,193 @@
+//! What a panel shows: an effect with its controls, as the plugin derives them from the catalogue.
+
+use crate::error::{Error, Result};
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// An effect.
+#[derive(Clone, Debug)]
+pub struct Panel {
+    /// The end of its identifier.
+    pub id: String,
+    /// Its name.
+    pub label: String,
+    /// What it does, in a sentence.
+    pub about: String,
+    /// Controls, those of one heading together.
+    pub controls: Vec<Control>,
+}
+
+/// A control.
+#[derive(Clone, Debug)]
+pub struct Control {
+    /// The plugin's name for it.
+    pub name: String,
+    /// For people.
+    pub label: String,
+    /// What it does.
+    pub doc: String,
+    /// The heading that it stands under.
+    pub group: String,
+    /// What is set by it.
+    pub kind: Kind,
+}
+
+/// What a control sets.
+#[derive(Clone, Debug)]
+pub enum Kind {
+    /// A number between the ends of a slider.
+    Number { default: f64, slider: [f64; 2], is_whole: bool },
+    /// On or off.
+    Switch { default: bool },
+    /// One of several texts.
+    Choice { default: String, options: Vec<String> },
+    /// A colour, as MLT writes it: alpha first.
+    Color { default: String },
+}
+
+impl Panel {
+    /// The name by which MLT knows the effect.
+    pub fn service(&self) -> String {
+        format!("openfx.org.isophote.{}", self.id)
+    }
+}
+
+/// All effects of a catalogue.
+///
+/// # Errors
+/// [`Error::Malformed`] when the file holds something else.
+pub fn all(file: &Path) -> Result<Vec<Panel>> {
+    let text = std::fs::read_to_string(file).map_err(Error::at(file))?;
+    let catalogue: Value = serde_json::from_str(&text).map_err(|error| Error::malformed(file, error))?;
+    panels(&catalogue).ok_or_else(|| Error::malformed(file, "is no catalogue of nodes"))
+}
+
+fn panels(catalogue: &Value) -> Option<Vec<Panel>> {
+    let nodes = catalogue["nodes"].as_array()?;
+    let find = |id: &str| nodes.iter().find(|node| node["id"] == id);
+    let mut panels = Vec::new();
+    for node in nodes {
+        let made = match node["output"]["kind"].as_str()? {
+            _ if node["id"] == "tensor_view" => {
+                let controls = controls(&[("", find("structure_tensor")?), ("view_", node)])?;
+                panel("structure", "Structure", node, controls)
+            }
+            "color" if reads_colour_alone(node)? => {
+                panel(node["id"].as_str()?, node["label"].as_str()?, node, controls(&[("", node)])?)
+            }
+            "scalar" if reads_colour_alone(node)? => {
+                let mut all = vec![lines_output()];
+                all.extend(controls(&[("", node), ("lines_", find("composite_lines")?)])?);
+                panel(node["id"].as_str()?, node["label"].as_str()?, node, all)
+            }
+            _ => continue,
+        };
+        panels.push(made?);
+    }
+    Some(panels)
+}
+
+fn panel(id: &str, label: &str, node: &Value, mut controls: Vec<Control>) -> Option<Panel> {
+    let doc = node["doc"].as_str()?;
+    let about = doc.split_once(". ").map_or(doc, |(first, _)| first).trim_end_matches('.');
+    // Under one heading, controls follow one another.
+    let mut groups: Vec<String> = Vec::new();
+    for control in &controls {
+        if !groups.contains(&control.group) {
+            groups.push(control.group.clone());
+        }
+    }
+    controls.sort_by_key(|control| groups.iter().position(|group| *group == control.group));
+    Some(Panel { id: id.to_owned(), label: label.to_owned(), about: about.to_owned(), controls })
+}
+
+fn reads_colour_alone(node: &Value) -> Option<bool> {
+    let inputs = node["inputs"].as_array()?;
+    let is_colour = |port: &Value| port["kind"] == "color";
+    Some(inputs.iter().any(is_colour) && inputs.iter().all(|p| is_colour(p) || p["optional"] == json!(true)))
+}
+
+/// What effects of lines have beside their parameters.
+fn lines_output() -> Control {
+    let options = ["Lines only", "Lines over source"].map(str::to_owned);
+    Control {
+        name: "lines_output".into(),
+        label: "Output".into(),
+        doc: "The lines alone, or over the picture.".into(),
+        group: String::new(),
+        kind: Kind::Choice { default: options[0].clone(), options: options.to_vec() },
+    }
+}
+
+/// What is about other frames has no use in MLT, which gives effects one at a time.
+const OF_OTHER_FRAMES: [&str; 3] = ["steadiness", "window", "renewal"];
+
+/// The controls of nodes, each with what stands before its names.
+fn controls(nodes: &[(&str, &Value)]) -> Option<Vec<Control>> {
+    let mut controls = Vec::new();
+    for (prefix, node) in nodes {
+        for param in node["params"].as_array()? {
+            let id = param["id"].as_str()?;
+            if OF_OTHER_FRAMES.contains(&id) {
+                continue;
+            }
+            let group = match *prefix {
+                "" => param["group"].as_str()?,
+                "lines_" => "lines over source",
+                _ => "view",
+            };
+            controls.push(Control {
+                name: format!("{prefix}{id}"),
+                label: param["label"].as_str()?.to_owned(),
+                // Tips of editors know no marks for names.
+                doc: param["doc"].as_str()?.replace('`', ""),
+                group: group.to_owned(),
+                kind: kind(param)?,
+            });
+        }
+    }
+    Some(controls)
+}
+
+fn kind(param: &Value) -> Option<Kind> {
+    let default = &param["default"];
+    let number = |is_whole| {
+        let slider = [param["slider"][0].as_f64()?, param["slider"][1].as_f64()?];
+        Some(Kind::Number { default: default.as_f64()?, slider, is_whole })
+    };
+    match param["type"].as_str()? {
+        "float" => number(false),
+        "int" => number(true),
+        "bool" => Some(Kind::Switch { default: default.as_bool()? }),
+        "choice" => {
+            let options = param["options"].as_array()?;
+            let chosen = options.iter().find(|option| option["id"] == *default)?;
+            let labels = options.iter().map(|o| o["label"].as_str().map(str::to_owned));
+            let default = chosen["label"].as_str()?.to_owned();
+            Some(Kind::Choice { default, options: labels.collect::<Option<_>>()? })
+        }
+        "color" => {
+            let byte = |index: usize| default[index].as_f64().map(|v| (v * 255.0).round() as u8);
+            let (red, green, blue, alpha) = (byte(0)?, byte(1)?, byte(2)?, byte(3)?);
+            Some(Kind::Color { default: format!("#{alpha:02x}{red:02x}{green:02x}{blue:02x}") })
+        }
+        _ => None,
+    }
+}
+
+/// Digits behind the point that a slider from end to end needs, and the default to be shown as it is.
+pub fn decimals(slider: [f64; 2], default: f64, is_whole: bool) -> usize {
+    let steps = match slider[1] - slider[0] {
+        _ if is_whole => 0,
+        length if length > 50.0 => 1,
+        length if length > 2.0 => 2,
+        _ => 3,
+    };
+    let digits = shown(default).split_once('.').map_or(0, |(_, digits)| digits.len());
+    steps.max(digits.min(5))
+}
+
+/// A number as its own precision shows it: the catalogue's are of 32 bits.
+pub fn shown(number: f64) -> String {
+    (number as f32).to_string()
+}

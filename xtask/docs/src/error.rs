@@ -1,0 +1,62 @@
+//! Why there is no site.
+
+use std::path::{Path, PathBuf};
+
+/// What can go wrong.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A file cannot be read or written, or a program cannot be started.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// The file or program.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A picture cannot be read or written.
+    #[error("{}: {source}", path.display())]
+    Picture {
+        /// The file.
+        path: PathBuf,
+        /// What the decoder says.
+        source: image::ImageError,
+    },
+    /// A program of the site's making failed.
+    #[error("`{command}` failed: {said}")]
+    Program {
+        /// What was run.
+        command: String,
+        /// What it wrote.
+        said: String,
+    },
+    /// A page is at fault.
+    #[error("{page}: {problem}")]
+    Page {
+        /// Its source or place.
+        page: String,
+        /// What is wrong, and what would be right.
+        problem: String,
+    },
+    /// Links that lead nowhere.
+    #[error("{} links lead nowhere:\n{}", .0.len(), .0.join("\n"))]
+    Links(Vec<String>),
+    /// The library refuses a node of its own.
+    #[error(transparent)]
+    Library(#[from] isophote::Error),
+}
+
+impl Error {
+    /// Says which file an error of the system is about.
+    pub fn at(path: &Path) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::File { path, source }
+    }
+
+    /// Something about a page.
+    pub fn page(page: impl ToString, problem: impl ToString) -> Self {
+        Self::Page { page: page.to_string(), problem: problem.to_string() }
+    }
+}
+
+/// The result of a step.
+pub type Result<T> = std::result::Result<T, Error>;

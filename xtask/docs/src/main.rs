@@ -1,0 +1,183 @@
+//! `isophote-docs`, run by `cargo xtask docs`: the documentation as a site without scripts. It renders the pages of this
+//! folder and some documents of the repository, makes a page for every node and every style from their declarations,
+//! with pictures of the demo scene, runs every command that stands on a page, and follows every link.
+
+mod book;
+mod error;
+mod links;
+mod looks;
+mod maker;
+mod markdown;
+mod page;
+mod reference;
+mod scratch;
+mod shot;
+mod shots;
+mod studio;
+mod styles;
+mod template;
+
+use book::pages;
+use clap::Parser;
+use error::{Error, Result};
+use looks::Look;
+use markdown::{Rendered, place_of_copied, place_of_made, render};
+use page::Page;
+use scratch::Seed;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+use studio::{Studio, finish, small};
+
+/// Makes the documentation as a site, and runs every command that stands on it.
+#[derive(Parser)]
+#[command(bin_name = "cargo xtask docs")]
+struct Options {
+    /// Where the site goes; what was there is replaced
+    #[arg(long, value_name = "DIR", default_value = "target/docs")]
+    out: PathBuf,
+    /// Size at which pictures are made; large ones are shown smaller
+    #[arg(long, value_name = "WxH", default_value = "600x400")]
+    size: String,
+    /// Folder of the pages that are written
+    #[arg(long, value_name = "DIR", hide = true)]
+    pages: Option<PathBuf>,
+    /// The sample host
+    #[arg(long, value_name = "FILE", hide = true)]
+    host: PathBuf,
+    /// The dynamic library
+    #[arg(long, value_name = "FILE", hide = true)]
+    library: PathBuf,
+    /// The demo scene
+    #[arg(long, value_name = "FILE", hide = true)]
+    scene: PathBuf,
+}
+
+fn main() -> ExitCode {
+    match run(&Options::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("isophote-docs: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(options: &Options) -> Result<()> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let root = root.canonicalize().map_err(Error::at(&root))?;
+    let sources =
+        options.pages.clone().unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("pages"));
+    let out = root.join(&options.out);
+    let scratch = tempfile::tempdir().map_err(Error::at(&out))?;
+    // Whole before it has its name.
+    let site = out.with_extension("partial");
+    replace(&site)?;
+    let pictures = site.join("pictures");
+    std::fs::create_dir_all(&pictures).map_err(Error::at(&pictures))?;
+
+    // What is wrong with pages is found before pictures are made.
+    let looks = looks::all(&root)?;
+    let mut pages = pages(&sources, &root)?;
+    for page in &mut pages {
+        page.text = page.text.replace("<!-- looks -->", &looks::contents(&looks));
+    }
+    let rendered: Vec<Rendered> = pages.iter().map(|page| render(page, &root)).collect::<Result<_>>()?;
+    write(&site, &pages, &rendered)?;
+
+    println!("commands of pages");
+    let seed = Seed {
+        folder: scratch.path().join("seed"),
+        host: &options.host,
+        scene: &options.scene,
+        library: &options.library,
+        root: &root,
+    };
+    let counts = commands(&seed, &pages, &rendered, [&root, scratch.path(), &site])?;
+
+    println!("pictures of nodes and looks");
+    photograph(options, &looks, scratch.path(), &pictures)?;
+    let links = links::check(&site)?;
+    let size = size_of(&pictures)?;
+    replace(&out)?;
+    std::fs::rename(&site, &out).map_err(Error::at(&out))?;
+    println!(
+        "{} pages, pictures of {:.1} MB; {} blocks of commands run, {} are for people; {} links followed, {} lead \
+         elsewhere",
+        pages.len(),
+        size as f64 / 1e6,
+        counts.run,
+        counts.by_hand,
+        links.inner,
+        links.outer
+    );
+    println!("{}", out.join("index.html").display());
+    Ok(())
+}
+
+/// Makes the pictures of nodes, controls and looks, all of one frame of the demo scene.
+fn photograph(options: &Options, looks: &[Look], scratch: &Path, pictures: &Path) -> Result<()> {
+    let subject = scratch.join("subject.exr");
+    let mut command = Command::new(&options.host);
+    command.arg("render").arg(&options.scene).arg(&subject).args(["--size", &options.size]);
+    finish(&mut command)?;
+    let studio = Studio { host: &options.host, subject: &subject, scratch };
+    let shots = shots::all(looks)?;
+    studio.make(&shots, pictures)
+}
+
+/// Bytes of the files in a folder.
+fn size_of(folder: &Path) -> Result<u64> {
+    let mut size = 0;
+    for entry in std::fs::read_dir(folder).map_err(Error::at(folder))? {
+        size += entry.and_then(|e| e.metadata()).map_err(Error::at(folder))?.len();
+    }
+    Ok(size)
+}
+
+/// Writes all pages and their style sheet.
+fn write(site: &Path, pages: &[Page], rendered: &[Rendered]) -> Result<()> {
+    let sheet = site.join("site.css");
+    std::fs::write(&sheet, template::STYLES).map_err(Error::at(&sheet))?;
+    for (page, rendered) in pages.iter().zip(rendered) {
+        let file = site.join(format!("{}.html", page.path));
+        let folder = file.parent().unwrap_or(site);
+        std::fs::create_dir_all(folder).map_err(Error::at(folder))?;
+        std::fs::write(&file, template::framed(page, rendered, pages)).map_err(Error::at(&file))?;
+    }
+    Ok(())
+}
+
+/// Runs the commands of all pages, and takes the pictures that they make and the pages show.
+fn commands(
+    seed: &Seed<'_>,
+    pages: &[Page],
+    rendered: &[Rendered],
+    [root, scratch, site]: [&Path; 3],
+) -> Result<scratch::Counts> {
+    let mut sum = scratch::Counts::default();
+    for (number, (page, rendered)) in pages.iter().zip(rendered).enumerate() {
+        let folder = scratch.join(format!("page-{number}"));
+        let counts = seed.run(page, &rendered.blocks, &folder)?;
+        sum.run += counts.run;
+        sum.by_hand += counts.by_hand;
+        for file in &rendered.copied {
+            let from = root.join(file);
+            std::fs::copy(&from, site.join(place_of_copied(file))).map_err(Error::at(&from))?;
+        }
+        for name in &rendered.made {
+            let from = folder.join(name);
+            if !from.is_file() {
+                return Err(Error::page(&page.path, format!("shows {name}, which its commands do not make")));
+            }
+            small(&from, &site.join(place_of_made(page, name)), studio::WIDEST)?;
+        }
+    }
+    Ok(sum)
+}
+
+fn replace(folder: &Path) -> Result<()> {
+    if folder.exists() {
+        std::fs::remove_dir_all(folder).map_err(Error::at(folder))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,51 @@
+//! What a page is, which documents of the repository are pages, and how pages reach each other.
+
+/// A page before it is rendered.
+#[derive(Clone, Debug)]
+pub struct Page {
+    /// Its place on the site, without its ending.
+    pub path: String,
+    /// Its name in the contents.
+    pub title: String,
+    /// The part of the contents that it stands in.
+    pub part: &'static str,
+    /// Markdown.
+    pub text: String,
+    /// The document of the repository that it is, by its path; links in it are relative to that.
+    pub document: Option<&'static str>,
+}
+
+/// Documents of the repository that are pages, too: part, place, title, document.
+pub const DOCUMENTS: [(&str, &str, &str, &str); 4] = [
+    ("For compositors", "compositors/openfx", "Every host, in detail", "nodes/plugin/OPENFX.md"),
+    ("For render TDs", "farms/farm", "Farms", "host-example/FARM.md"),
+    ("For render TDs", "farms/benchmarks", "How fast the nodes are", "host-example/BENCHMARKS.md"),
+    ("For contributors", "contributors/contributing", "Contributing", "CONTRIBUTING.md"),
+];
+
+/// Parts in their order.
+pub const PARTS: [&str; 8] = [
+    "",
+    "For artists",
+    "Styles",
+    "For compositors",
+    "For engine authors",
+    "For render TDs",
+    "For contributors",
+    "Nodes",
+];
+
+/// How a page in `path` reaches the top of the site.
+pub fn to_top(path: &str) -> String {
+    "../".repeat(path.matches('/').count())
+}
+
+/// The page that a document of the repository is, if it is one.
+pub fn page_of(document: &str) -> Option<&'static str> {
+    DOCUMENTS.iter().find(|(.., known)| *known == document).map(|(_, path, ..)| *path)
+}
+
+/// Text as HTML shows it.
+pub fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

@@ -1,0 +1,109 @@
+//! Makes pictures: what nodes, controls and looks make of one frame of the demo scene, as small JPEG files.
+
+use crate::error::{Error, Result};
+use crate::shot::{Shot, Style};
+use image::DynamicImage;
+use image::codecs::jpeg::JpegEncoder;
+use image::imageops::FilterType;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Quality of the files: lines stay clean, and a picture takes some tens of kilobytes.
+const QUALITY: u8 = 82;
+
+/// The widest picture of a page.
+pub const WIDEST: u32 = 960;
+
+/// The widest of those that stand beside each other.
+const WIDEST_BESIDE: u32 = 480;
+
+/// What makes pictures.
+pub struct Studio<'a> {
+    /// The sample host.
+    pub host: &'a Path,
+    /// The frame, with everything that guides filters.
+    pub subject: &'a Path,
+    /// A folder for what is in between.
+    pub scratch: &'a Path,
+}
+
+impl Studio<'_> {
+    /// Makes all pictures, several at a time.
+    ///
+    /// # Errors
+    /// The first that cannot be made.
+    pub fn make(&self, shots: &[Shot], out: &Path) -> Result<()> {
+        let next = AtomicUsize::new(0);
+        let failed = Mutex::new(None);
+        let lanes = std::thread::available_parallelism().map_or(1, usize::from);
+        std::thread::scope(|scope| {
+            for _ in 0..lanes {
+                scope.spawn(|| {
+                    while let Some(shot) = shots.get(next.fetch_add(1, Ordering::Relaxed)) {
+                        if let Err(error) = self.picture(shot, out) {
+                            // Nobody needs the others then.
+                            next.store(shots.len(), Ordering::Relaxed);
+                            *failed.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(error);
+                        }
+                    }
+                });
+            }
+        });
+        failed.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).map_or(Ok(()), Err)
+    }
+
+    fn picture(&self, shot: &Shot, out: &Path) -> Result<()> {
+        let made = self.scratch.join(format!("{}.png", shot.name));
+        let style = match &shot.style {
+            Style::Named(name) => PathBuf::from(name),
+            Style::Graph(text) => {
+                let file = self.scratch.join(format!("{}.json", shot.name));
+                std::fs::write(&file, text).map_err(Error::at(&file))?;
+                file
+            }
+        };
+        let mut command = Command::new(self.host);
+        command.arg("apply").arg(style).arg(self.subject).arg(&made);
+        // Lengths are those of so small a picture: marks as fine as on large ones would not be seen.
+        command.args(["--lengths", "pixels", "--backend", "cpu", "--threads", "1"]);
+        for (param, value) in &shot.set {
+            command.arg("--set").arg(format!("{param}={value}"));
+        }
+        finish(&mut command)?;
+        small(&made, &out.join(format!("{}.jpg", shot.name)), WIDEST_BESIDE)
+    }
+}
+
+/// Runs a command to its end.
+///
+/// # Errors
+/// [`Error::Program`] with what it wrote.
+pub fn finish(command: &mut Command) -> Result<()> {
+    let program = PathBuf::from(command.get_program());
+    let output = command.output().map_err(Error::at(&program))?;
+    if output.status.success() {
+        return Ok(());
+    }
+    let said = String::from_utf8_lossy(&output.stderr).trim().to_owned();
+    Err(Error::Program { command: format!("{command:?}"), said })
+}
+
+/// A picture as a small JPEG file, at most so wide.
+///
+/// # Errors
+/// [`Error::Picture`] where it cannot be read or written.
+pub fn small(from: &Path, to: &Path, widest: u32) -> Result<()> {
+    let at = |path: &Path| {
+        let path = path.to_owned();
+        move |source| Error::Picture { path, source }
+    };
+    let mut picture = image::open(from).map_err(at(from))?;
+    if picture.width() > widest {
+        picture = picture.resize(widest, u32::MAX, FilterType::Lanczos3);
+    }
+    let file = std::fs::File::create(to).map_err(Error::at(to))?;
+    let encoder = JpegEncoder::new_with_quality(std::io::BufWriter::new(file), QUALITY);
+    DynamicImage::ImageRgb8(picture.to_rgb8()).write_with_encoder(encoder).map_err(at(to))
+}

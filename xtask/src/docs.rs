@@ -1,0 +1,35 @@
+//! `cargo xtask docs`: the documentation as a site, every command on it run.
+
+use crate::error::Result;
+use crate::scene;
+use crate::setup::{self, C_COMPILER, FFMPEG, VULKAN};
+use crate::tools::{build_with_host, heading, host, program, run as run_command, target_dir};
+
+/// The package that makes the site.
+const PACKAGE: &str = "isophote-docs";
+
+/// Options of `cargo xtask docs`: those of the program that makes the site.
+#[derive(clap::Args)]
+#[command(disable_help_flag = true)]
+pub struct Options {
+    /// --help lists what may be chosen
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    arguments: Vec<String>,
+}
+
+/// Builds the host, the library and the program, and makes the site.
+///
+/// # Errors
+/// The first step that fails.
+pub fn run(options: &Options) -> Result<()> {
+    setup::ensure(&[&C_COMPILER, &FFMPEG, &VULKAN])?;
+    heading("build");
+    build_with_host("debug", &[scene::PACKAGE, PACKAGE])?;
+    let scene = scene::write(&target_dir("docs-scene"))?;
+    let library = format!("{}isophote{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    heading("site");
+    let mut docs = program(PACKAGE, "debug");
+    docs.arg("--host").arg(host("debug").get_program()).arg("--scene").arg(scene);
+    docs.arg("--library").arg(target_dir("debug").join(library));
+    run_command(docs.args(&options.arguments))
+}
