@@ -14,7 +14,7 @@ const STEPS: (&str, Value) = ("least_gradient", Value::Float(0.2));
 fn plan(node: &str, settings: &[(&str, Value)], [width, height]: [u32; 2]) -> Planned {
     let mut graph = Graph::single(node).expect("there is such a node");
     for (name, value) in settings {
-        graph.set(graph.node(0).expect("it is the first"), name, value.clone()).expect("it has such a value");
+        graph.set(graph.node(0).expect("it is the first"), name, *value).expect("it has such a value");
     }
     Planned::new(&graph, Request::new(width, height)).expect("it can be planned")
 }
