@@ -1,5 +1,6 @@
 //! Progress of a run: a bar for people, lines of JSON for programs, and a summary.
 
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
@@ -8,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 
 use super::tasks::Task;
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::output;
 
 /// What became of a frame.
@@ -43,6 +44,35 @@ impl Counts {
     /// Frames that are over, of those that have a file.
     pub fn done(&self) -> u64 {
         self.written + self.skipped + self.failed
+    }
+
+    /// Whether all of so many frames were done.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the run was stopped before, and as [`check_failed`].
+    pub fn check(&self, input: &Path, frames: usize) -> Result<()> {
+        if self.done() < frames as u64 {
+            return Err(Error::failure(
+                format!("stopped after {} frames were written", self.written),
+                "start again with --skip-existing to resume",
+            ));
+        }
+        check_failed(input, self.failed, frames)
+    }
+}
+
+/// Whether no frame failed.
+///
+/// # Errors
+/// [`Error::Input`] with how many did.
+pub fn check_failed(input: &Path, failed: u64, frames: usize) -> Result<()> {
+    match failed {
+        0 => Ok(()),
+        _ => Err(Error::file(
+            input,
+            format!("{failed} of {frames} frames could not be done"),
+            "fix these files and start again with --skip-existing",
+        )),
     }
 }
 

@@ -14,7 +14,7 @@ use crate::apply::masks::{MaskChoice, Masks};
 use crate::apply::memory::{self, Budget, Bytes, Needs, too_large};
 use crate::apply::read::{self, Opened};
 use crate::apply::reader::{Footage, Reader};
-use crate::apply::report::{Counts, Outcome, Report};
+use crate::apply::report::{self, Outcome, Report};
 use crate::apply::sequence::Run;
 use crate::apply::space::Space;
 use crate::apply::tasks::{OnMissing, Tasks};
@@ -177,7 +177,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         let (skip_existing, json) = (args.skip_existing, args.json);
         let run = DryRun { tasks: &tasks, selection: &selection, most, skip_existing, json };
         let refused = run.print(&mut planner, needs)?;
-        return check_failed(files.input, refused, tasks.ready.len());
+        return report::check_failed(files.input, refused, tasks.ready.len());
     }
     let stop = Stop::on_signals();
     if !tasks.is_sequence() {
@@ -212,30 +212,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let result = run.all(&mut filters, Reader::new(footage, planner, &tasks.ready, opened));
     let counts = report.end(result.is_ok());
     result?;
-    check_complete(files.input, &counts, tasks.ready.len())
-}
-
-/// An error when the run was stopped before all frames were done, or frames failed.
-fn check_complete(input: &Path, counts: &Counts, frames: usize) -> Result<()> {
-    if counts.done() < frames as u64 {
-        return Err(Error::failure(
-            format!("stopped after {} frames were written", counts.written),
-            "start again with --skip-existing to resume",
-        ));
-    }
-    check_failed(input, counts.failed, frames)
-}
-
-/// An error when frames failed.
-fn check_failed(input: &Path, failed: u64, frames: usize) -> Result<()> {
-    match failed {
-        0 => Ok(()),
-        _ => Err(Error::file(
-            input,
-            format!("{failed} of {frames} frames could not be done"),
-            "fix these files and start again with --skip-existing",
-        )),
-    }
+    counts.check(files.input, tasks.ready.len())
 }
 
 /// The files that the command line names.
