@@ -4,6 +4,7 @@ mod support;
 
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, WritableImage};
 use image::{GenericImageView, Rgba, RgbaImage};
@@ -325,4 +326,44 @@ fn the_benchmark_compares_itself_with_a_saved_run() {
     let (text, _) = succeeds(bench("gaussian", "--compare").arg("--markdown"));
     assert!(text.contains("| `gaussian` | cpu | 64x48 |"), "{text}");
     assert!(text.contains("Nothing of this was measured before"), "{text}");
+}
+
+/// As on a machine to which the program and the library were brought, and nothing else.
+#[test]
+fn a_card_is_measured_in_an_empty_folder_with_an_empty_environment() {
+    let folder = folder();
+    let [program, library] = [Path::new(env!("CARGO_BIN_EXE_isophote")), support::library()];
+    for file in [program, library] {
+        fs::copy(file, folder.path().join(file.file_name().expect("a name"))).expect("a copy");
+    }
+    let mut command = Command::new(folder.path().join(program.file_name().expect("a name")));
+    command.env_clear().current_dir(folder.path()).args(["bench", "--card", "report", "--size", "96x64"]);
+    command.args(["--node", "gaussian", "--node", "cartoon", "--runs", "2", "--seconds", "0.2"]);
+    succeeds(&mut command);
+    assert_eq!(listing(&folder.path().join("report")), ["card.json", "card.md"]);
+    let read = |name: &str| fs::read_to_string(folder.path().join("report").join(name)).expect("a report");
+    let report: Value = serde_json::from_str(&read("card.json")).expect("the report is JSON");
+    let list = |name: &str| report[name].as_array().expect("a list").clone();
+    let positive = |value: &Value| assert!(value.as_f64().is_some_and(|v| v > 0.0), "{value}");
+    positive(&report["copied"]);
+    let twins: Vec<Value> = list("twins").iter().map(|twin| twin["precision"].clone()).collect();
+    assert_eq!(twins, ["exact", "half", "fast", "exact", "half", "fast"]);
+    assert_eq!((list("compiled").len(), list("loops").len(), list("sequences").len()), (4, 2, 2));
+    for node in list("nodes") {
+        positive(&node["share_of_copying"]);
+        // An adapter without timestamps tells nothing of passes.
+        node["passes"].as_array().expect("a list").iter().for_each(|pass| positive(&pass["bytes"]));
+    }
+    let (exact, fast) = (&list("nodes")[0]["bytes"], &list("nodes")[2]["bytes"]);
+    assert!(fast.as_u64() < exact.as_u64(), "{fast} of {exact}");
+    for one in list("loops") {
+        positive(&one["median_seconds"]);
+        assert!(one["most_seconds"].as_f64() >= one["median_seconds"].as_f64());
+    }
+    let text = read("card.md");
+    for words in
+        ["## Every frame", "| `cartoon` | 96x64 | fast |", "<summary>gaussian, 96x64, exact</summary>"]
+    {
+        assert!(text.contains(words), "'{words}' is not in\n{text}");
+    }
 }

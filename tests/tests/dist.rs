@@ -32,7 +32,7 @@ impl Unpacked {
             make(&archives);
             let this = Self { folder };
             this.run_in(&archives, "sha256sum --check --strict SHA256SUMS");
-            for kind in ["library", "openfx", "program"] {
+            for kind in ["library", "openfx", "program", "card"] {
                 let archive = archives.join(format!("{}.tar.gz", name(kind)));
                 this.run_in(this.folder.path(), &format!("tar xzf '{}'", archive.display()));
             }
@@ -130,7 +130,7 @@ fn files(folder: &Path) -> BTreeSet<String> {
 
 #[test]
 fn there_are_archives_and_checksums_and_nothing_half_done() {
-    let archives = ["library", "openfx", "program"].map(|kind| format!("{}.tar.gz", name(kind)));
+    let archives = ["library", "openfx", "program", "card"].map(|kind| format!("{}.tar.gz", name(kind)));
     let expected: BTreeSet<String> = archives.into_iter().chain(["SHA256SUMS".to_owned()]).collect();
     assert_eq!(files(&Unpacked::get().archives()), expected);
 }
@@ -267,6 +267,22 @@ fn the_program_runs_from_a_prefix_with_its_library() {
 }
 
 #[test]
+fn a_card_is_measured_by_the_script_in_its_folder() {
+    let unpacked = Unpacked::get();
+    let folder = unpacked.of("card");
+    let elsewhere = TempDir::new().unwrap();
+    let measure = folder.join("measure.sh");
+    let options = "--node gaussian --size 64x48 --runs 1 --seconds 0";
+    unpacked.run_in(elsewhere.path(), &format!("'{}' {options}", measure.display()));
+    assert!(files(elsewhere.path()).is_empty());
+    let report = std::fs::read_to_string(folder.join("report/card.md")).unwrap();
+    assert!(report.contains("| `gaussian` | 64x48 | fast |"), "{report}");
+    let report = std::fs::read(folder.join("report/card.json")).unwrap();
+    let report: serde_json::Value = serde_json::from_slice(&report).unwrap();
+    assert_eq!(report["problems"], serde_json::json!([]));
+}
+
+#[test]
 fn every_manual_page_is_shown_without_a_warning() {
     let unpacked = Unpacked::get();
     let pages = unpacked.of("program").join("share/man/man1");
@@ -320,6 +336,7 @@ fn licences_of_all_dependencies_come_along() {
     let library = read("library", "share/doc/isophote");
     assert_eq!(read("openfx", "licences"), library);
     let program = read("program", "share/doc/isophote");
+    assert_eq!(read("card", "licences"), program);
     for name in ["wgpu ", "naga ", "rayon ", "the Rust standard library"] {
         assert!(library.contains(name) && program.contains(name), "{name}");
     }

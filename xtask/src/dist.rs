@@ -16,10 +16,17 @@ const RELEASED: &str = "dist";
 pub struct Options {
     /// Where the archives and their checksums go
     #[arg(long, value_name = "DIR", default_value = "target/packages")]
-    out: PathBuf,
+    pub out: PathBuf,
     /// The profile of the build: `dev` tries the packing with what the tests have built
     #[arg(long, value_name = "NAME", default_value = RELEASED)]
     profile: String,
+}
+
+impl Options {
+    /// Whether binaries are not those that users get.
+    pub fn is_draft(&self) -> bool {
+        self.profile != RELEASED
+    }
 }
 
 /// Builds all that is packed, and packs it.
@@ -30,13 +37,12 @@ pub fn run(options: &Options) -> Result<()> {
     heading("build");
     // The folder of this profile has another name.
     let profile = if options.profile == "dev" { "debug" } else { &options.profile };
-    let is_draft = options.profile != RELEASED;
     build_with_host(profile, &[bundle::ICONS, PACKAGE])?;
     let bundle = target_dir("packed-bundle").join(bundle::FOLDER);
     bundle::write(&bundle, profile)?;
     heading("archives");
     let mut pack = program(PACKAGE, profile);
     pack.arg("--built").arg(target_dir(profile)).arg("--bundle").arg(bundle);
-    pack.arg("--out").arg(root().join(&options.out)).args(is_draft.then_some("--draft"));
+    pack.arg("--out").arg(root().join(&options.out)).args(options.is_draft().then_some("--draft"));
     run_command(&mut pack)
 }

@@ -2,6 +2,7 @@
 
 mod bench;
 mod bundle;
+mod card;
 mod demo;
 mod dist;
 mod docs;
@@ -52,6 +53,8 @@ enum Chore {
     GpuCost(gpu_cost::Options),
     /// Runs the host's benchmark, built for speed
     Bench(bench::Options),
+    /// Makes a folder that measures graphics cards on machines without Rust
+    Card(dist::Options),
     /// Makes the OpenFX bundle, and installs it
     Bundle(bundle::Options),
     /// Packs the library, the plugin and the program as archives that users install
@@ -81,6 +84,7 @@ fn main() -> ExitCode {
         Chore::Looks(options) => looks::run(&options),
         Chore::Samples(options) => samples::run(&options),
         Chore::GpuCost(options) => gpu_cost::run(&options),
+        Chore::Card(options) => card::run(&options),
         Chore::Bundle(options) => bundle::run(&options),
         Chore::Docs(options) => docs::run(&options),
         Chore::Dist(options) => dist::run(&options),

@@ -12,6 +12,7 @@ use crate::loader::plan::{Pass, Texture};
 use crate::loader::{Answer, Library, Plan, Refusal};
 use crate::pixels::Pixels;
 use crate::render::gpu::Gpu;
+use crate::stylize::history::Past;
 use crate::stylize::kernels::Kernels;
 use crate::stylize::plan_runner::PlanRunner;
 use crate::stylize::precision::Precision;
@@ -38,6 +39,10 @@ impl Bench {
 
     /// Measures one node: the whole without timestamps, which cost something, then each pass with them, where
     /// the adapter has any.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Input`] for nodes that need more than a picture, [`crate::error::Error::Failure`] when the device
+    /// fails.
     pub fn run(
         &mut self,
         library: &Library,
@@ -46,24 +51,7 @@ impl Bench {
         runs: u32,
     ) -> Result<Entry> {
         let refused = |e: Refusal| e.at(&subject.node, "leave it out with --node");
-        let size = (picture.width(), picture.height());
-        let style = Style::any(library, &subject.node, &subject.settings)?;
-        self.precision.apply(&style)?;
-        let mut request = library.request(size).map_err(|e| e.at("--size", "choose another size"))?;
-        let [frames, _] = library.frames(&style.graph).map_err(refused)?;
-        if frames > 0 {
-            request.guides = ISOPHOTE_GUIDE_MOTION;
-        }
-        // Of one that is steady, frames in order of which those before are known.
-        let past = style.past(library, &request)?;
-        let plan = style.plan(library, &request, past.frames)?;
-        let mut runner = PlanRunner::new(&self.kernels, &plan, past)?;
-        let (color, motion) = (self.upload(picture), self.upload(&motion(size)));
-        runner.bind(&[("color", &color), ("motion", &motion)])?;
-        // The first runs compile, and find the frames that others are based on; they are not counted.
-        for _ in 0..=frames {
-            self.once(&mut runner)?;
-        }
+        let (plan, mut runner) = self.prepare(library, subject, picture)?;
         let totals = (0..runs).map(|_| self.once(&mut runner)).collect::<Result<Vec<f64>>>()?;
         let mut passes = passes(&plan).map_err(refused)?;
         let bytes = passes.iter().filter_map(|pass| pass.bytes).sum();
@@ -80,12 +68,76 @@ impl Bench {
         Ok(Entry {
             node: subject.label.clone(),
             backend: "gpu",
-            size,
+            size: (picture.width(), picture.height()),
             seconds: median(totals),
             call_seconds: None,
             bytes: Some(bytes),
             passes,
         })
+    }
+
+    /// Seconds of single frames, one after the other for so long; at least one.
+    ///
+    /// # Errors
+    /// As [`Bench::run`].
+    pub fn frames(
+        &mut self,
+        library: &Library,
+        subject: &Subject,
+        picture: &Pixels,
+        seconds: f64,
+    ) -> Result<Vec<f64>> {
+        let (_plan, mut runner) = self.prepare(library, subject, picture)?;
+        let (started, mut times) = (Instant::now(), Vec::new());
+        while times.is_empty() || started.elapsed().as_secs_f64() < seconds {
+            times.push(self.once(&mut runner)?);
+        }
+        Ok(times)
+    }
+
+    /// Seconds until the shaders of a node are compiled, as far as they are not yet.
+    ///
+    /// # Errors
+    /// As [`Bench::run`].
+    pub fn compile(&mut self, library: &Library, subject: &Subject) -> Result<f64> {
+        const SMALL: (u32, u32) = (64, 64);
+        let (plan, past, _) = self.plan(library, subject, SMALL)?;
+        let started = Instant::now();
+        PlanRunner::new(&self.kernels, &plan, past)?;
+        Ok(started.elapsed().as_secs_f64())
+    }
+
+    /// What a node runs on a picture of a size, what it reads of frames before, and how many.
+    fn plan(&self, library: &Library, subject: &Subject, size: (u32, u32)) -> Result<(Plan, Past, u32)> {
+        let style = Style::any(library, &subject.node, &subject.settings)?;
+        self.precision.apply(&style)?;
+        let mut request = library.request(size).map_err(|e| e.at("--size", "choose another size"))?;
+        let frames = library.frames(&style.graph);
+        let [frames, _] = frames.map_err(|e| e.at(&subject.node, "leave it out with --node"))?;
+        if frames > 0 {
+            request.guides = ISOPHOTE_GUIDE_MOTION;
+        }
+        // Of one that is steady, frames in order of which those before are known.
+        let past = style.past(library, &request)?;
+        Ok((style.plan(library, &request, past.frames)?, past, frames))
+    }
+
+    /// A node that has run on a picture: its first runs compile, and find the frames that others are based on.
+    fn prepare(
+        &mut self,
+        library: &Library,
+        subject: &Subject,
+        picture: &Pixels,
+    ) -> Result<(Plan, PlanRunner)> {
+        let size = (picture.width(), picture.height());
+        let (plan, past, frames) = self.plan(library, subject, size)?;
+        let mut runner = PlanRunner::new(&self.kernels, &plan, past)?;
+        let (color, motion) = (self.upload(picture), self.upload(&motion(size)));
+        runner.bind(&[("color", &color), ("motion", &motion)])?;
+        for _ in 0..=frames {
+            self.once(&mut runner)?;
+        }
+        Ok((plan, runner))
     }
 
     /// From the first command recorded to the last one done, in seconds.
@@ -133,17 +185,20 @@ impl Bench {
     }
 }
 
-/// The passes of a plan, not measured yet. Of the bytes that a pass reads, each texel counts once.
+/// The passes of a plan, not measured yet.
 fn passes(plan: &Plan) -> Answer<Vec<PassEntry>> {
     let textures = plan.textures()?;
-    let written = |i: &u32| textures.get(*i as usize).map(|t| u64::from(t.size[0]) * u64::from(t.size[1]));
-    let bytes = |at: &u32| textures.get(*at as usize).map_or(0, Texture::bytes);
+    let texture = |at: &u32| textures.get(*at as usize);
     let entry = |pass: Pass<'_>| PassEntry {
         kernel: pass.kernel.to_owned(),
         seconds: 0.0,
-        pixels: pass.outputs.first().and_then(written).unwrap_or(0),
-        bytes: Some(pass.inputs.iter().chain(pass.outputs).map(bytes).sum()),
+        pixels: pass
+            .outputs
+            .first()
+            .and_then(texture)
+            .map_or(0, |t| u64::from(t.size[0]) * u64::from(t.size[1])),
         work: None,
+        bytes: Some(pass.inputs.iter().chain(pass.outputs).filter_map(texture).map(Texture::bytes).sum()),
     };
     Ok(plan.passes()?.map(entry).collect())
 }

@@ -1,5 +1,6 @@
 //! Measuring what each node and each of its passes takes, on the CPU and on the GPU.
 
+pub mod card;
 pub mod compare;
 pub mod cpu;
 mod entry;

@@ -27,8 +27,8 @@ pub fn run(subjects: &[Subject], picture: &Pixels, frames: u32, json: bool) -> R
             Ok::<_, Error>(vec![Look::whole(style)])
         };
         let planner = Planner::new(library.clone(), looks()?)?;
-        let filter = Filter::new(library.clone(), looks()?, Backend::Cpu, None, 0)?;
-        let result = measure(filter, planner, picture, frames, memory::usual().0)?;
+        let mut filter = Filter::new(library.clone(), looks()?, Backend::Cpu, None, 0)?;
+        let result = measure(std::slice::from_mut(&mut filter), planner, picture, frames, memory::usual().0)?;
         if !json {
             output::print(&text(subject, picture, &result))?;
         }

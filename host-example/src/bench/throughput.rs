@@ -40,12 +40,12 @@ pub struct Throughput {
 }
 
 /// Finishes `frames` EXR frames of half floats, scan lines and ZIP compression, all of them `picture` (RGBA),
-/// within `bound` bytes. `planner` is of the filter's style.
+/// within `bound` bytes. `filters`, at least one, take frames in turn; `planner` is of their style.
 ///
 /// # Errors
 /// [`Error::Input`] for styles that do not fit, [`Error::Failure`] when there is no room for the files.
 pub fn measure(
-    mut filter: Filter,
+    filters: &mut [Filter],
     planner: Planner,
     picture: &Pixels,
     frames: u32,
@@ -64,7 +64,7 @@ pub fn measure(
     }
     let selection = Selection { wanted: planner.guides().to_vec(), ..Selection::default() };
     let mut filter_seconds = 0.0;
-    let (budget, report) = (Budget::new(bound, 1), Report::new(tasks.len(), false, false));
+    let (budget, report) = (Budget::new(bound, filters.len()), Report::new(tasks.len(), false, false));
     let masks = Masks::default();
     let footage =
         Footage { frames: None, motion: None, selection: &selection, masks: &masks, budget: &budget };
@@ -74,7 +74,7 @@ pub fn measure(
         let own = Arc::new(Held::new(task.frame, source, true, budget.share()));
         let (exr, window) = (own.take_exr(), Window { own: Arc::clone(&own), frames: vec![own] });
         let started = Instant::now();
-        filter.run("a frame", &window, exr.as_ref(), Format::Exr, &mut |_| {})?;
+        filters[0].run("a frame", &window, exr.as_ref(), Format::Exr, &mut |_| {})?;
         if at > 0 {
             filter_seconds += started.elapsed().as_secs_f64();
         }
@@ -90,7 +90,7 @@ pub fn measure(
     };
     forget_peak();
     let started = Instant::now();
-    let result = run.all(std::slice::from_mut(&mut filter), Reader::new(footage, planner, &tasks, None));
+    let result = run.all(filters, Reader::new(footage, planner, &tasks, None));
     let seconds = started.elapsed().as_secs_f64();
     let counts = report.end(false);
     result?;

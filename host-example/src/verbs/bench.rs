@@ -12,7 +12,7 @@ use fearless_simd::Level;
 use super::shared::{PrecisionArgs, parse_size};
 use crate::bench::compare::Saved;
 use crate::bench::report::{Machine, Report, Shown};
-use crate::bench::{Subject, cpu, gpu, peak, picture, sequence};
+use crate::bench::{Subject, card, cpu, gpu, peak, picture, sequence};
 use crate::error::{Error, Result};
 use crate::loader::Library;
 use crate::output;
@@ -20,6 +20,10 @@ use crate::render::gpu::Gpu;
 
 /// Sizes that are measured when none is given.
 const SIZES: [(u32, u32); 2] = [(1280, 720), (1920, 1080)];
+/// The same of a graphics card.
+const CARD_SIZES: [(u32, u32); 2] = [(1920, 1080), (3840, 2160)];
+/// Frames of the sequences of a graphics card.
+const CARD_FRAMES: u32 = 12;
 
 /// Options of `bench`.
 #[derive(Args, Debug)]
@@ -54,6 +58,15 @@ pub struct BenchArgs {
     #[arg(long, value_name = "FRAMES", conflicts_with_all = ["save", "compare", "markdown", "backend"],
         value_parser = clap::value_parser!(u32).range(1..=10_000))]
     sequence: Option<u32>,
+    /// Measures all that is to be known of a graphics card, and writes a report of it into this folder, card.md and card.json:
+    /// whether it computes what the CPU does, what nodes and their passes take in 1920x1080 and 3840x2160 and which share that
+    /// is of what the card can copy, what compiling takes, a loop of ten seconds, and sequences from file to file.
+    #[arg(long, value_name = "DIR",
+        conflicts_with_all = ["save", "compare", "markdown", "backend", "json", "sequence", "precision"])]
+    card: Option<PathBuf>,
+    /// Seconds of the loop of --card.
+    #[arg(long, value_name = "S", default_value_t = 10.0, requires = "card", value_parser = parse_seconds)]
+    seconds: f64,
     /// Prints a table in Markdown, beside the times of comparable programs where those are known.
     #[arg(long, conflicts_with = "json")]
     markdown: bool,
@@ -84,6 +97,19 @@ pub fn run(args: &BenchArgs) -> Result<()> {
         return sequence::run(&subjects, &picture(args.size.unwrap_or(SIZES[1])), frames, args.json);
     }
     let subjects = subjects(&library, &args.node)?;
+    if let Some(folder) = &args.card {
+        return card::run(
+            &library,
+            &card::Options {
+                folder,
+                subjects: &subjects,
+                sizes: &args.size.map_or(CARD_SIZES.to_vec(), |size| vec![size]),
+                runs: args.runs,
+                seconds: args.seconds,
+                frames: CARD_FRAMES,
+            },
+        );
+    }
     let before = args.compare.as_deref().map(Saved::read).transpose()?;
     let gpu = match args.backend {
         Some(BenchBackend::Cpu) => None,
@@ -123,6 +149,12 @@ pub fn run(args: &BenchArgs) -> Result<()> {
         save(path, &report)?;
     }
     report.print_end()
+}
+
+/// A number of seconds, 0 or more.
+fn parse_seconds(text: &str) -> std::result::Result<f64, String> {
+    let seconds = text.parse().ok().filter(|s: &f64| (0.0..=3600.0).contains(s));
+    seconds.ok_or_else(|| "write a number from 0 to 3600".to_owned())
 }
 
 fn save(path: &Path, report: &Report) -> Result<()> {

@@ -1,21 +1,26 @@
-//! Clicks and drags that are faster than frames.
+//! Clicks, drags and steps by Tab that are faster than frames.
 
-use egui::Event;
+use egui::{Event, Key};
 
 /// Ends the events of a frame, those of before first, with the first press or release of a button, and before a release that
 /// follows a move; returns the rest. Controls do not see a click that begins and ends within one frame, as clicks do where
 /// frames are slow; they take a press for one where the pointer is at the end of the frame; and what is dragged does not go
-/// where it is let go of in the same frame.
+/// where it is let go of in the same frame. Tab takes the focus on by one control a frame, and keys after it are for that one.
 pub fn one_at_a_time(events: &mut Vec<Event>, before: Vec<Event>) -> Vec<Event> {
     events.splice(..0, before);
     let is_move = |event: &Event| matches!(event, Event::PointerMoved(_));
     let is_button = |event: &Event| matches!(event, Event::PointerButton { .. });
-    let Some(first) = events.iter().position(is_button) else { return Vec::new() };
+    let is_key = |event: &Event| matches!(event, Event::Key { pressed: true, .. });
+    let is_tab = |event: &Event| matches!(event, Event::Key { key: Key::Tab, pressed: true, .. });
+    let Some(first) = events.iter().position(|event| is_button(event) || is_tab(event)) else {
+        return Vec::new();
+    };
     let is_release = matches!(events[first], Event::PointerButton { pressed: false, .. });
     if is_release && events[..first].iter().any(is_move) {
         return events.split_off(first);
     }
-    match events[first + 1..].iter().any(|event| is_button(event) || is_move(event)) {
+    let (tabs, rest) = (is_tab(&events[first]), &events[first + 1..]);
+    match rest.iter().any(|event| is_button(event) || if tabs { is_key(event) } else { is_move(event) }) {
         true => events.split_off(first + 1),
         false => Vec::new(),
     }
@@ -24,6 +29,27 @@ pub fn one_at_a_time(events: &mut Vec<Event>, before: Vec<Event>) -> Vec<Event> 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn tab_takes_one_step_a_frame() {
+        let key = |key, pressed| Event::Key {
+            key,
+            physical_key: None,
+            pressed,
+            repeat: false,
+            modifiers: egui::Modifiers::NONE,
+        };
+        let tab = [key(Key::Tab, true), key(Key::Tab, false)];
+        let mut events = [&tab[..], &tab, &[key(Key::Enter, true)]].concat();
+        let mut late = one_at_a_time(&mut events, Vec::new());
+        assert_eq!(events, tab[..1]);
+        for frame in [[&tab[1..], &tab[..1]].concat(), vec![tab[1].clone(), key(Key::Enter, true)]] {
+            let mut events = Vec::new();
+            late = one_at_a_time(&mut events, late);
+            assert_eq!(events, frame);
+        }
+        assert!(late.is_empty());
+    }
 
     #[test]
     fn a_fast_click_lasts_two_frames_and_stays_where_it_is() {

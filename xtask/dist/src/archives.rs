@@ -16,10 +16,11 @@ pub struct Archive {
 }
 
 /// All archives.
-pub const ARCHIVES: [Archive; 3] = [
+pub const ARCHIVES: [Archive; 4] = [
     Archive { kind: "library", fill: library },
     Archive { kind: "openfx", fill: openfx },
     Archive { kind: "program", fill: program },
+    Archive { kind: "card", fill: card },
 ];
 
 impl Archive {
@@ -147,16 +148,30 @@ fn openfx(built: &Built, tree: &mut Tree) -> Result<()> {
 
 /// The program with its library, pages, completions and looks.
 fn program(built: &Built, tree: &mut Tree) -> Result<()> {
-    add_library(tree, &built.root, &built.folder, built.draft)?;
-    let name = format!("isophote{}", std::env::consts::EXE_SUFFIX);
-    let program = built.folder.join(&name);
-    binary::check(&program, None, built.draft)?;
-    tree.add(format!("bin/{name}"), Entry::Program(program.clone()));
+    let program = add_program(built, tree)?;
     documents(&program, tree)?;
     tree.folder("share/isophote/looks", &built.source("host-example/looks"), ".json")?;
     tree.folder("share/isophote/graphs", &built.source("host-example/graphs"), ".json")?;
     tree.text("README.md", include_str!("../files/program.md").replace("@VERSION@", VERSION));
     add_licences(tree, "share/doc/isophote", &built.root, &[LIBRARY, PROGRAM])
+}
+
+/// What measures a graphics card on a machine that has nothing else.
+fn card(built: &Built, tree: &mut Tree) -> Result<()> {
+    add_program(built, tree)?;
+    tree.add("measure.sh", Entry::Script(include_str!("../files/measure.sh").into()));
+    tree.text("README.md", include_str!("../files/card.md").replace("@VERSION@", VERSION));
+    add_licences(tree, "licences", &built.root, &[LIBRARY, PROGRAM])
+}
+
+/// The program and the library that it finds; returns the file that was built.
+fn add_program(built: &Built, tree: &mut Tree) -> Result<PathBuf> {
+    add_library(tree, &built.root, &built.folder, built.draft)?;
+    let name = format!("isophote{}", std::env::consts::EXE_SUFFIX);
+    let program = built.folder.join(&name);
+    binary::check(&program, None, built.draft)?;
+    tree.add(format!("bin/{name}"), Entry::Program(program.clone()));
+    Ok(program)
 }
 
 /// What the program writes about its own command line.
