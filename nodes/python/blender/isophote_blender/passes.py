@@ -1,7 +1,7 @@
 """The passes of a finished render as arrays.
 
 Blender gives the pixels of passes to nobody but its own file writers. So they are written to a file for as long as it takes to
-read it with the OpenImageIO that comes with Blender.
+read it.
 """
 
 import contextlib
@@ -14,6 +14,8 @@ import bpy
 import numpy as np
 
 import isophote
+
+from . import exr
 
 # By the names of Blender 4 and 5.
 _WANTED = {
@@ -64,14 +66,14 @@ def read(scene: bpy.types.Scene, layer: str, colors: str) -> Frame:
         raise NoRender("there is no render yet; render the image first")
     with tempfile.TemporaryDirectory(prefix="isophote-") as folder:
         file = Path(folder) / "passes.exr"
-        _save(scene, image, file, "OPEN_EXR_MULTILAYER", "MULTI_LAYER_IMAGE", "32")
+        _save(scene, image, file, "OPEN_EXR_MULTILAYER", "32")
         found = _layer(file, layer)
         if "color" not in found:
             raise NoRender(f"the render has no pass Combined of the view layer '{layer}'; render the image again")
         color = _rgba(found.pop("color"))
         if colors == "display":
             file = Path(folder) / "display.png"
-            _save(scene, image, file, "PNG", "IMAGE", "16")
+            _save(scene, image, file, "PNG", "16")
             color = _picture(file)
     return Frame(color, _guides(scene, found))
 
@@ -94,26 +96,33 @@ def _guides(scene: bpy.types.Scene, found: dict[str, np.ndarray]) -> dict[str, n
     return guides
 
 
-def _save(scene: bpy.types.Scene, image: bpy.types.Image, file: Path, format: str, media: str, depth: str) -> None:
-    """Writes the render in a format, whatever the scene's own is."""
+def _save(scene: bpy.types.Scene, image: bpy.types.Image, file: Path, format: str, depth: str) -> None:
+    """Writes the render."""
+    try:
+        save(scene, image, file, format, depth, "NONE")
+    except RuntimeError as error:
+        raise NoRender(f"the render cannot be read: {error}; render the image first") from error
+    if not file.exists():
+        raise NoRender("there is no render yet; render the image first")
+
+
+def save(scene: bpy.types.Scene, image: bpy.types.Image, file: Path, format: str, depth: str, codec: str) -> None:
+    """Writes an image as renders are written, in a format, whatever the scene's own is; `codec` is that of EXR files."""
     with _settings(scene.render.image_settings) as settings:
         if hasattr(settings, "media_type"):
-            settings.media_type = media
+            settings.media_type = "MULTI_LAYER_IMAGE" if format == "OPEN_EXR_MULTILAYER" else "IMAGE"
         settings.file_format = format
         settings.color_mode = "RGBA"
         settings.color_depth = depth
-        try:
-            image.save_render(str(file), scene=scene)
-        except RuntimeError as error:
-            raise NoRender(f"the render cannot be read: {error}; render the image first") from error
-    if not file.exists():
-        raise NoRender("there is no render yet; render the image first")
+        if "EXR" in format:
+            settings.exr_codec = codec
+        image.save_render(str(file), scene=scene)
 
 
 @contextlib.contextmanager
 def _settings(settings: bpy.types.ImageFormatSettings) -> Iterator[bpy.types.ImageFormatSettings]:
     """The settings, which are afterwards as before. Each allows only some values of those after it."""
-    names = ("media_type", "file_format", "color_mode", "color_depth")
+    names = ("media_type", "file_format", "color_mode", "color_depth", "exr_codec")
     before = {name: getattr(settings, name) for name in names if hasattr(settings, name)}
     try:
         yield settings
@@ -123,30 +132,27 @@ def _settings(settings: bpy.types.ImageFormatSettings) -> Iterator[bpy.types.Ima
 
 
 def _layer(file: Path, layer: str) -> dict[str, np.ndarray]:
-    """The wanted passes of a layer in an EXR file, which has all in one part or each in its own."""
-    import OpenImageIO as oiio
+    """The wanted passes of a layer in an EXR file."""
+    try:
+        channels = exr.read(file)
+    except exr.Unreadable as error:
+        raise NoRender(f"the render's passes cannot be read: {error}") from error
+    passes: dict[str, dict[str, np.ndarray]] = {}
+    for name, pixels in channels.items():
+        layer_name, _, pass_name = name.rpartition(".")[0].rpartition(".")
+        # What the compositor made is the picture.
+        is_composite = (layer_name, pass_name) == ("Composite", "Combined")
+        if is_composite or (layer_name == layer and pass_name in _WANTED):
+            found = "composite" if is_composite else _WANTED[pass_name]
+            passes.setdefault(found, {})[name.rpartition(".")[2]] = pixels
+    if "composite" in passes:
+        passes["color"] = passes.pop("composite")
+    return {name: np.dstack([parts[of] for of in _ordered(parts)]) for name, parts in passes.items()}
 
-    source = oiio.ImageInput.open(str(file))
-    if source is None:
-        raise NoRender(f"the render's passes cannot be read: {oiio.geterror()}")
-    found = {}
-    part = 0
-    while source.seek_subimage(part, 0):
-        channels: dict[str, list[int]] = {}
-        for place, name in enumerate(source.spec().channelnames):
-            of, _, rest = name.rpartition(".")[0].rpartition(".")
-            # What the compositor made is the picture.
-            is_composite = of == "Composite" and rest == "Combined"
-            if (of == layer or is_composite) and rest in _WANTED:
-                channels.setdefault("composite" if is_composite else _WANTED[rest], []).append(place)
-        if channels:
-            pixels = source.read_image(part, 0, 0, source.spec().nchannels, oiio.FLOAT)
-            found.update((name, pixels[..., places]) for name, places in channels.items())
-        part += 1
-    source.close()
-    if "composite" in found:
-        found["color"] = found.pop("composite")
-    return found
+
+def _ordered(parts: dict[str, np.ndarray]) -> list[str]:
+    """Components in the order that they are meant in; files have them in that of the alphabet."""
+    return sorted(parts, key="RGBAXYZW".index)
 
 
 def _rgba(pixels: np.ndarray) -> np.ndarray:
@@ -157,14 +163,14 @@ def _rgba(pixels: np.ndarray) -> np.ndarray:
 
 
 def _picture(file: Path) -> np.ndarray:
-    """A picture of 16 bits with straight alpha."""
-    import OpenImageIO as oiio
-
-    wish = oiio.ImageSpec()
-    wish.attribute("oiio:UnassociatedAlpha", 1)
-    source = oiio.ImageInput.open(str(file), wish)
-    if source is None:
-        raise NoRender(f"the render cannot be read: {oiio.geterror()}")
-    pixels = source.read_image(oiio.UINT16)
-    source.close()
-    return pixels
+    """A picture as it is stored, with straight alpha."""
+    image = bpy.data.images.load(str(file), check_existing=False)
+    try:
+        image.colorspace_settings.name = "Non-Color"
+        image.alpha_mode = "CHANNEL_PACKED"
+        pixels = np.empty(len(image.pixels), np.float32)
+        image.pixels.foreach_get(pixels)
+        width, height = image.size
+    finally:
+        bpy.data.images.remove(image)
+    return pixels.reshape(height, width, 4)[::-1]

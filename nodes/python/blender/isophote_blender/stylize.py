@@ -86,7 +86,8 @@ def animation(context: bpy.types.Context) -> Iterator[tuple[int, int, Path]]:
                 style.set(name, value)
             result = _canvas(rendered[number])
             sequence.frame(number, out=result[::-1])
-            file = _write(_image(result, settings), settings, number)
+            _image(result, settings)
+            file = _write(result, scene, number)
             for old in [old for old in rendered if old < number - style.frames[0]]:
                 del rendered[old]
             yield done + 1, len(numbers), file
@@ -113,20 +114,37 @@ def _image(pixels: np.ndarray, settings: ISOPHOTE_PG_settings) -> bpy.types.Imag
             bpy.data.images.remove(image)
             new.name = IMAGE
         image = new
+    _fill(image, pixels, is_linear)
+    return image
+
+
+def _fill(image: bpy.types.Image, pixels: np.ndarray, is_linear: bool) -> None:
+    """Gives an image pixels, and says what they mean."""
     image.colorspace_settings.name = "Linear Rec.709" if is_linear else "sRGB"
     image.alpha_mode = "PREMUL" if is_linear else "STRAIGHT"
     image.pixels.foreach_set(pixels.ravel())
     image.update()
-    return image
 
 
-def _write(image: bpy.types.Image, settings: ISOPHOTE_PG_settings, number: int) -> Path:
-    """Writes the image as the file of a frame."""
-    is_linear = settings.colors == "linear"
-    file = path(settings.output, number, ".exr" if is_linear else ".png")
+def _write(pixels: np.ndarray, scene: bpy.types.Scene, number: int) -> Path:
+    """Writes pixels as the file of a frame."""
+    is_linear = scene.isophote.colors == "linear"
+    file = path(scene.isophote.output, number, ".exr" if is_linear else ".png")
     file.parent.mkdir(parents=True, exist_ok=True)
-    image.file_format = "OPEN_EXR" if is_linear else "PNG"
-    image.save(filepath=str(file), save_copy=True)
+    height, width = pixels.shape[:2]
+    # An image that is saved becomes that of its file.
+    image = bpy.data.images.new(file.name, width, height, alpha=True, float_buffer=is_linear)
+    try:
+        _fill(image, pixels, is_linear)
+        if is_linear:
+            passes.save(scene, image, file, "OPEN_EXR", "16", "ZIP")
+        else:
+            # As it is: the colours have gone through the view transform.
+            image.file_format = "PNG"
+            image.filepath_raw = str(file)
+            image.save()
+    finally:
+        bpy.data.images.remove(image)
     return file
 
 

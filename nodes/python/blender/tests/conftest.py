@@ -20,8 +20,6 @@ def _install() -> ModuleType:
     assert packed and Path(resources).is_dir(), "run the tests by `cargo xtask test python`"
     import bpy
 
-    # The program has the modules that come with Blender on its path, and this module has not.
-    sys.path.append(str(next(Path(bpy.utils.resource_path("LOCAL")).glob("python/lib/python3.*/site-packages"))))
     install = bpy.ops.extensions.package_install_files
     assert install(filepath=packed, repo="user_default", enable_on_install=True, overwrite=True) == {"FINISHED"}
     return sys.modules[_MODULE]

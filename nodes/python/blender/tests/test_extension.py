@@ -139,11 +139,14 @@ def test_a_still_comes_back_as_an_image(scene: Any, extension: ModuleType, color
     assert np.array_equal(shown(), result)
 
 
-def test_an_animation_is_written_frame_by_frame(scene: Any, extension: ModuleType, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("colors", "ending"), [("linear", ".exr"), ("display", ".png")])
+def test_an_animation_is_written_frame_by_frame(
+    scene: Any, extension: ModuleType, tmp_path: Path, colors: str, ending: str
+) -> None:
     settings = scene.isophote
     scene.frame_start, scene.frame_end = 3, 6
     scene.frame_set(8)
-    settings.colors, settings.output = "linear", str(tmp_path / "shot/####")
+    settings.colors, settings.output = colors, str(tmp_path / "shot/####")
     settings.params_cartoon.steadiness = 1
     settings.params_cartoon.posterize = 4
     settings.params_cartoon.keyframe_insert("posterize", frame=3)
@@ -152,26 +155,28 @@ def test_an_animation_is_written_frame_by_frame(scene: Any, extension: ModuleTyp
     assert bpy.ops.isophote.stylize_animation() == {"FINISHED"}
     assert scene.frame_current == 8
     files = sorted(file.name for file in (tmp_path / "shot").iterdir())
-    assert files == ["0003.exr", "0004.exr", "0005.exr", "0006.exr"]
+    assert files == [f"{number:04}{ending}" for number in range(3, 7)]
+    assert not [image.name for image in bpy.data.images if image.name.endswith(ending)]
     frames, chosen = {}, {}
     for number in range(3, 7):
         scene.frame_set(number)
         bpy.ops.render.render()
-        frames[number] = extension.passes.read(scene, "ViewLayer", "linear")
+        frames[number] = extension.passes.read(scene, "ViewLayer", colors)
         chosen[number] = extension.settings.values(settings)
     assert {chosen[n]["posterize"] for n in (3, 6)} == {4, 10}
     source = {"color": {n: frame.color for n, frame in frames.items()}}
     source.update((name, {n: frame.guides[name] for n, frame in frames.items()}) for name in frames[3].guides)
-    space = {"color_space": "linear", "alpha_mode": "premultiplied"}
+    linear = {"color_space": "linear", "alpha_mode": "premultiplied"}
+    space, tolerance = (linear, 2e-3) if colors == "linear" else ({}, 0.6 / 255)
     for number in (3, 5):
         style = isophote.Style("cartoon", **chosen[number])
         expected = isophote.Sequence(style, source, **space).frame(number)
-        written = bpy.data.images.load(str(tmp_path / f"shot/{number:04}.exr"))
+        written = bpy.data.images.load(str(tmp_path / f"shot/{number:04}{ending}"))
         pixels = np.empty(len(written.pixels), np.float32)
         written.pixels.foreach_get(pixels)
-        assert np.abs(pixels.reshape(expected.shape)[::-1] - expected).max() < 2e-3
+        assert np.abs(pixels.reshape(expected.shape)[::-1] - expected).max() < tolerance
         alone = isophote.apply(style, frames[number].color, frame=number, **space)
-        assert not np.allclose(alone, expected, atol=2e-3), "neighbours count"
+        assert not np.allclose(alone, expected, atol=tolerance), "neighbours count"
 
 
 def test_mistakes_are_told(scene: Any, extension: ModuleType, tmp_path: Path) -> None:
@@ -188,3 +193,29 @@ def test_mistakes_are_told(scene: Any, extension: ModuleType, tmp_path: Path) ->
         bpy.ops.isophote.stylize_animation()
     assert extension.stylize.path("/a/b", 7, ".png") == Path("/a/b0007.png")
     assert extension.stylize.path("/a/##.PNG", 123, ".png") == Path("/a/123.PNG")
+
+
+def test_what_the_compositor_makes_is_the_picture(scene: Any, extension: ModuleType) -> None:
+    bpy.ops.render.render()
+    plain = {colors: extension.passes.read(scene, "ViewLayer", colors) for colors in ("display", "linear")}
+    if hasattr(scene, "compositing_node_group"):
+        tree = bpy.data.node_groups.new("compositing", "CompositorNodeTree")
+        tree.interface.new_socket(name="Image", in_out="OUTPUT", socket_type="NodeSocketColor")
+        scene.compositing_node_group = tree
+        end = tree.nodes.new("NodeGroupOutput")
+    else:
+        scene.use_nodes = True
+        tree = scene.node_tree
+        tree.nodes.clear()
+        end = tree.nodes.new("CompositorNodeComposite")
+    layers, invert = tree.nodes.new("CompositorNodeRLayers"), tree.nodes.new("CompositorNodeInvert")
+    layers.scene = scene
+    tree.links.new(layers.outputs["Image"], invert.inputs["Color"])
+    tree.links.new(invert.outputs[0], end.inputs[0])
+    bpy.ops.render.render()
+    made = extension.passes.read(scene, "ViewLayer", "linear")
+    assert np.allclose(made.color[..., :3], 1 - plain["linear"].color[..., :3], atol=1e-3)
+    assert all(np.array_equal(made.guides[name], guide) for name, guide in plain["linear"].guides.items())
+    display = extension.passes.read(scene, "ViewLayer", "display").color
+    dark = plain["display"].color[..., 0] < 0.15
+    assert dark.any() and (display[dark][:, 0] > 0.6).all()
