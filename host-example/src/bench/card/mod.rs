@@ -2,17 +2,15 @@
 //! in JSON for programs. It needs nothing but the program and the library.
 
 mod copy;
+mod found;
 mod report;
 mod twins;
 
 use std::path::Path;
 
-use serde::Serialize;
-
-use self::twins::Twin;
-use super::entry::Entry;
+use self::found::{Card, Compiled, Loop, Sequence};
 use super::gpu::Bench;
-use super::throughput::{self, Throughput};
+use super::throughput;
 use super::{Subject, median, picture};
 use crate::apply::backend::Backend;
 use crate::apply::filter::{Filter, Look, Planner};
@@ -46,57 +44,6 @@ pub struct Options<'a> {
     pub seconds: f64,
     /// Frames of a sequence.
     pub frames: u32,
-}
-
-/// All that was measured.
-#[derive(Debug, Default, Serialize)]
-struct Card {
-    version: String,
-    adapter: String,
-    driver: String,
-    kind: String,
-    backend: String,
-    system: String,
-    threads: usize,
-    /// Bytes read and written per second by a copy on the card.
-    copied: f64,
-    twins: Vec<Twin>,
-    compiled: Vec<Compiled>,
-    #[serde(skip)]
-    entries: Vec<(Precision, Entry)>,
-    loops: Vec<Loop>,
-    sequences: Vec<Sequence>,
-    /// What could not be measured, and why.
-    problems: Vec<String>,
-}
-
-/// What compiling all shaders of a node takes, in the driver's compiler included; drivers may remember shaders from run to run.
-#[derive(Debug, Serialize)]
-struct Compiled {
-    node: String,
-    precision: &'static str,
-    seconds: f64,
-}
-
-/// A style on the same picture again and again.
-#[derive(Debug, Serialize)]
-struct Loop {
-    node: &'static str,
-    precision: &'static str,
-    size: (u32, u32),
-    frames: usize,
-    median_seconds: f64,
-    /// What 99 of 100 frames do not exceed.
-    most_seconds: f64,
-}
-
-/// A sequence of EXR frames from file to file.
-#[derive(Debug, Serialize)]
-struct Sequence {
-    node: &'static str,
-    precision: &'static str,
-    size: (u32, u32),
-    measured: Throughput,
 }
 
 /// Measures everything and writes the reports. What cannot be measured is told there, and the rest goes on.

@@ -6,10 +6,12 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::{Card, Entry, Precision};
+use super::found::Card;
+use crate::bench::entry::Entry;
 use crate::error::{Error, Result};
 use crate::files;
 use crate::output;
+use crate::stylize::precision::Precision;
 
 /// Names of the reports.
 const NAMES: [&str; 2] = ["card.md", "card.json"];

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::Subject;
+use crate::bench::Subject;
 use crate::error::Result;
 use crate::loader::device::Device;
 use crate::loader::{Control, Input, Library, Refusal};

@@ -171,7 +171,8 @@ impl Around {
         for (at, channel) in self.channels.iter_mut().enumerate() {
             channel.clear();
             // Beyond the picture lies its edge; beyond the window nothing that is needed.
-            let rows = || near.iter().zip(far).skip(at).step_by(4).map(|(near, far)| near + (far - near) * 0.25);
+            let rows =
+                || near.iter().zip(far).skip(at).step_by(4).map(|(near, far)| near + (far - near) * 0.25);
             channel.extend(rows().next());
             channel.extend(rows());
             channel.extend(rows().next_back());

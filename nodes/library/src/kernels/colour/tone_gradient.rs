@@ -39,15 +39,21 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let mut y = window.y0;
     while y < window.y1 {
         let rows = Rect { y0: y, y1: window.y1.min(y + ROWS), ..window };
-        let children =
-            Rect { x0: 2 * rows.x0, y0: 2 * rows.y0, x1: width.min(2 * rows.x1), y1: height.min(2 * rows.y1) };
+        let children = Rect {
+            x0: 2 * rows.x0,
+            y0: 2 * rows.y0,
+            x1: width.min(2 * rows.x1),
+            y1: height.min(2 * rows.y1),
+        };
         gradients.resize(4 * children.area() as usize, 0.0);
         let mut of_pixels = Band { window: children, full: [width, height], outputs: vec![&mut gradients] };
         dispatch!(pass.level, simd => differences(simd, &params, &pass.inputs[0], &mut of_pixels));
         let stride = 4 * children.width() as usize;
         let mut pairs = gradients.chunks(2 * stride);
         for y in rows.y0..rows.y1 {
-            let Some((upper, lower)) = pairs.next().and_then(|pair| pair.split_at_checked(stride)) else { break };
+            let Some((upper, lower)) = pairs.next().and_then(|pair| pair.split_at_checked(stride)) else {
+                break;
+            };
             means(upper, lower, band.row_mut(0, y));
         }
         y = rows.y1;
@@ -71,17 +77,23 @@ fn means(upper: &[f32], lower: &[f32], target: &mut [f32]) {
 /// The gradients of single pixels, shortened.
 #[inline(always)]
 fn differences<S: Simd>(simd: S, params: &Params, view: &View<'_>, band: &mut Band<'_>) {
-    each(simd, view, band, #[inline(always)] |around: Neighbours<'_, S>| {
-        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        let (left_up, left_down) = (around.excess(-1, -1, 0), around.excess(-1, 1, 0));
-        let (right_up, right_down) = (around.excess(1, -1, 0), around.excess(1, 1, 0));
-        let x = (around.excess(1, 0, 0) - around.excess(-1, 0, 0)) * 0.25
-            + ((right_up - left_up) + (right_down - left_down)) * 0.125;
-        let y = (around.excess(0, 1, 0) - around.excess(0, -1, 0)) * 0.25
-            + ((left_down - left_up) + (right_down - right_up)) * 0.125;
-        let length = (x * x + y * y).sqrt().max(1e-6);
-        let share = (one * params.longest / length).min(one);
-        let shorter = share * share * around.centre(3);
-        [x * shorter, y * shorter, zero, one]
-    });
+    each(
+        simd,
+        view,
+        band,
+        #[inline(always)]
+        |around: Neighbours<'_, S>| {
+            let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+            let (left_up, left_down) = (around.excess(-1, -1, 0), around.excess(-1, 1, 0));
+            let (right_up, right_down) = (around.excess(1, -1, 0), around.excess(1, 1, 0));
+            let x = (around.excess(1, 0, 0) - around.excess(-1, 0, 0)) * 0.25
+                + ((right_up - left_up) + (right_down - left_down)) * 0.125;
+            let y = (around.excess(0, 1, 0) - around.excess(0, -1, 0)) * 0.25
+                + ((left_down - left_up) + (right_down - right_up)) * 0.125;
+            let length = (x * x + y * y).sqrt().max(1e-6);
+            let share = (one * params.longest / length).min(one);
+            let shorter = share * share * around.centre(3);
+            [x * shorter, y * shorter, zero, one]
+        },
+    );
 }

@@ -79,7 +79,8 @@ pub(crate) fn flattened(scope: &mut Scope<'_>, lab: ImageId, bins: i32, phi_q: f
     let steps = (least > 0.0).then(|| {
         let gradient = tone_gradient::pass(scope.plan, lab, LONGEST / scale);
         // It lies one level up.
-        let surroundings = gaussian_blur::pass(scope.plan, gradient, 0.5 * SURROUNDINGS * scale, Class::Colour);
+        let surroundings =
+            gaussian_blur::pass(scope.plan, gradient, 0.5 * SURROUNDINGS * scale, Class::Colour);
         Steps { surroundings, least: least / scale }
     });
     quantize_luminance::pass_where(scope.plan, lab, bins, steepness, steps)
