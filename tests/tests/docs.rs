@@ -7,6 +7,7 @@ use isophote::registry;
 use isophote_tests::library;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::{Mutex, PoisonError};
 use tempfile::TempDir;
 
 /// The folder of the build under test.
@@ -14,8 +15,10 @@ fn built() -> &'static Path {
     library::path().parent().unwrap()
 }
 
-/// The chores' program makes the site.
+/// The chores' program makes the site. One at a time, since all of them write the same demo scene.
 fn docs(out: &Path, more: &[&str]) -> Output {
+    static TURN: Mutex<()> = Mutex::new(());
+    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let mut docs = Command::new(built().join("xtask"));
     docs.arg("docs").arg("--out").arg(out).args(["--size", "96x64"]).args(more);
     docs.env("CARGO_TARGET_DIR", built().parent().unwrap()).current_dir(library::root());
