@@ -109,7 +109,9 @@ def test_objects_at_work_refuse_calls_from_within(scene: np.ndarray) -> None:
 
 
 ENDLESS = """
-import sys, numpy as np, isophote
+import signal, sys, numpy as np, isophote
+# Programs that are started in the background ignore it otherwise.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 image = np.random.default_rng(1).random((3000, 3000, 3), np.float32)
 isophote.apply("coherent", image, progress=lambda done: print(done, flush=True))
 print("done")
