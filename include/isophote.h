@@ -315,6 +315,8 @@ extern "C" {
 #define ISOPHOTE_PRECISION_EXACT 0
 
 // Colours are kept in 16-bit floats, those of outputs too: half the bytes, and eleven bits for each value up to 65504.
+// The rows and columns of windows of up to 17 pixels are one pass: a parameter by which one outgrows that changes the
+// structure of a plan.
 #define ISOPHOTE_PRECISION_HALF 1
 
 // As half; besides, shaders interpolate colours by a sampler. Its textures are those of the plan with the format

@@ -8,6 +8,8 @@ pub type IsophotePrecision = u32;
 /// Every texture holds 32-bit floats, as the CPU does.
 pub const ISOPHOTE_PRECISION_EXACT: u32 = 0;
 /// Colours are kept in 16-bit floats, those of outputs too: half the bytes, and eleven bits for each value up to 65504.
+/// The rows and columns of windows of up to 17 pixels are one pass: a parameter by which one outgrows that changes the
+/// structure of a plan.
 pub const ISOPHOTE_PRECISION_HALF: u32 = 1;
 /// As half; besides, shaders interpolate colours by a sampler. Its textures are those of the plan with the format
 /// `ISOPHOTE_FORMAT_RGBA16F`; what a host binds in the place of such an input must have a format that its device filters.

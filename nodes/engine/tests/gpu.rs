@@ -131,6 +131,9 @@ fn much_work_is_cut() {
     let (tiles, many) = submissions(0.3 * most);
     assert!(many > several, "{many}");
     assert_eq!(tiles, whole);
+    // No tile is so little work: it is done all the same.
+    let (tiles, _) = submissions(1.0);
+    assert_eq!(tiles, whole);
 }
 
 #[test]

@@ -64,7 +64,8 @@ impl Executor {
     }
 
     /// Sets how much [`Executor::run_images`] gives the device to do at once: operations (fused multiply-adds, or others of
-    /// like cost) of a dispatch, above which a picture is cut into tiles, and of a submission.
+    /// like cost) of a dispatch, above which a picture is cut into tiles as long as that does not double the work, and of a
+    /// submission.
     pub fn set_work(&mut self, operations: f64) {
         self.work = operations;
     }

@@ -17,6 +17,10 @@ use std::collections::VecDeque;
 /// The smallest tile side worth computing; below it the halo would be nearly everything.
 const LEAST_TILE: u32 = 32;
 
+/// How many times the work of the whole picture tiles may be, where they are made smaller only to be less work each: what lies
+/// around them is computed anew for each.
+const MOST_WORK: f64 = 2.0;
+
 /// Tiles that are on their way at once: one that the device computes, and one that goes there or comes back.
 const IN_FLIGHT: usize = 2;
 
@@ -97,7 +101,8 @@ impl Executor {
         Ok(results)
     }
 
-    /// The tiles of `region`: one if it fits, else as few as the limits allow.
+    /// The tiles of `region`: one if it fits, else as few as the limits allow. That of the work of a dispatch gives way where
+    /// smaller tiles would make too much of it in all.
     fn cut(&self, plan: &Plan, region: Rect) -> Result<Vec<Tile>> {
         let whole = Program::lower_as(plan, region, self.precision)?;
         let side = whole.textures.iter().map(|t| t.window.width().max(t.window.height())).max().unwrap_or(0);
@@ -109,14 +114,21 @@ impl Executor {
                 self.max_side
             )));
         }
-        if global || self.allows(plan, &whole, region, 1) {
-            return Ok(vec![Tile { region, program: whole }]);
+        let fits = global || self.allows(plan, &whole, region, 1);
+        let work: f64 = whole.operations(plan).sum();
+        let is_little = self.is_little(plan, &whole);
+        let mut best = fits.then(|| vec![Tile { region, program: whole }]);
+        if let Some(tiles) = best.take_if(|_| global || is_little) {
+            return Ok(tiles);
         }
         let mut size = [region.width(), region.height()];
         loop {
             let longer = usize::from(size[1] > size[0]);
             size[longer] = size[longer].div_ceil(2).next_multiple_of(WORKGROUP);
             if size[longer] < LEAST_TILE {
+                if let Some(tiles) = best {
+                    return Ok(tiles);
+                }
                 let memory = match self.budget {
                     u64::MAX => String::new(),
                     budget => format!(" and {} MiB", budget >> 20),
@@ -127,9 +139,15 @@ impl Executor {
                     self.max_side
                 )));
             }
-            if let Some(tiles) = self.tiles_of(plan, region, size)? {
+            let Some(tiles) = self.tiles_of(plan, region, size)? else { continue };
+            let together: f64 = tiles.iter().flat_map(|tile| tile.program.operations(plan)).sum();
+            if let Some(best) = best.take_if(|_| together > MOST_WORK * work) {
+                return Ok(best);
+            }
+            if tiles.iter().all(|tile| self.is_little(plan, &tile.program)) {
                 return Ok(tiles);
             }
+            best = Some(tiles);
         }
     }
 
@@ -163,9 +181,13 @@ impl Executor {
         let largest = self.device.raw().limits().max_buffer_size;
         program.textures.iter().all(fits_side)
             && textures + in_flight * (staged + readback) <= self.budget
-            && program.operations(plan).all(|operations| operations <= self.work)
             && staged <= largest
             && readback <= largest
+    }
+
+    /// Whether no dispatch is more work than one should be.
+    fn is_little(&self, plan: &Plan, program: &Program) -> bool {
+        program.operations(plan).all(|operations| operations <= self.work)
     }
 
     /// Uploads what a tile needs and submits its dispatches, in several submissions if they are much work.
