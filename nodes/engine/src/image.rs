@@ -100,11 +100,44 @@ pub struct Image {
     data: Vec<f32>,
 }
 
+/// What the CPU executor does with the memory of images.
+#[cfg(feature = "cpu")]
 impl Image {
     /// An image without pixels, for places that must hold one.
     pub(crate) const EMPTY: Self =
         Self { window: Rect { x0: 0, y0: 0, x1: 0, y1: 0 }, channels: 1, data: Vec::new() };
 
+    /// Turns this image into one of another shape, keeping its memory where that is enough. Values are
+    /// unspecified.
+    ///
+    /// # Errors
+    /// [`Error::Memory`] when there is not enough; the image has then no pixel.
+    pub(crate) fn reshape(&mut self, window: Rect, channels: u32) -> Result<()> {
+        let len = window.width() as usize * window.height() as usize * channels as usize;
+        let mut data = std::mem::take(self).data;
+        if data.capacity() >= len {
+            data.resize(len, 0.0);
+        } else {
+            drop(data);
+            data = memory::zeroed(len)?;
+        }
+        *self = Self { window, channels, data };
+        Ok(())
+    }
+
+    /// Lets go of the rows before `y0` and makes room for as many below: the memory stays the same, and the
+    /// rows from `y0` to `y1` keep their values.
+    pub(crate) fn slide(&mut self, y0: i32, y1: i32) {
+        let stride = self.stride();
+        let at = |y: i32| (y - self.window.y0) as usize * stride;
+        let kept = at(y0)..at(y1);
+        self.data.copy_within(kept, 0);
+        let height = self.window.height() as i32;
+        self.window = Rect { y0, y1: y0 + height, ..self.window };
+    }
+}
+
+impl Image {
     /// A picture of `width` x `height` pixels, all zero.
     ///
     /// # Errors
@@ -142,35 +175,6 @@ impl Image {
             )));
         }
         Ok(Self { window: Rect::of_size(width, height), channels, data })
-    }
-
-    /// Turns this image into one of another shape, keeping its memory where that is enough. Values are
-    /// unspecified.
-    ///
-    /// # Errors
-    /// [`Error::Memory`] when there is not enough; the image has then no pixel.
-    pub(crate) fn reshape(&mut self, window: Rect, channels: u32) -> Result<()> {
-        let len = window.width() as usize * window.height() as usize * channels as usize;
-        let mut data = std::mem::take(self).data;
-        if data.capacity() >= len {
-            data.resize(len, 0.0);
-        } else {
-            drop(data);
-            data = memory::zeroed(len)?;
-        }
-        *self = Self { window, channels, data };
-        Ok(())
-    }
-
-    /// Lets go of the rows before `y0` and makes room for as many below: the memory stays the same, and the
-    /// rows from `y0` to `y1` keep their values.
-    pub(crate) fn slide(&mut self, y0: i32, y1: i32) {
-        let stride = self.stride();
-        let at = |y: i32| (y - self.window.y0) as usize * stride;
-        let kept = at(y0)..at(y1);
-        self.data.copy_within(kept, 0);
-        let height = self.window.height() as i32;
-        self.window = Rect { y0, y1: y0 + height, ..self.window };
     }
 
     /// The part of the picture that is held.
@@ -285,6 +289,7 @@ impl<'a> View<'a> {
     }
 
     /// The same of the rows of `image` down to `y1`, exclusive.
+    #[cfg(feature = "cpu")]
     pub(crate) fn down_to(image: &'a Image, full: [i32; 2], y1: i32) -> Self {
         let window = Rect { y1: y1.min(image.window.y1), ..image.window };
         let len = window.height() as usize * image.stride();

@@ -39,6 +39,7 @@ pub struct Kernel {
     /// How its rows and columns run in one dispatch, if it sums windows along one axis.
     pub pair: Option<Pair>,
     /// The CPU twin: fills one band of the outputs.
+    #[cfg(feature = "cpu")]
     pub cpu: fn(&CpuPass<'_>, &mut Band<'_>),
     /// Fused multiply-adds (or operations of like cost) per output pixel, for benchmarks.
     pub cost: fn(&[u8]) -> f64,

@@ -4,6 +4,7 @@
 //! threads; [`program::Program`] is the same plan lowered to textures and dispatches for any
 //! graphics API, and [`gpu`] runs that with wgpu.
 
+#[cfg(feature = "cpu")]
 pub mod cpu;
 pub mod dispatch;
 pub mod error;

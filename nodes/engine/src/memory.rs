@@ -3,13 +3,16 @@
 
 use crate::error::{Error, Result};
 use bytemuck::Zeroable;
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::panic::resume_unwind;
+#[cfg(feature = "cpu")]
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Bytes that must be there beside what is asked for here: small allocations elsewhere cannot fail, and are to find
 /// some. An allocator that keeps a reserve for them refuses this much when it has none.
 const SPARE: usize = 4 << 20;
 
 /// What unwinds when a kernel is refused so many bytes.
+#[cfg_attr(not(feature = "cpu"), expect(dead_code, reason = "the CPU executor alone reads it"))]
 struct Refused(usize);
 
 /// So many zeros, on pages that the system gives when they are first touched.
@@ -48,6 +51,7 @@ pub fn resize<T: Clone>(values: &mut Vec<T>, len: usize, value: T) {
 ///
 /// # Errors
 /// [`Error::Memory`] when it did.
+#[cfg(feature = "cpu")]
 pub(crate) fn caught(kernel: impl FnOnce()) -> Result<()> {
     // The outputs of a kernel that was refused memory are dropped.
     catch_unwind(AssertUnwindSafe(kernel)).or_else(|payload| match payload.downcast::<Refused>() {

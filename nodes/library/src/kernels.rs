@@ -52,6 +52,10 @@ macro_rules! kernel {
         Some($pair)
     };
     (@ $kernel:ident, $cpu:expr, $cost:expr, $tolerance:expr, $fast:expr, $pair:expr) => {
+        /// Planners leave the twin out, and still check it.
+        #[cfg(not(feature = "cpu"))]
+        const _: fn(&isophote_engine::CpuPass<'_>, &mut isophote_engine::Band<'_>) = $cpu;
+
         /// The kernel, for plans.
         pub static KERNEL: isophote_engine::Kernel = isophote_engine::Kernel {
             name: stringify!($kernel),
@@ -61,6 +65,7 @@ macro_rules! kernel {
             params_size: $crate::kernels::shaders::$kernel::PARAMS_SIZE,
             parts: $crate::kernels::shaders::$kernel::PARTS,
             pair: $pair,
+            #[cfg(feature = "cpu")]
             cpu: $cpu,
             cost: $cost,
             tolerance: $tolerance,

@@ -16,7 +16,6 @@ pub mod graph;
 pub mod guard;
 pub mod handles;
 pub mod images;
-pub mod lowered;
 pub mod objects;
 pub mod plan;
 pub mod precision;

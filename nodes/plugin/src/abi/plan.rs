@@ -5,13 +5,13 @@ use super::contract::*;
 use super::failure::{Failure, Outcome};
 use super::guard::{self, lock};
 use super::handles::{Object, Slots};
-use super::lowered::Lowered;
 use super::objects::GraphObject;
 use super::request;
 use super::shader;
 use isophote::engine::program::{Dispatch, Format, Program, Role, Texture};
 use isophote::engine::{Class, Rect};
-use isophote::{Graph, Request};
+use isophote::request::Change;
+use isophote::{Graph, Lowered, Request};
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
 use std::ptr::null;
@@ -58,10 +58,18 @@ struct State {
 impl State {
     fn update(&mut self, graph: Graph, request: Option<Request>) -> Outcome<IsophoteChange> {
         let change = self.lowered.update(graph, request)?;
-        if change == ISOPHOTE_CHANGE_STRUCTURE {
+        if change == Change::Structure {
             self.shown = Shown::new(self.lowered.program());
         }
-        Ok(change)
+        Ok(change_number(change))
+    }
+}
+
+/// What a change is in the C interface.
+pub fn change_number(change: Change) -> IsophoteChange {
+    match change {
+        Change::Uniforms => ISOPHOTE_CHANGE_UNIFORMS,
+        Change::Structure => ISOPHOTE_CHANGE_STRUCTURE,
     }
 }
 

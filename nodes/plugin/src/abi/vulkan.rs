@@ -18,6 +18,7 @@ use super::failure::{Failure, Outcome};
 use super::guard::{self, lock};
 use super::handles::{Object, Slots};
 use super::objects::GraphObject;
+use super::plan;
 use super::request;
 use ash::vk::{self, Handle};
 use context::Context;
@@ -214,7 +215,7 @@ unsafe extern "C" fn effect_update(
         };
         let found = object.with(|effect| effect.update(graph, request))?;
         // SAFETY: the host promised that the place may be written.
-        unsafe { args::put(change, found, "the place for the change") }
+        unsafe { args::put(change, plan::change_number(found), "the place for the change") }
     })
 }
 

@@ -7,10 +7,10 @@ use super::passes::{Passes, Port};
 use super::record::Recorder;
 use crate::abi::contract::*;
 use crate::abi::failure::{Failure, Outcome};
-use crate::abi::lowered::Lowered;
 use ash::vk;
 use isophote::engine::Rect;
-use isophote::{Graph, Request};
+use isophote::request::Change;
+use isophote::{Graph, Lowered, Request};
 use std::sync::Arc;
 
 /// A graph with all that it needs on the device.
@@ -38,18 +38,18 @@ impl Effect {
     ///
     /// # Errors
     /// As [`Effect::new`]; the effect is then as it was.
-    pub fn update(&mut self, graph: Graph, request: Option<Request>) -> Outcome<IsophoteChange> {
+    pub fn update(&mut self, graph: Graph, request: Option<Request>) -> Outcome<Change> {
         self.context.advance()?;
         let size = |r: &Request| [r.width, r.height];
         if let Some(request) = request.filter(|r| size(r) != size(self.lowered.request())) {
             let lowered = lowered(graph, request)?;
             self.put(Passes::new(&self.context, lowered.program())?);
             self.lowered = lowered;
-            return Ok(ISOPHOTE_CHANGE_STRUCTURE);
+            return Ok(Change::Structure);
         }
         let (last_graph, last_request) = (self.lowered.graph().clone(), *self.lowered.request());
         let change = self.lowered.update(graph, request)?;
-        if change == ISOPHOTE_CHANGE_UNIFORMS {
+        if change == Change::Uniforms {
             self.passes.repack(self.lowered.program());
             return Ok(change);
         }
@@ -145,5 +145,5 @@ impl Effect {
 fn lowered(graph: Graph, request: Request) -> Outcome<Lowered> {
     // Refused before the region of an impossible size is made.
     isophote::engine::image::check_size(request.width, request.height)?;
-    Lowered::new(graph, request, Rect::of_size(request.width, request.height))
+    Ok(Lowered::new(graph, request, Rect::of_size(request.width, request.height))?)
 }

@@ -1,11 +1,10 @@
 //! A graph lowered to a program for one region, and kept up to date with the graph.
 
-use super::contract::*;
-use super::failure::Outcome;
-use isophote::engine::Rect;
-use isophote::engine::program::Program;
-use isophote::request::Change;
-use isophote::{Graph, Planned, Request};
+use crate::error::Result;
+use crate::graph::Graph;
+use crate::request::{Change, Planned, Request};
+use isophote_engine::Rect;
+use isophote_engine::program::Program;
 
 /// The program of a graph, with what it was made from.
 #[derive(Debug)]
@@ -22,7 +21,7 @@ impl Lowered {
     ///
     /// # Errors
     /// What planning and lowering fail with.
-    pub fn new(graph: Graph, request: Request, region: Rect) -> Outcome<Self> {
+    pub fn new(graph: Graph, request: Request, region: Rect) -> Result<Self> {
         let planned = Planned::new(&graph, request)?;
         let program = Program::lower_as(planned.plan(), region, graph.precision())?;
         Ok(Self { graph, planned, region, program })
@@ -38,6 +37,21 @@ impl Lowered {
         &self.graph
     }
 
+    /// Makes the program that of another region.
+    ///
+    /// # Errors
+    /// What lowering fails with; the program is then the old one.
+    pub fn set_region(&mut self, region: Rect) -> Result<()> {
+        self.program = Program::lower_as(self.planned.plan(), region, self.graph.precision())?;
+        self.region = region;
+        Ok(())
+    }
+
+    /// By dispatch of the program: its operations, fused multiply-adds or others of like cost.
+    pub fn operations(&self) -> impl Iterator<Item = f64> {
+        self.program.operations(self.planned.plan())
+    }
+
     /// What it was made for.
     pub fn request(&self) -> &Request {
         self.planned.request()
@@ -47,7 +61,7 @@ impl Lowered {
     ///
     /// # Errors
     /// What planning and lowering fail with; the program is then the old one.
-    pub fn update(&mut self, graph: Graph, request: Option<Request>) -> Outcome<IsophoteChange> {
+    pub fn update(&mut self, graph: Graph, request: Option<Request>) -> Result<Change> {
         let before = *self.planned.request();
         if let Some(request) = request {
             // What is known of other frames is the plan's own.
@@ -58,19 +72,19 @@ impl Lowered {
             Ok(change) => change,
             Err(e) => {
                 self.planned = Planned::new(&self.graph, before)?;
-                return Err(e.into());
+                return Err(e);
             }
         };
         let is_as_precise = graph.precision() == self.graph.precision();
         if change == Change::Uniforms && is_as_precise && self.program.repack(self.planned.plan()) {
             self.graph = graph;
-            return Ok(ISOPHOTE_CHANGE_UNIFORMS);
+            return Ok(Change::Uniforms);
         }
         match Program::lower_as(self.planned.plan(), self.region, graph.precision()) {
             Ok(program) => {
                 self.program = program;
                 self.graph = graph;
-                Ok(ISOPHOTE_CHANGE_STRUCTURE)
+                Ok(Change::Structure)
             }
             Err(e) => {
                 self.planned = Planned::new(&self.graph, before)?;
