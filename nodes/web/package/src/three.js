@@ -1,0 +1,188 @@
+// three.js: a look on what a pass of WebGPURenderer draws, every frame, with its normals and depths.
+//
+//   await renderer.init();
+//   const isophote = await Isophote.create({ device: renderer.backend.device });
+//   const scenePass = pass(scene, camera);
+//   const pipeline = new RenderPipeline(renderer);
+//   pipeline.outputNode = stylize(isophote, { style: "cartoon" }, scenePass);
+//   pipeline.outputColorTransform = false;
+//
+// Nothing is copied: the look reads the textures of the pass, and writes the texture that the node shows.
+
+import { ExternalTexture, FloatType, HalfFloatType, Node, RedFormat } from "three/webgpu";
+import { convertToTexture, Fn, mrt, normalView, output, positionView, renderOutput, texture, uv, vec4 } from "three/tsl";
+
+/** What the textures of a pass are called that hold guides. */
+const NAMES = { normal: "isophoteNormal", depth: "isophoteDepth" };
+
+/** Only things have normals and depths; the sky has none. */
+const ofThings = (value) => Fn((builder) => (builder.object?.name === "Background.mesh" ? vec4(0) : value))();
+
+const VALUES = {
+  normal: () => ofThings(vec4(normalView, 1)),
+  depth: () => ofThings(vec4(positionView.z.negate(), 0, 0, 1)),
+};
+
+/**
+ * A look on what a pass draws, as a node that gives gamma-encoded colours.
+ * @param {Isophote} isophote on the device of the renderer
+ * @param look a preset or a graph
+ * @param scenePass what `pass(scene, camera)` of `three/tsl` makes
+ * @param options `guides`: which of `normal` and `depth` the look is given, both without; `precision`: `fast` without
+ * @returns {StylizeNode} the last node of a pipeline, whose `outputColorTransform` is false
+ */
+export function stylize(isophote, look, scenePass, { guides = ["normal", "depth"], ...options } = {}) {
+  const unknown = guides.find((guide) => NAMES[guide] === undefined);
+  if (unknown !== undefined) {
+    throw new Error(`'${unknown}' is no guide that a pass of three.js draws; it draws ${Object.keys(NAMES).join(" and ")}`);
+  }
+  const outputs = { output };
+  for (const guide of guides) {
+    outputs[NAMES[guide]] = VALUES[guide]();
+  }
+  const targets = mrt(outputs);
+  guides.forEach((guide) => targets.setClearColor(NAMES[guide], 0, 0));
+  scenePass.setMRT(targets);
+  const nodes = {};
+  for (const guide of guides) {
+    nodes[guide] = scenePass.getTextureNode(NAMES[guide]);
+  }
+  // The look sees what is shown: tone-mapped and gamma-encoded.
+  const color = convertToTexture(renderOutput(scenePass.getTextureNode()));
+  return new StylizeNode(isophote, look, { color, ...nodes }, { scenePass, ...options });
+}
+
+/** A look on textures of nodes. While its shaders compile it shows the plain colour. */
+export class StylizeNode extends Node {
+  static get type() {
+    return "StylizeNode";
+  }
+
+  #isophote;
+  #look;
+  #inputs;
+  #options;
+  #stylizer = null;
+  #making = null;
+  #failure = null;
+  #told;
+  /** What is shown: the plain colour, or a texture of ours. */
+  #shown;
+  #node;
+  #frame = 0;
+
+  constructor(isophote, look, inputs, options) {
+    super("vec4");
+    this.#isophote = isophote;
+    this.#look = look;
+    this.#inputs = inputs;
+    this.#options = options;
+    /** Resolves when the look is shown for the first time; rejects with what keeps it from being so. */
+    this.ready = new Promise((resolve, reject) => { this.#told = { resolve, reject }; });
+    // Who does not wait reads it on the console.
+    this.ready.catch(() => {});
+    // Once for each frame, after the passes that it reads.
+    this.updateBeforeType = "frame";
+    this.#shown = inputs.color.value;
+    this.#node = texture(this.#shown, uv());
+  }
+
+  get look() {
+    return this.#look;
+  }
+
+  /** Takes over another look from the next frame on; rejects with a {@link LookError} where it is refused. */
+  async setLook(look) {
+    this.#isophote.graph(look);
+    this.#look = look;
+    this.#failure = null;
+    await this.#stylizer?.update(look, { frame: this.#frame });
+  }
+
+  setup(builder) {
+    this.#chooseDepthFormat(builder.renderer);
+    // What a node holds here is updated before it.
+    Object.assign(builder.getNodeProperties(this), this.#inputs);
+    return this.#node;
+  }
+
+  updateBefore({ renderer }) {
+    const inputs = {};
+    for (const [name, node] of Object.entries(this.#inputs)) {
+      inputs[name] = renderer.backend.get(node.value).texture;
+    }
+    if (Object.values(inputs).some((found) => found === undefined)) {
+      return;
+    }
+    const { width, height } = inputs.color;
+    this.#prepare(width, height);
+    const fits = this.#stylizer?.width === width && this.#stylizer.height === height;
+    if (fits) {
+      const encoder = this.#isophote.device.createCommandEncoder({ label: "isophote" });
+      const shown = this.#stylizer.encode(encoder, inputs);
+      this.#isophote.device.queue.submit([encoder.finish()]);
+      this.#show(shown);
+    } else {
+      this.#release();
+      this.#shown = this.#inputs.color.value;
+      this.#node.value = this.#shown;
+    }
+    this.#frame += 1;
+  }
+
+  /** Makes a stylizer for another size; the old one is kept until then. */
+  #prepare(width, height) {
+    const fits = this.#stylizer?.width === width && this.#stylizer.height === height;
+    if (fits || this.#making !== null || this.#failure !== null) {
+      return;
+    }
+    const { precision = "fast" } = this.#options;
+    const guides = Object.keys(this.#inputs).filter((name) => name !== "color");
+    const options = { width, height, precision, guides, frame: this.#frame };
+    this.#making = this.#isophote.stylizer(this.#look, options).then(async (stylizer) => {
+      await stylizer.update(this.#look);
+      this.#stylizer?.destroy();
+      this.#stylizer = stylizer;
+      this.#making = null;
+      this.#told.resolve();
+    }).catch((error) => {
+      this.#making = null;
+      this.#failure = error;
+      this.#told.reject(error);
+      console.error(error);
+    });
+  }
+
+  #show(shown) {
+    if (this.#shown.sourceTexture === shown) {
+      return;
+    }
+    // The renderer keeps what it knows of a texture by the object that stands for it.
+    this.#release();
+    this.#shown = new ExternalTexture(shown);
+    this.#shown.image = { width: shown.width, height: shown.height };
+    this.#node.value = this.#shown;
+  }
+
+  #release() {
+    if (this.#shown.isExternalTexture) {
+      this.#shown.dispose();
+    }
+  }
+
+  /** Before the pass makes its textures. */
+  #chooseDepthFormat(renderer) {
+    const depth = this.#inputs.depth?.value;
+    if (depth !== undefined) {
+      depth.format = RedFormat;
+      // Samples of 32-bit floats cannot be averaged by the device.
+      depth.type = renderer.samples > 1 ? HalfFloatType : FloatType;
+    }
+  }
+
+  dispose() {
+    this.#stylizer?.destroy();
+    this.#release();
+    super.dispose();
+  }
+}
