@@ -19,6 +19,7 @@ mod scene;
 mod setup;
 mod test;
 mod tools;
+mod web;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -69,6 +70,8 @@ enum Chore {
     Stubs(python::StubsOptions),
     /// Writes the README's table of nodes from their declarations
     Readme(readme::Options),
+    /// Makes the page and the npm package that stylize in browsers
+    Web(web::Options),
     /// Writes the demo scene (glTF) and the house (OBJ)
     Scene(scene::Options),
 }
@@ -94,6 +97,7 @@ fn main() -> ExitCode {
         Chore::Stubs(options) => python::stubs(&options),
         Chore::Readme(options) => readme::run(&options),
         Chore::Header(options) => header::run(&options),
+        Chore::Web(options) => web::run(&options),
         Chore::Scene(options) => scene::run(&options),
     };
     match outcome {

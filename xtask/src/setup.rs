@@ -2,7 +2,7 @@
 //! bring is missing.
 
 use crate::error::{Failure, Result};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// Something that a chore needs, how to see whether it is there, and what brings it.
@@ -59,6 +59,23 @@ pub const BROWSER: Need = Need {
         ["chromium-headless-shell", "chromium", "chromium-browser", "google-chrome"].into_iter().any(program)
     },
     packages: &["chromium-headless-shell"],
+};
+
+/// The compiler of the system, of Debian's package for browsers: newer than its others, and with its sources.
+pub const SYSTEM_RUSTC: &str = "/usr/bin/rustc";
+
+/// A standard library of Rust for browsers, or its sources. `rustup target add wasm32-unknown-unknown` brings it, too.
+pub const WASM: Need = Need {
+    what: "Rust for WebAssembly (rustup target add wasm32-unknown-unknown)",
+    present: || has_wasm_target() || has_wasm_sources(),
+    packages: &["rustc-web", "rust-web-src"],
+};
+
+/// What bundles and tests pages.
+pub const NODE: Need = Need {
+    what: "Node.js with npm",
+    present: || program("node") && program("npm"),
+    packages: &["nodejs", "npm"],
 };
 
 /// What users of the library build with, and what shows manual pages.
@@ -208,6 +225,23 @@ fn apt() -> Option<&'static [&'static str]> {
     } else {
         None
     }
+}
+
+/// Whether the compiler of this build can compile for browsers.
+pub fn has_wasm_target() -> bool {
+    sysroot("rustc").is_some_and(|sysroot| sysroot.join("lib/rustlib/wasm32-unknown-unknown/lib").is_dir())
+}
+
+/// Whether the compiler of the system could, from the sources of its standard library.
+fn has_wasm_sources() -> bool {
+    sysroot(SYSTEM_RUSTC)
+        .is_some_and(|sysroot| sysroot.join("lib/rustlib/src/rust/library/Cargo.lock").is_file())
+}
+
+/// The folder of a compiler.
+pub fn sysroot(compiler: &str) -> Option<PathBuf> {
+    let output = Command::new(compiler).args(["--print", "sysroot"]).output().ok()?;
+    output.status.success().then(|| PathBuf::from(String::from_utf8_lossy(&output.stdout).trim()))
 }
 
 fn program(name: &str) -> bool {

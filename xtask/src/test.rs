@@ -1,12 +1,12 @@
 //! `cargo xtask test`: everything that must hold before a change lands, or the tests of one thing.
 
 use crate::error::{Context, Failure, Result};
-use crate::python;
 use crate::setup::{
-    self, BINUTILS, BLENDER, BROWSER, C_COMPILER, CLANG, CPP_COMPILER, FFMPEG, PACKAGING, PYTHON, VALGRIND,
-    VULKAN, VULKAN_HEADERS, XVFB,
+    self, BINUTILS, BLENDER, BROWSER, C_COMPILER, CLANG, CPP_COMPILER, FFMPEG, NODE, PACKAGING, PYTHON,
+    VALGRIND, VULKAN, VULKAN_HEADERS, WASM, XVFB,
 };
 use crate::tools::{cargo, cargo_command, heading, library_file, root, target_dir};
+use crate::{python, web};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::Mutex;
@@ -46,6 +46,8 @@ pub fn run(options: &Options) -> Result<()> {
         &PACKAGING,
         &PYTHON,
         &BLENDER,
+        &NODE,
+        &WASM,
     ])?;
     let is_everything = options.filter.is_none() && !options.list;
     if is_everything && !options.tests_only {
@@ -65,7 +67,9 @@ pub fn run(options: &Options) -> Result<()> {
     if is_everything {
         let [documents, interface] = [documents(), interface()];
         failed.extend(documents.is_err().then(|| "the examples of the documents".to_owned()));
-        failed.extend(python::test(None).err().map(|failure| format!("the Python package: {failure}")));
+        for suite in &SUITES {
+            failed.extend((suite.run)(None).err().map(|failure| format!("{}: {failure}", suite.name)));
+        }
         failed.extend(interface.is_err().then(|| "the OpenFX interface".to_owned()));
     }
     if failed.is_empty() { Ok(()) } else { Err(Failure(format!("these tests fail: {}", failed.join(", ")))) }
@@ -182,19 +186,34 @@ fn list(programs: &[Program], filter: Option<&str>) -> Result<()> {
             println!("{}: {test}", program.name);
         }
     }
-    for test in python_tests(filter.unwrap_or_default())? {
-        println!("{PYTHON_TESTS}: {test}");
+    for suite in &SUITES {
+        for test in suite.named(filter.unwrap_or_default())? {
+            println!("{}: {test}", suite.name);
+        }
     }
     Ok(())
 }
 
-/// What the tests of the Python package are called together.
-const PYTHON_TESTS: &str = "python";
+/// Tests in another language.
+struct Suite {
+    /// What they are called together.
+    name: &'static str,
+    tests: fn() -> Result<Vec<String>>,
+    /// Runs those whose names contain the filter; without one all.
+    run: fn(Option<&str>) -> Result<()>,
+}
 
-/// Those whose name contains the filter, or all of them when their common name does.
-fn python_tests(filter: &str) -> Result<Vec<String>> {
-    let tests = python::tests()?.into_iter();
-    Ok(tests.filter(|test| PYTHON_TESTS.contains(filter) || test.contains(filter)).collect())
+const SUITES: [Suite; 2] = [
+    Suite { name: "python", tests: python::tests, run: python::test },
+    Suite { name: "web", tests: web::tests, run: web::test },
+];
+
+impl Suite {
+    /// The tests whose name contains the filter, or all of them when their common name does.
+    fn named(&self, filter: &str) -> Result<Vec<String>> {
+        let tests = (self.tests)()?.into_iter();
+        Ok(tests.filter(|test| self.name.contains(filter) || test.contains(filter)).collect())
+    }
 }
 
 /// Runs the tests that the filter means, one program after the other. Returns the programs that fail.
@@ -215,10 +234,12 @@ fn run_named(programs: &[Program], filter: &str) -> Result<Vec<String>> {
             failed.push(program.name.clone());
         }
     }
-    if !python_tests(filter)?.is_empty() {
-        found += 1;
-        let named = (!PYTHON_TESTS.contains(filter)).then_some(filter);
-        failed.extend(python::test(named).err().map(|_| PYTHON_TESTS.to_owned()));
+    for suite in &SUITES {
+        if !suite.named(filter)?.is_empty() {
+            found += 1;
+            let named = (!suite.name.contains(filter)).then_some(filter);
+            failed.extend((suite.run)(named).err().map(|_| suite.name.to_owned()));
+        }
     }
     if found == 0 {
         return Err(Failure(format!("no test's name contains '{filter}'; --list shows them all")));

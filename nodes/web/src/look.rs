@@ -3,7 +3,7 @@
 //! A preset is `{"style": …, "lengths": …, "parameters": {…}}`; its style is the id of a node or a graph written out, whose
 //! parameters are named `node.id`. A parameter is a value, or values by frame.
 
-use isophote::{Error, Graph, NodeId};
+use isophote::{Error, Graph, NodeId, Value as Declared};
 use serde_json::{Map, Value};
 
 /// Lines of the picture that relative lengths are meant for.
@@ -66,7 +66,10 @@ impl Look {
 fn set(graph: &mut Graph, name: &str, value: &Value, frame: i64) -> Result<(), Error> {
     let (node, param) = place(graph, name)?;
     let text = match value {
-        Value::Object(keys) => at_frame(name, keys, frame)?,
+        Value::Object(keys) => {
+            let declared = graph.spec(node)?.param(param);
+            at_frame(name, keys, frame, declared.map(|(_, param)| param.default))?
+        }
         value => text(name, value)?,
     };
     graph.set_text(node, param, &text)
@@ -97,15 +100,21 @@ fn text(name: &str, value: &Value) -> Result<String, Error> {
     }
 }
 
-/// The value at a frame: numbers and colours change evenly between keys, unless they step.
-fn at_frame(name: &str, object: &Map<String, Value>, frame: i64) -> Result<String, Error> {
+/// The value at a frame of a parameter with this default: numbers and colours change evenly between keys, unless they step.
+fn at_frame(
+    name: &str,
+    object: &Map<String, Value>,
+    frame: i64,
+    default: Option<Declared>,
+) -> Result<String, Error> {
     let mut keys = Vec::new();
-    let mut is_stepping = false;
+    let mut is_stepping = matches!(default, None | Some(Declared::Bool(_) | Declared::Choice(_)));
+    let is_whole = matches!(default, Some(Declared::Int(_)));
     for (key, value) in object {
         match (key.as_str(), key.parse::<i64>()) {
             (_, Ok(at)) => keys.push((at, text(name, value)?)),
             ("between", _) if matches!(value.as_str(), Some("step" | "linear")) => {
-                is_stepping = value.as_str() == Some("step");
+                is_stepping |= value.as_str() == Some("step");
             }
             _ => {
                 return Err(Error::Value(format!(
@@ -122,7 +131,7 @@ fn at_frame(name: &str, object: &Map<String, Value>, frame: i64) -> Result<Strin
     let after = keys.get(after).filter(|(at, _)| *at > before.0 && frame > before.0 && !is_stepping);
     let mixed = after.and_then(|after| {
         let share = (frame - before.0) as f64 / (after.0 - before.0) as f64;
-        mix(&numbers(&before.1)?, &numbers(&after.1)?, share)
+        Some(mix(&numbers(&before.1)?, &numbers(&after.1)?, share, is_whole))
     });
     Ok(mixed.unwrap_or_else(|| before.1.clone()))
 }
@@ -136,12 +145,73 @@ fn numbers(text: &str) -> Option<Vec<f64>> {
     pairs.map(|pair| Some(f64::from(u8::from_str_radix(pair?, 16).ok()?) / 255.0)).collect()
 }
 
-/// Numbers between two values; whole ones stay whole.
-fn mix(a: &[f64], b: &[f64], share: f64) -> Option<String> {
+/// Numbers between two values.
+fn mix(a: &[f64], b: &[f64], share: f64, is_whole: bool) -> String {
     // A colour without opacity is opaque.
     let part = |values: &[f64], at: usize| values.get(at).copied().unwrap_or(1.0);
-    let is_whole = a.len() == 1 && b.len() == 1 && a[0].fract() == 0.0 && b[0].fract() == 0.0;
     let mixed = (0..a.len().max(b.len())).map(|at| part(a, at) + (part(b, at) - part(a, at)) * share);
-    let mixed: Vec<String> = mixed.map(|value| (value as f32).to_string()).collect();
-    (!is_whole || mixed.len() == 1).then(|| mixed.join(","))
+    let mixed =
+        mixed.map(|value| if is_whole { value.round().to_string() } else { (value as f32).to_string() });
+    mixed.collect::<Vec<String>>().join(",")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn value(look: Value, param: &str, frame: i64) -> Result<Declared, Error> {
+        let look = Look::read(&look, frame)?;
+        look.graph.value(look.graph.node(0)?, param)
+    }
+
+    #[test]
+    fn presets_and_graphs_are_read() {
+        let look = Look::read(&json!({ "style": "ink", "lengths": "pixels" }), 0).unwrap();
+        assert_eq!((look.graph.len(), look.reference_height), (1, 0));
+        let text = look.graph.to_json().unwrap();
+        let graph: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(Look::read(&graph, 0).unwrap().reference_height, REFERENCE);
+        let preset = json!({ "style": graph, "parameters": { "ink.tone": 0.5, "ink.style": "pencil" } });
+        assert_eq!(value(preset, "tone", 0).unwrap(), Declared::Float(0.5));
+    }
+
+    #[test]
+    fn values_move_between_keys() {
+        let look = |keys: Value| json!({ "style": "cartoon", "parameters": keys });
+        let sigma = json!({ "sigma_d": { "10": 2, "20": 4 } });
+        for (frame, wanted) in [(0, 2.0), (10, 2.0), (15, 3.0), (20, 4.0), (99, 4.0)] {
+            assert_eq!(
+                value(look(sigma.clone()), "sigma_d", frame).unwrap(),
+                Declared::Float(wanted),
+                "{frame}"
+            );
+        }
+        let steps = json!({ "sigma_d": { "10": 2, "20": 4, "between": "step" } });
+        assert_eq!(value(look(steps), "sigma_d", 19).unwrap(), Declared::Float(2.0));
+        let color = json!({ "line_color": { "0": "#000000", "2": [1, 0.5, 0] } });
+        assert_eq!(value(look(color), "line_color", 1).unwrap(), Declared::Color([0.5, 0.25, 0.0, 1.0]));
+        // Whole numbers stay whole, and what is no number never changes between keys.
+        let whole = json!({ "posterize": { "0": 4, "10": 7 } });
+        assert_eq!(value(look(whole), "posterize", 5).unwrap(), Declared::Int(6));
+        let choice = json!({ "abstraction": { "0": "flow", "10": "full" } });
+        assert!(value(look(choice), "abstraction", 5).is_ok());
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_preset_is_said() {
+        for (look, part) in [
+            (json!([]), "preset or a graph"),
+            (json!({ "style": "ink", "parameter": {} }), "'parameter'"),
+            (json!({ "style": "ink", "parameters": [] }), "object"),
+            (json!({ "style": "ink", "lengths": "inches" }), "relative or pixels"),
+            (json!({ "style": "ink", "parameters": { "tone": null } }), "cannot be null"),
+            (json!({ "style": "ink", "parameters": { "tone": {} } }), "no key"),
+            (json!({ "style": "ink", "parameters": { "tone": { "first": 1 } } }), "'first'"),
+            (json!({ "style": "ink", "parameters": { "tune": 1 } }), "tone"),
+        ] {
+            let error = Look::read(&look, 0).unwrap_err().to_string();
+            assert!(error.contains(part), "{look}: {error}");
+        }
+    }
 }

@@ -92,3 +92,95 @@ fn asked(look: &Value, picture: &Picture) -> Result<(Graph, isophote::Request), 
 fn program(plan: &Lowered, json: Value) -> Answer {
     Answer::from(json).program(plan.program(), plan.operations())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isophote::registry;
+
+    fn ask(planner: &mut Planner, request: Value) -> Answer {
+        planner.answer(request.to_string().as_bytes())
+    }
+
+    fn plan(planner: &mut Planner, look: Value) -> Value {
+        ask(planner, json!({ "ask": "plan", "look": look, "picture": { "width": 64, "height": 48 } })).json
+    }
+
+    #[test]
+    fn the_catalogue_has_every_node() {
+        let answer = ask(&mut Planner::default(), json!({ "ask": "catalogue" }));
+        let ids: Vec<&str> =
+            answer.json["nodes"].as_array().unwrap().iter().map(|n| n["id"].as_str().unwrap()).collect();
+        assert_eq!(ids, registry::nodes().iter().map(|spec| spec.id).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn blocks_lie_in_the_bytes() {
+        let mut planner = Planner::default();
+        let request = json!({ "ask": "plan", "look": { "style": "cartoon" }, "picture": { "width": 64, "height": 48 } });
+        let answer = ask(&mut planner, request);
+        for dispatch in answer.json["dispatches"].as_array().unwrap() {
+            for block in [&dispatch["grid"], &dispatch["params"]].into_iter().filter(|block| !block.is_null())
+            {
+                let [at, length] = [0, 1].map(|i| block[i].as_u64().unwrap() as usize);
+                assert!(length > 0 && at + length <= answer.bytes.len());
+            }
+            assert!(dispatch["operations"].as_f64().unwrap() > 0.0);
+        }
+        let length = answer.bytes.len();
+        let all = answer.into_bytes();
+        let json = u32::from_le_bytes([all[0], all[1], all[2], all[3]]) as usize;
+        assert_eq!(all.len(), 4 + json + length);
+        assert!(serde_json::from_slice::<Value>(&all[4..4 + json]).is_ok());
+    }
+
+    #[test]
+    fn plans_are_updated_moved_and_released() {
+        let mut planner = Planner::default();
+        let number = plan(&mut planner, json!({ "style": "cartoon" }))["plan"].clone();
+        let picture = json!({ "width": 64, "height": 48 });
+        let mut update = |parameters: Value| {
+            let look = json!({ "style": "cartoon", "parameters": parameters });
+            let request = json!({ "ask": "update", "plan": number, "look": look, "picture": picture });
+            ask(&mut planner, request).json
+        };
+        assert_eq!(update(json!({ "posterize": 5 }))["change"], "uniforms");
+        assert_eq!(update(json!({ "abstraction": "flow" }))["change"], "structure");
+        assert!(update(json!({ "posterize": -4 }))["error"].as_str().unwrap().contains("posterize"));
+        let region = json!({ "ask": "region", "plan": number, "region": [0, 0, 16, 16] });
+        let moved = ask(&mut planner, region.clone()).json;
+        let output = moved["textures"].as_array().unwrap().iter().find(|t| t["role"] == "output");
+        assert_eq!(output.unwrap()["window"], json!([0, 0, 16, 16]));
+        let shader = ask(&mut planner, json!({ "ask": "shader", "plan": number, "dispatch": 0 })).json;
+        assert!(shader["code"].as_str().unwrap().contains("fn main("));
+        ask(&mut planner, json!({ "ask": "release", "plan": number }));
+        assert!(ask(&mut planner, region).json["error"].as_str().unwrap().contains("no plan"));
+    }
+
+    #[test]
+    fn what_is_wrong_is_said() {
+        let mut planner = Planner::default();
+        let size = json!({ "width": 64, "height": 48 });
+        for (request, part) in [
+            (json!({ "ask": "everything" }), "everything"),
+            (json!({ "ask": "graph", "look": { "style": "cartoom" } }), "cartoon"),
+            (json!({ "ask": "graph", "look": { "parameters": {} } }), "names no style"),
+            (
+                json!({ "ask": "plan", "look": { "style": "cartoon" }, "picture": { "width": 0, "height": 1 } }),
+                "0",
+            ),
+            (
+                json!({ "ask": "plan", "look": { "style": "composite_lines" }, "picture": size }),
+                "not connected",
+            ),
+            (json!({ "ask": "shader", "plan": 9, "dispatch": 0 }), "no plan 9"),
+        ] {
+            let error = ask(&mut planner, request).json["error"].as_str().unwrap().to_owned();
+            assert!(error.contains(part), "{error}");
+        }
+        assert!(planner.answer(b"{").json["error"].as_str().unwrap().contains("not a request"));
+        let guides = json!({ "width": 64, "height": 48, "guides": ["normals"] });
+        let request = json!({ "ask": "plan", "look": { "style": "ink" }, "picture": guides });
+        assert!(ask(&mut planner, request).json["error"].as_str().unwrap().contains("normal, depth"));
+    }
+}

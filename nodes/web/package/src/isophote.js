@@ -97,19 +97,26 @@ export class Isophote {
     }
     this.device.pushErrorScope("out-of-memory");
     this.device.pushErrorScope("validation");
-    let result;
+    let failure = null;
     try {
-      result = work();
-    } finally {
-      const validation = await this.device.popErrorScope();
-      const memory = await this.device.popErrorScope();
-      if (validation !== null || memory !== null) {
-        const what = validation ? "refuses" : "has no memory for";
-        // eslint-disable-next-line no-unsafe-finally -- what the device says is why the work failed, too
-        throw new Error(`the graphics device ${what} this: ${(validation ?? memory).message}`);
-      }
+      work();
+    } catch (error) {
+      failure = error;
     }
-    return result;
+    // Both at once, so that scopes of the page do not come between.
+    const [validation, memory] = await Promise.all([this.device.popErrorScope(), this.device.popErrorScope()]);
+    if (this.#lost !== null) {
+      throw new Error(this.#lost);
+    }
+    if (validation !== null) {
+      throw new Error(`the graphics device refuses this: ${validation.message}`);
+    }
+    if (memory !== null) {
+      throw new Error(`the graphics device has no memory for this: ${memory.message}`);
+    }
+    if (failure !== null) {
+      throw failure;
+    }
   }
 
   /** Gives the device back, if the page does not use it for other work. */

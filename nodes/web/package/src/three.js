@@ -60,6 +60,7 @@ export class StylizeNode extends Node {
 
   #isophote;
   #look;
+  #graph;
   #inputs;
   #options;
   #stylizer = null;
@@ -75,6 +76,7 @@ export class StylizeNode extends Node {
     super("vec4");
     this.#isophote = isophote;
     this.#look = look;
+    this.#graph = isophote.graph(look);
     this.#inputs = inputs;
     this.#options = options;
     /** Resolves when the look is shown for the first time; rejects with what keeps it from being so. */
@@ -93,7 +95,7 @@ export class StylizeNode extends Node {
 
   /** Takes over another look from the next frame on; rejects with a {@link LookError} where it is refused. */
   async setLook(look) {
-    this.#isophote.graph(look);
+    this.#graph = this.#isophote.graph(look);
     this.#look = look;
     this.#failure = null;
     await this.#stylizer?.update(look, { frame: this.#frame });
@@ -116,8 +118,8 @@ export class StylizeNode extends Node {
     }
     const { width, height } = inputs.color;
     this.#prepare(width, height);
-    const fits = this.#stylizer?.width === width && this.#stylizer.height === height;
-    if (fits) {
+    if (this.#fits(width, height)) {
+      this.#renew();
       const encoder = this.#isophote.device.createCommandEncoder({ label: "isophote" });
       const shown = this.#stylizer.encode(encoder, inputs);
       this.#isophote.device.queue.submit([encoder.finish()]);
@@ -130,10 +132,21 @@ export class StylizeNode extends Node {
     this.#frame += 1;
   }
 
+  #fits(width, height) {
+    return this.#stylizer?.width === width && this.#stylizer.height === height;
+  }
+
+  /** Tells the number of the frame where the look renews its marks by it. */
+  #renew() {
+    const { nodes } = this.#graph;
+    if (nodes.some(({ params }) => params?.hold > 0)) {
+      this.#stylizer.update(this.#look, { frame: this.#frame }).catch(console.error);
+    }
+  }
+
   /** Makes a stylizer for another size; the old one is kept until then. */
   #prepare(width, height) {
-    const fits = this.#stylizer?.width === width && this.#stylizer.height === height;
-    if (fits || this.#making !== null || this.#failure !== null) {
+    if (this.#fits(width, height) || this.#making !== null || this.#failure !== null) {
       return;
     }
     const { precision = "fast" } = this.#options;

@@ -30,6 +30,8 @@ async function main() {
   for (const [id, look] of Object.entries(looks)) {
     select.add(new Option(look.name, id, id === "saturday_comic", id === "saturday_comic"));
   }
+  tell("The look compiles…");
+  stylized.ready.then(() => tell(""), tell);
   select.addEventListener("change", () => stylized.setLook(looks[select.value]).catch(tell));
 
   const resize = () => {
@@ -76,9 +78,9 @@ function world() {
   return { scene, camera, knot };
 }
 
-function tell(error) {
-  document.querySelector("#message").textContent = error.message;
-  console.error(error);
+/** Shows a message, or what went wrong. */
+function tell(message) {
+  document.querySelector("#message").textContent = message.message ?? message;
 }
 
 main().catch(tell);
