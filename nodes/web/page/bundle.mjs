@@ -1,0 +1,90 @@
+// Bundles the page into one file: `node bundle.mjs PACKAGE_DIR OUT_HTML`.
+//
+// PACKAGE_DIR is the npm package as it is published, with `isophote.wasm` and `src/looks.js`. Scripts, styles, the planner and
+// the sample pictures are written into the page, so that it works from a folder and asks nobody for anything.
+
+import { build } from "esbuild";
+import { mkdirSync, readFileSync, writeFileSync, existsSync } from "node:fs";
+import { dirname, join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const samples = resolve(here, "../../../host-example/pictures/samples");
+
+/** Pictures that the page brings along: file and what people call it. */
+const SAMPLES = [
+  ["fountain.jpg", "A fountain"],
+  ["statue.jpg", "A statue"],
+];
+
+/** The page's scripts as one script. */
+async function script(packageDir) {
+  const { outputFiles } = await build({
+    entryPoints: [join(here, "src/main.js")],
+    bundle: true,
+    write: false,
+    minify: true,
+    format: "esm",
+    target: "es2022",
+    charset: "utf8",
+    legalComments: "inline",
+    alias: {
+      isophote: join(packageDir, "src/index.js"),
+      "isophote/three": join(packageDir, "src/three.js"),
+    },
+    // The package lies elsewhere and imports three, too.
+    nodePaths: [resolve(here, "../node_modules")],
+    logLevel: "warning",
+  });
+  // A script ends at the first end tag, even within a string.
+  return outputFiles[0].text.replaceAll("</script", "<\\/script");
+}
+
+/** The page's styles as one sheet. */
+async function style() {
+  const { outputFiles } = await build({
+    entryPoints: [join(here, "src/style.css")],
+    bundle: true,
+    write: false,
+    minify: true,
+    charset: "utf8",
+  });
+  return outputFiles[0].text;
+}
+
+/** An element that holds bytes and is not run. */
+function data(id, bytes, label) {
+  const name = label === undefined ? "" : ` data-label="${label}"`;
+  return `<script type="application/octet-stream" id="${id}"${name}>${bytes.toString("base64")}</script>`;
+}
+
+/** Writes a size as people read it. */
+function kilobytes(bytes) {
+  return `${Math.round(bytes / 1024)} KB`;
+}
+
+async function main([packageDir, out]) {
+  if (packageDir === undefined || out === undefined) {
+    throw new Error("say the folder of the package and the file to write: node bundle.mjs PACKAGE_DIR OUT_HTML");
+  }
+  const wasm = join(packageDir, "isophote.wasm");
+  if (!existsSync(wasm)) {
+    throw new Error(`${wasm} is missing; build the planner into the package first`);
+  }
+  const [code, sheet] = await Promise.all([script(resolve(packageDir)), style()]);
+  const planner = data("isophote-wasm", gzipSync(readFileSync(wasm), { level: 9 }));
+  const pictures = SAMPLES.map(([file, label]) => data(`sample-${file}`, readFileSync(join(samples, file)), label)).join("\n");
+  const parts = { style: `<style>${sheet}</style>`, data: `${planner}\n${pictures}`, script: `<script type="module">${code}</script>` };
+  const page = readFileSync(join(here, "src/index.html"), "utf8").replace(/<!-- (style|data|script) -->/g, (_, part) => parts[part]);
+  mkdirSync(dirname(resolve(out)), { recursive: true });
+  writeFileSync(out, page);
+  const without = page.length - pictures.length;
+  const compressed = gzipSync(page.replace(pictures, ""), { level: 9 }).length;
+  console.log(`${out}: ${kilobytes(page.length)}; without sample pictures ${kilobytes(without)}, compressed ${kilobytes(compressed)}`);
+}
+
+main(process.argv.slice(2)).catch((error) => {
+  console.error(`bundle.mjs: ${error.message}`);
+  process.exitCode = 1;
+});

@@ -1,0 +1,88 @@
+// The look that is worked on, and the steps that led to it.
+
+import { bare, isSame } from "./look.js";
+
+/** Steps that can be undone. */
+const MOST = 200;
+
+/** Milliseconds within which changes of one control are one step. */
+const PAUSE = 1200;
+
+/**
+ * Fires `look` when the look changes; its detail says what led to it: `choose`, `edit`, `undo` or `address`.
+ */
+export class Session extends EventTarget {
+  #steps = [];
+  #at = -1;
+  #lastKey = null;
+  #lastTime = 0;
+
+  /** The look now. */
+  get look() {
+    return this.#steps[this.#at].look;
+  }
+
+  /** The look that was chosen, to which a reset goes back. */
+  get chosen() {
+    return this.#steps[this.#at].chosen;
+  }
+
+  get canUndo() {
+    return this.#at > 0;
+  }
+
+  get canRedo() {
+    return this.#at + 1 < this.#steps.length;
+  }
+
+  /** Takes a look of the browser, a file or a link. */
+  choose(look, why = "choose") {
+    this.#put({ look: bare(look), chosen: bare(look) }, null, why);
+  }
+
+  /**
+   * Changes the look.
+   * @param {string} key what is changed: changes of the same thing in a row are one step
+   */
+  edit(look, key) {
+    if (!isSame(look, this.look)) {
+      this.#put({ look, chosen: this.chosen }, key, "edit");
+    }
+  }
+
+  /** Ends a row of changes: the next one is a step of its own. */
+  settle() {
+    this.#lastKey = null;
+  }
+
+  undo() {
+    this.#go(-1);
+  }
+
+  redo() {
+    this.#go(1);
+  }
+
+  #go(by) {
+    if (this.#steps[this.#at + by] !== undefined) {
+      this.#at += by;
+      this.settle();
+      this.#tell("undo");
+    }
+  }
+
+  #put(step, key, why) {
+    const now = performance.now();
+    const isRow = key !== null && key === this.#lastKey && now - this.#lastTime < PAUSE;
+    this.#steps.length = isRow ? this.#at : this.#at + 1;
+    this.#steps.push(step);
+    this.#steps.splice(0, this.#steps.length - MOST);
+    this.#at = this.#steps.length - 1;
+    [this.#lastKey, this.#lastTime] = [key, now];
+    this.#tell(why);
+  }
+
+  #tell(why) {
+    this.dispatchEvent(new CustomEvent("look", { detail: why }));
+  }
+}
