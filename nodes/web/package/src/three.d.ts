@@ -1,4 +1,4 @@
-import type { Node, PassNode, TextureNode } from "three/webgpu";
+import type { MRTNode, Node, PassNode, TextureNode } from "three/webgpu";
 import type { Guide, Isophote, Look } from "./index.js";
 
 export interface StylizeOptions {
@@ -28,3 +28,9 @@ export class StylizeNode extends Node {
  * is false: colours are tone-mapped and encoded before the look sees them.
  */
 export function stylize(isophote: Isophote, look: Look, scenePass: PassNode, options?: StylizeOptions): StylizeNode;
+
+/** What textures that hold guides are called. */
+export const NAMES: { normal: string; depth: string };
+
+/** What a renderer is told to draw beside colours, for who reads the textures without a node. */
+export function targets(guides?: ("normal" | "depth")[]): MRTNode;

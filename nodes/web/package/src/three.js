@@ -13,7 +13,7 @@ import { ExternalTexture, FloatType, HalfFloatType, Node, RedFormat } from "thre
 import { convertToTexture, Fn, mrt, normalView, output, positionView, renderOutput, texture, uv, vec4 } from "three/tsl";
 
 /** What the textures of a pass are called that hold guides. */
-const NAMES = { normal: "isophoteNormal", depth: "isophoteDepth" };
+export const NAMES = { normal: "isophoteNormal", depth: "isophoteDepth" };
 
 /** Only things have normals and depths; the sky has none. */
 const ofThings = (value) => Fn((builder) => (builder.object?.name === "Background.mesh" ? vec4(0) : value))();
@@ -24,14 +24,10 @@ const VALUES = {
 };
 
 /**
- * A look on what a pass draws, as a node that gives gamma-encoded colours.
- * @param {Isophote} isophote on the device of the renderer
- * @param look a preset or a graph
- * @param scenePass what `pass(scene, camera)` of `three/tsl` makes
- * @param options `guides`: which of `normal` and `depth` the look is given, both without; `precision`: `fast` without
- * @returns {StylizeNode} the last node of a pipeline, whose `outputColorTransform` is false
+ * What a renderer is told to draw beside colours: `pass.setMRT(targets(guides))`, or `renderer.setMRT(…)` for a target whose
+ * textures have the names in {@link NAMES}.
  */
-export function stylize(isophote, look, scenePass, { guides = ["normal", "depth"], ...options } = {}) {
+export function targets(guides = ["normal", "depth"]) {
   const unknown = guides.find((guide) => NAMES[guide] === undefined);
   if (unknown !== undefined) {
     throw new Error(`'${unknown}' is no guide that a pass of three.js draws; it draws ${Object.keys(NAMES).join(" and ")}`);
@@ -40,9 +36,21 @@ export function stylize(isophote, look, scenePass, { guides = ["normal", "depth"
   for (const guide of guides) {
     outputs[NAMES[guide]] = VALUES[guide]();
   }
-  const targets = mrt(outputs);
-  guides.forEach((guide) => targets.setClearColor(NAMES[guide], 0, 0));
-  scenePass.setMRT(targets);
+  const made = mrt(outputs);
+  guides.forEach((guide) => made.setClearColor(NAMES[guide], 0, 0));
+  return made;
+}
+
+/**
+ * A look on what a pass draws, as a node that gives gamma-encoded colours.
+ * @param {Isophote} isophote on the device of the renderer
+ * @param look a preset or a graph
+ * @param scenePass what `pass(scene, camera)` of `three/tsl` makes
+ * @param options `guides`: which of `normal` and `depth` the look is given, both without; `precision`: `fast` without
+ * @returns {StylizeNode} the last node of a pipeline, whose `outputColorTransform` is false
+ */
+export function stylize(isophote, look, scenePass, { guides = ["normal", "depth"], ...options } = {}) {
+  scenePass.setMRT(targets(guides));
   const nodes = {};
   for (const guide of guides) {
     nodes[guide] = scenePass.getTextureNode(NAMES[guide]);
