@@ -12,6 +12,14 @@ import { gzipSync } from "node:zlib";
 const here = dirname(fileURLToPath(import.meta.url));
 const samples = resolve(here, "../../../host-example/pictures/samples");
 
+const modules = resolve(here, "../node_modules");
+
+/** Add-ons of three.js import its other entry, which would be a second copy of it. */
+const oneThree = {
+  name: "one-three",
+  setup: ({ onResolve }) => onResolve({ filter: /^three$/ }, () => ({ path: join(modules, "three/build/three.webgpu.js") })),
+};
+
 /** Pictures that the page brings along: file and what people call it. */
 const SAMPLES = [
   ["fountain.jpg", "A fountain"],
@@ -34,7 +42,8 @@ async function script(packageDir) {
       "isophote/three": join(packageDir, "src/three.js"),
     },
     // The package lies elsewhere and imports three, too.
-    nodePaths: [resolve(here, "../node_modules")],
+    nodePaths: [modules],
+    plugins: [oneThree],
     logLevel: "warning",
   });
   // A script ends at the first end tag, even within a string.

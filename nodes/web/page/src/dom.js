@@ -36,16 +36,8 @@ export function isTyping() {
     || (at instanceof HTMLInputElement && ["text", "search", "number"].includes(at.type));
 }
 
-/** Resolves before the browser paints next; soon, where the page is in the background. */
-export function nextFrame() {
-  return new Promise((resolve) => {
-    if (document.hidden) {
-      setTimeout(resolve, 50);
-    } else {
-      requestAnimationFrame(() => resolve());
-    }
-  });
-}
+/** Resolves before the browser paints next, which it does not while the page is in the background. */
+export const nextFrame = () => new Promise((resolve) => { requestAnimationFrame(resolve); });
 
 /** Resolves after so many milliseconds. */
 export const pause = (milliseconds) => new Promise((resolve) => { setTimeout(resolve, milliseconds); });

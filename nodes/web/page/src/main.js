@@ -7,13 +7,17 @@ import { openEngine, sentence } from "./engine.js";
 import { listen, sort } from "./files.js";
 import { keys, tabs } from "./keys.js";
 import { fromFile, isSame, styleName } from "./look.js";
+import { readModel } from "./gltf.js";
+import { Model } from "./model.js";
 import { Navigation } from "./navigation.js";
 import { drop, fault, note, say } from "./notes.js";
 import { Panel } from "./panel.js";
 import { Picture, readPicture } from "./picture.js";
+import { Playback } from "./playback.js";
 import { menu, samples } from "./samples.js";
 import { savePicture, savePreset } from "./saving.js";
 import { Session } from "./session.js";
+import { stillLife } from "./still-life.js";
 import { Stage } from "./stage.js";
 import { Thumbnails } from "./thumbnails.js";
 import { Wipe } from "./wipe.js";
@@ -36,11 +40,13 @@ class Page {
     const { catalogue } = this.isophote;
     this.browser = new Browser(catalogue, this.thumbnails, (entry) => this.session.choose(entry.look));
     this.panel = new Panel(catalogue, this.session);
+    this.playback = new Playback();
     this.wipe = new Wipe(this.stage);
     this.navigation = new Navigation(this.stage, byId("canvas"));
     this.address = new Address((hash) => this.#follow(hash));
     this.session.addEventListener("look", ({ detail }) => this.#changed(detail));
     this.#tools();
+    this.stage.addEventListener("shown", () => drop("computing"));
     listen((entries) => this.open(entries), (error) => this.failed(error));
     this.#begin();
   }
@@ -142,8 +148,17 @@ class Page {
 
   #openModel(entries, main) {
     return this.#show(async () => {
-      throw new Error(`${main.file.name} is a model. ${entries.length} files.`);
+      // It is read anew for another device: what three.js has uploaded belongs to the old one.
+      return async () => {
+        const content = await readModel(entries, main);
+        content.warnings.forEach((text) => note(text, { key: "textures" }));
+        return Model.open(this.isophote, content, this.stage);
+      };
     });
+  }
+
+  #openStillLife() {
+    return this.#show(async () => () => Model.open(this.isophote, stillLife(), this.stage));
   }
 
   /**
@@ -164,6 +179,7 @@ class Page {
       this.#again = make;
       drop("file");
       this.stage.show(subject);
+      this.playback.show(subject);
       byId("info").textContent = subject.info;
       this.#showPanel();
       say(`${subject.info} is open`);
@@ -189,7 +205,8 @@ class Page {
     byId("preset").addEventListener("click", () => savePreset(session.look, this.lookName));
     byId("save").addEventListener("click", () => this.save());
     byId("hint-close").addEventListener("click", () => { byId("hint").hidden = true; });
-    menu(samples().map(({ name, blob }) => ({ name, open: () => this.#openPicture(blob(), name) })));
+    const pictures = samples().map(({ name, blob }) => ({ name, open: () => this.#openPicture(blob(), name) }));
+    menu([...pictures, { name: "A still life, in 3D", open: () => this.#openStillLife() }]);
     keys(this);
     tabs();
   }

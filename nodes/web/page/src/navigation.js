@@ -103,7 +103,7 @@ export class Navigation {
       return;
     }
     const moves = { ArrowLeft: [60, 0], ArrowRight: [-60, 0], ArrowUp: [0, 60], ArrowDown: [0, -60] };
-    const move = document.activeElement === this.#canvas && this.#isFree ? moves[event.key] : undefined;
+    const move = document.activeElement === this.#canvas ? moves[event.key] : undefined;
     if (event.key === "+" || event.key === "=") {
       this.zoom(STEP);
     } else if (event.key === "-") {
@@ -114,8 +114,17 @@ export class Navigation {
       this.zoom(1 / this.#stage.viewport.zoom);
     } else if (move !== undefined) {
       event.preventDefault();
-      this.#stage.viewport.pan(...move);
+      this.#step(move);
+    }
+  }
+
+  /** Moves a picture, or turns a model. */
+  #step([x, y]) {
+    if (this.#isFree) {
+      this.#stage.viewport.pan(x, y);
       this.#stage.repaint();
+    } else {
+      this.#stage.subject?.turn(-x / 6, y / 6);
     }
   }
 

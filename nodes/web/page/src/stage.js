@@ -56,6 +56,11 @@ export class Stage extends EventTarget {
     return this.#isComputing || this.#dirty.look || this.#dirty.picture;
   }
 
+  /** Where models are turned. */
+  get canvas() {
+    return this.#canvas;
+  }
+
   /** Pixels of the canvas. */
   get size() {
     return [this.#canvas.width, this.#canvas.height];
@@ -63,8 +68,8 @@ export class Stage extends EventTarget {
 
   /** Shows another picture or model. */
   show(subject) {
-    this.#subject?.close?.();
-    this.#subject = subject;
+    this.#subject?.close();
+    [this.#subject, this.#before] = [subject, null];
     this.#dirty = { look: true, picture: true };
     this.#resize();
     this.#compute();
