@@ -23,7 +23,7 @@ fn corner(@builtin(vertex_index) index: u32) -> Corner {
   return Corner(vec4f(place * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0), 0.0, 1.0), place);
 }
 
-fn pixel(picture: texture_2d<f32>, place: vec2f) -> vec4f {
+fn between(picture: texture_2d<f32>, place: vec2f) -> vec4f {
   let size = vec2f(textureDimensions(picture));
   // Between texels only where the picture is not shown pixel by pixel.
   let p = place * size - 0.5;
@@ -38,15 +38,31 @@ fn pixel(picture: texture_2d<f32>, place: vec2f) -> vec4f {
   return mix(mix(a, b, t.x), mix(c, d, t.x), t.y);
 }
 
+// The mean over a pixel of the target, whose sides are span: thin lines would break where pictures are shown smaller.
+fn pixel(picture: texture_2d<f32>, place: vec2f, span: vec2f) -> vec4f {
+  let texels = span * vec2f(textureDimensions(picture));
+  // Each tap is a mean of four texels itself.
+  let taps = clamp(vec2i(ceil(texels * 0.75)), vec2i(1), vec2i(6));
+  var sum = vec4f(0.0);
+  for (var y = 0; y < taps.y; y++) {
+    for (var x = 0; x < taps.x; x++) {
+      let part = (vec2f(vec2i(x, y)) + 0.5) / vec2f(taps) - 0.5;
+      sum += between(picture, place + part * span);
+    }
+  }
+  return sum / f32(taps.x * taps.y);
+}
+
 @fragment
 fn shade(corner: Corner) -> @location(0) vec4f {
   let place = corner.place * frame.scale + frame.offset;
+  let span = abs(vec2f(dpdx(corner.place.x), dpdy(corner.place.y)) * frame.scale);
   if any(place < vec2f(0.0)) || any(place > vec2f(1.0)) {
     return vec4f(0.0);
   }
-  var color = pixel(first, place);
+  var color = pixel(first, place, span);
   if place.x >= frame.edge {
-    color = pixel(second, place);
+    color = pixel(second, place, span);
   }
   color = clamp(color, vec4f(0.0), vec4f(1.0));
   if frame.straight == 1u && color.a > 0.0 {
