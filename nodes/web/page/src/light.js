@@ -1,10 +1,11 @@
 // A scene around a model: light from a room, a lamp, and a plain backdrop.
 
-import { Color, DirectionalLight, HemisphereLight, PMREMGenerator, Scene } from "three/webgpu";
+import { Box3, DirectionalLight, HemisphereLight, PMREMGenerator, Scene, Sphere } from "three/webgpu";
+import { color } from "three/tsl";
 import { RoomEnvironment } from "three/addons/environments/RoomEnvironment.js";
 
 /** Behind models; light, so that drawings stand on paper. */
-const BACKDROP = "#c9ccce";
+const BACKDROP = "#d6d7d6";
 
 /** The room of each renderer, which takes a moment to make. */
 const rooms = new WeakMap();
@@ -18,19 +19,39 @@ function room(renderer) {
   return rooms.get(renderer);
 }
 
+/** A lamp whose shadows fall on all of the model. */
+function sun(root) {
+  const lamp = new DirectionalLight("#fff4e2", 2.6);
+  const { center, radius } = new Box3().setFromObject(root, true).getBoundingSphere(new Sphere());
+  const size = Number.isFinite(radius) && radius > 0 ? radius : 1;
+  lamp.position.set(-1.3, 2.1, 1.5).normalize().multiplyScalar(size * 3).add(center);
+  lamp.target.position.copy(center);
+  lamp.castShadow = true;
+  lamp.shadow.mapSize.set(2048, 2048);
+  lamp.shadow.normalBias = size * 0.008;
+  lamp.shadow.radius = 3;
+  const { camera } = lamp.shadow;
+  Object.assign(camera, { left: -size, right: size, top: size, bottom: -size, near: size, far: size * 5 });
+  camera.updateProjectionMatrix();
+  return lamp;
+}
+
 /** A scene with a model and light; lamps of the model take the place of ours. */
 export function furnish(renderer, root) {
   const scene = new Scene();
-  scene.background = new Color(BACKDROP);
+  // A node, so that it is treated like all other colours.
+  scene.backgroundNode = color(BACKDROP);
   scene.environment = room(renderer);
-  scene.environmentIntensity = 0.55;
+  scene.environmentIntensity = 0.6;
   scene.add(root);
   let hasLamps = false;
-  root.traverse((part) => { hasLamps ||= part.isLight === true; });
+  root.traverse((part) => {
+    hasLamps ||= part.isLight === true;
+    [part.castShadow, part.receiveShadow] = [part.isMesh === true, part.isMesh === true];
+  });
   if (!hasLamps) {
-    const sun = new DirectionalLight("#fff4e2", 2.1);
-    sun.position.set(-1.4, 2.2, 1.6);
-    scene.add(sun, new HemisphereLight("#dfe9f5", "#8a7f70", 0.5));
+    const lamp = sun(root);
+    scene.add(lamp, lamp.target, new HemisphereLight("#dfe9f5", "#9a8f80", 0.7));
   }
   return scene;
 }

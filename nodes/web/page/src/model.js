@@ -15,6 +15,26 @@ const [SHOWN, SAVED, SMALL] = [2560, 2560, 320];
 /** Samples for each pixel of the colour; guides have one, since depths of different things have no mean. */
 const SAMPLES = 4;
 
+/** From where models are first seen. */
+const VIEW = new Vector3(0.55, 0.42, 0.95).normalize();
+
+/** What is left free around them. */
+const MARGIN = 1.12;
+
+/** How much of the view a box takes: 1 reaches the edge. */
+function extent(box, camera) {
+  let most = 0;
+  for (const x of [box.min.x, box.max.x]) {
+    for (const y of [box.min.y, box.max.y]) {
+      for (const z of [box.min.z, box.max.z]) {
+        const at = new Vector3(x, y, z).project(camera);
+        most = Math.max(most, Math.abs(at.x), Math.abs(at.y));
+      }
+    }
+  }
+  return most;
+}
+
 /** One renderer for each device. */
 const renderers = new WeakMap();
 
@@ -22,6 +42,7 @@ async function rendererOf(isophote) {
   if (!renderers.has(isophote.device)) {
     const renderer = new WebGPURenderer({ device: isophote.device, antialias: false, canvas: new OffscreenCanvas(1, 1) });
     renderer.toneMapping = NeutralToneMapping;
+    renderer.shadowMap.enabled = true;
     renderer.onDeviceLost = () => {};
     renderers.set(isophote.device, renderer.init().then(() => renderer));
   }
@@ -149,17 +170,29 @@ export class Model {
   /** Shows all of it, from where it was first seen. */
   frame() {
     const box = new Box3().setFromObject(this.root, true);
-    const { center, radius } = box.isEmpty() ? new Sphere(new Vector3(), 1) : box.getBoundingSphere(new Sphere());
+    if (box.isEmpty()) {
+      box.set(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
+    }
+    const { center, radius } = box.getBoundingSphere(new Sphere());
     const size = Math.max(radius, 1e-6);
-    const half = (this.camera.fov * Math.PI) / 360;
-    const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
-    const far = (size / Math.sin(narrow)) * 0.92;
-    this.camera.position.set(0.55, 0.38, 0.9).normalize().multiplyScalar(far).add(center);
-    Object.assign(this.camera, { near: far / 200, far: far * 20 });
-    this.camera.updateProjectionMatrix();
-    this.controls.target.copy(center);
-    Object.assign(this.controls, { minDistance: size * 0.1, maxDistance: far * 6 });
-    this.controls.update();
+    const { camera, controls } = this;
+    const place = (far) => {
+      camera.position.copy(VIEW).multiplyScalar(far).add(center);
+      Object.assign(camera, { near: far / 200, far: far * 20 });
+      camera.lookAt(center);
+      camera.updateMatrixWorld();
+      camera.updateProjectionMatrix();
+    };
+    // Its corners tell how near the camera may come.
+    let far = size * 4;
+    for (let round = 0; round < 4; round += 1) {
+      place(far);
+      far = Math.max(far * extent(box, camera) * MARGIN, size * 1.05);
+    }
+    place(far);
+    controls.target.copy(center);
+    Object.assign(controls, { minDistance: size * 0.1, maxDistance: far * 6 });
+    controls.update();
   }
 
   /** Goes nearer or farther. */
