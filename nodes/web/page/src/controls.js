@@ -122,6 +122,13 @@ export function control({ param, standard }, onInput, onSettle) {
   const tip = `${param.doc.replaceAll("`", "")}\n\nDefault: ${what}. Double-click for the default.`;
   const label = make("label", { for: id, title: tip }, param.label);
   const element = make("div", { class: `control ${param.type}` }, label, ...parts);
+  label.addEventListener("click", (event) => {
+    // Nothing may move between the clicks of a double click.
+    if (param.type === "float" || param.type === "int") {
+      event.preventDefault();
+      document.getElementById(id).focus({ preventScroll: true });
+    }
+  });
   element.addEventListener("change", onSettle);
   element.addEventListener("dblclick", (event) => {
     if (!(event.target instanceof HTMLInputElement && event.target.type === "number")) {

@@ -68,6 +68,7 @@ export function sentence(error) {
   if (/has no memory for|out of memory|allocation/i.test(message)) {
     return "The graphics card has too little memory free. Close other programs and tabs that use it, or open a smaller picture.";
   }
-  const text = message.charAt(0).toUpperCase() + message.slice(1);
+  // Names of files stay as they are.
+  const text = /^\S*\.\w/.test(message) ? message : message.charAt(0).toUpperCase() + message.slice(1);
   return /[.!?]$/.test(text) ? text : `${text}.`;
 }

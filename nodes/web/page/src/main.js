@@ -46,7 +46,12 @@ class Page {
     this.address = new Address((hash) => this.#follow(hash));
     this.session.addEventListener("look", ({ detail }) => this.#changed(detail));
     this.#tools();
-    this.stage.addEventListener("shown", () => drop("computing"));
+    this.stage.addEventListener("busy", () => byId("stage").setAttribute("aria-busy", "true"));
+    this.stage.addEventListener("rest", () => byId("stage").setAttribute("aria-busy", "false"));
+    this.stage.addEventListener("shown", () => {
+      byId("stage").setAttribute("aria-busy", "false");
+      drop("computing");
+    });
     listen((entries) => this.open(entries), (error) => this.failed(error));
     this.#begin();
   }
@@ -168,7 +173,7 @@ class Page {
   async #show(read) {
     this.#opening += 1;
     const opening = this.#opening;
-    byId("busy").hidden = false;
+    byId("stage").dataset.opening = "";
     try {
       const make = await read();
       const subject = await make();
@@ -191,7 +196,7 @@ class Page {
       }
     } finally {
       if (opening === this.#opening) {
-        byId("busy").hidden = true;
+        delete byId("stage").dataset.opening;
       }
     }
   }

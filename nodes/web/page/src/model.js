@@ -1,12 +1,13 @@
 // Models: drawn by three.js on the page's device, with normals and depths for the look.
 
 import {
-  AnimationMixer, Box3, FloatType, HalfFloatType, NearestFilter, NeutralToneMapping, PerspectiveCamera, QuadMesh, RedFormat,
-  RenderTarget, MeshBasicNodeMaterial, Sphere, Timer, UnsignedByteType, Vector3, WebGPURenderer,
+  AnimationMixer, FloatType, HalfFloatType, MeshBasicNodeMaterial, NearestFilter, NeutralToneMapping, PerspectiveCamera, QuadMesh,
+  RedFormat, RenderTarget, Timer, UnsignedByteType, Vector3, WebGPURenderer,
 } from "three/webgpu";
 import { renderOutput, texture } from "three/tsl";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { NAMES, targets } from "isophote/three";
+import { frame } from "./framing.js";
 import { furnish } from "./light.js";
 
 /** Pixels of the longer side: of what is shown, at most; of what is saved, at least; of thumbnails. */
@@ -14,26 +15,6 @@ const [SHOWN, SAVED, SMALL] = [2560, 2560, 320];
 
 /** Samples for each pixel of the colour; guides have one, since depths of different things have no mean. */
 const SAMPLES = 4;
-
-/** From where models are first seen. */
-const VIEW = new Vector3(0.55, 0.42, 0.95).normalize();
-
-/** What is left free around them. */
-const MARGIN = 1.12;
-
-/** How much of the view a box takes: 1 reaches the edge. */
-function extent(box, camera) {
-  let most = 0;
-  for (const x of [box.min.x, box.max.x]) {
-    for (const y of [box.min.y, box.max.y]) {
-      for (const z of [box.min.z, box.max.z]) {
-        const at = new Vector3(x, y, z).project(camera);
-        most = Math.max(most, Math.abs(at.x), Math.abs(at.y));
-      }
-    }
-  }
-  return most;
-}
 
 /** One renderer for each device. */
 const renderers = new WeakMap();
@@ -169,30 +150,10 @@ export class Model {
 
   /** Shows all of it, from where it was first seen. */
   frame() {
-    const box = new Box3().setFromObject(this.root, true);
-    if (box.isEmpty()) {
-      box.set(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
-    }
-    const { center, radius } = box.getBoundingSphere(new Sphere());
-    const size = Math.max(radius, 1e-6);
-    const { camera, controls } = this;
-    const place = (far) => {
-      camera.position.copy(VIEW).multiplyScalar(far).add(center);
-      Object.assign(camera, { near: far / 200, far: far * 20 });
-      camera.lookAt(center);
-      camera.updateMatrixWorld();
-      camera.updateProjectionMatrix();
-    };
-    // Its corners tell how near the camera may come.
-    let far = size * 4;
-    for (let round = 0; round < 4; round += 1) {
-      place(far);
-      far = Math.max(far * extent(box, camera) * MARGIN, size * 1.05);
-    }
-    place(far);
-    controls.target.copy(center);
-    Object.assign(controls, { minDistance: size * 0.1, maxDistance: far * 6 });
-    controls.update();
+    const { target, size, far } = frame(this.root, this.camera);
+    this.controls.target.copy(target);
+    Object.assign(this.controls, { minDistance: size * 0.1, maxDistance: far * 6 });
+    this.controls.update();
   }
 
   /** Goes nearer or farther. */

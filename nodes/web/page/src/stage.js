@@ -6,7 +6,8 @@ import { precision } from "./engine.js";
 import { Viewport } from "./viewport.js";
 
 /**
- * Fires `shown` when a frame of the newest look is on the canvas, and `view` when another part is shown.
+ * Fires `busy` when something is to be computed, `shown` when a frame of the newest look is on the canvas, `rest` when nothing
+ * is left to do, and `view` when another part is shown.
  *
  * A subject is what is stylized: `{width, height, guides, isMoving, inputs()}`, where `inputs` are textures of the size; see
  * `picture.js` and `model.js`.
@@ -71,6 +72,7 @@ export class Stage extends EventTarget {
     this.#subject?.close();
     [this.#subject, this.#before] = [subject, null];
     this.#dirty = { look: true, picture: true };
+    this.dispatchEvent(new Event("busy"));
     this.#resize();
     this.#compute();
   }
@@ -79,6 +81,7 @@ export class Stage extends EventTarget {
   setLook(look) {
     this.#look = look;
     this.#dirty.look = true;
+    this.dispatchEvent(new Event("busy"));
     this.#compute();
   }
 

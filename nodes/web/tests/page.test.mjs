@@ -1,0 +1,314 @@
+// The browser page, from its file, in a browser without a window and without a graphics card.
+//
+// ISOPHOTE_PAGE is the page, ISOPHOTE_PACKAGE the package that it was made of, ISOPHOTE_CHROMIUM the browser, if not the system's.
+
+import assert from "node:assert/strict";
+import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { after, before, test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+import { glb, photo, sizeOf, tetrahedron } from "./made.mjs";
+
+/** Milliseconds that a step may take: the device of these tests is a processor. */
+const PATIENCE = 60_000;
+
+const FLAGS = [
+  "--headless=new",
+  "--no-sandbox",
+  "--enable-unsafe-webgpu",
+  "--use-webgpu-adapter=swiftshader",
+  // Canvases are shown by the same software driver; without it the browser's process for graphics ends at the first frame.
+  "--enable-features=Vulkan",
+  "--use-vulkan=swiftshader",
+  "--use-angle=swiftshader",
+  "--disable-gpu-sandbox",
+  "--disable-quic",
+  "--no-first-run",
+  "--disable-background-networking",
+  "--disable-component-update",
+  "--disable-sync",
+];
+
+let browser;
+let profile;
+let address;
+/** What went wrong on any page, and what any page asked the network for. */
+const complaints = [];
+const requests = [];
+
+before(async () => {
+  const file = process.env.ISOPHOTE_PAGE;
+  assert.ok(file && existsSync(file), "ISOPHOTE_PAGE names no file: bundle the page first");
+  address = pathToFileURL(resolve(file)).href;
+  const candidates = [process.env.ISOPHOTE_CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-headless-shell"];
+  const executablePath = candidates.find((path) => path && existsSync(path));
+  assert.ok(executablePath, "no browser: install Debian's package chromium, or set ISOPHOTE_CHROMIUM");
+  profile = mkdtempSync(join(tmpdir(), "isophote-page-"));
+  browser = await chromium.launchPersistentContext(profile, {
+    executablePath,
+    args: FLAGS,
+    ignoreDefaultArgs: ["--headless", "--disable-features"],
+    viewport: { width: 900, height: 500 },
+    acceptDownloads: true,
+  });
+  browser.setDefaultTimeout(PATIENCE);
+});
+
+after(async () => {
+  await browser?.close();
+  rmSync(profile, { recursive: true, force: true });
+});
+
+/** Opens the page and waits until its first picture is shown. */
+async function open(hash = "") {
+  const page = await browser.newPage();
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
+  page.on("pageerror", (error) => complaints.push(error.message));
+  page.on("request", (request) => /^(https?|wss?|ftp):/.test(request.url()) && requests.push(request.url()));
+  await page.goto(address + hash);
+  await opened(page, "A fountain");
+  return page;
+}
+
+/** Waits until something is open and shown; fails at once with what the page tells instead. */
+async function opened(page, name) {
+  await page.waitForFunction((start) => {
+    const fault = document.querySelector(".note.error[data-key='start'], .note.error[data-key='computing'], .note.error[data-key='fault']");
+    if (fault !== null) {
+      throw new Error(`the page says: ${fault.textContent}`);
+    }
+    return document.querySelector("#info").textContent.startsWith(start);
+  }, name);
+  await settled(page);
+}
+
+/** Waits until the newest look is shown. */
+async function settled(page) {
+  await page.waitForFunction(() => {
+    const fault = document.querySelector(".note.error[data-key='computing'], .note.error[data-key='fault']");
+    if (fault !== null) {
+      throw new Error(`the page says: ${fault.textContent}`);
+    }
+    return document.querySelector("#stage").getAttribute("aria-busy") === "false";
+  });
+  // Browsers show a frame after they are given it.
+  await page.evaluate(() => new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); }));
+}
+
+/** Drops files on the picture. */
+function drop(page, files) {
+  const entries = files.map(({ name, type = "", data }) => ({ name, type, data: Buffer.from(data).toString("base64") }));
+  return page.evaluate((given) => {
+    const transfer = new DataTransfer();
+    for (const { name, type, data } of given) {
+      transfer.items.add(new File([Uint8Array.from(atob(data), (c) => c.charCodeAt(0))], name, { type }));
+    }
+    for (const kind of ["dragenter", "dragover", "drop"]) {
+      const event = new DragEvent(kind, { dataTransfer: transfer, bubbles: true, cancelable: true });
+      document.querySelector("#canvas").dispatchEvent(event);
+    }
+  }, entries);
+}
+
+const dropPhoto = async (page) => {
+  await drop(page, [{ name: "hill.png", type: "image/png", data: photo() }]);
+  await opened(page, "hill.png");
+};
+
+/** What the stage shows, as the bytes of a PNG, which are the same for the same pixels. */
+async function shot(page) {
+  const clip = await page.locator("#canvas").boundingBox();
+  return page.screenshot({ clip });
+}
+
+/** The message of a kind, once it is there. */
+async function message(page, key) {
+  return page.locator(`.note[data-key="${key}"]`).innerText();
+}
+
+const lookOf = (page) => page.evaluate(() => JSON.parse(decodeURIComponent(location.hash.slice("#look=".length))));
+
+/** Sets a slider as a person does, and waits for the picture. */
+async function slide(page, label, value) {
+  await page.getByLabel(label, { exact: true }).evaluate((slider, to) => {
+    slider.value = to;
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+    slider.dispatchEvent(new Event("change", { bubbles: true }));
+  }, value);
+  await settled(page);
+}
+
+/** Waits until the address says what it should. */
+const addressSays = (page, text) => page.waitForFunction((part) => decodeURIComponent(location.hash).includes(part), text);
+
+test("a dropped photo, thumbnails, a look, a slider, undo, and the same pixels from the link", async () => {
+  const page = await open();
+  await dropPhoto(page);
+  await page.waitForFunction(() => document.querySelectorAll(".card.made").length >= 4);
+  const first = await shot(page);
+  await page.locator('[data-look="clear_line"]').click();
+  await settled(page);
+  const chosen = await shot(page);
+  assert.notDeepEqual(chosen, first, "another look shows the same pixels");
+  assert.equal((await lookOf(page)).style, "cartoon");
+
+  await slide(page, "Line width", 8);
+  await addressSays(page, '"line_width":8');
+  const wide = await shot(page);
+  assert.notDeepEqual(wide, chosen, "a slider changes nothing");
+  await page.keyboard.press("Control+z");
+  await settled(page);
+  assert.deepEqual(await shot(page), chosen, "undo does not bring the pixels back");
+  await page.keyboard.press("Control+Shift+z");
+  await settled(page);
+  assert.deepEqual(await shot(page), wide, "redo does not bring the pixels back");
+
+  await addressSays(page, '"line_width":8');
+  await page.reload();
+  await opened(page, "A fountain");
+  assert.equal((await lookOf(page)).parameters.line_width, 8);
+  await dropPhoto(page);
+  assert.deepEqual(await shot(page), wide, "the link gives other pixels");
+  await page.close();
+});
+
+test("the edge, the key for the original, defaults and going back", async () => {
+  const page = await open();
+  await dropPhoto(page);
+  const look = await shot(page);
+  await page.keyboard.down("o");
+  await settled(page);
+  const original = await shot(page);
+  assert.notDeepEqual(original, look, "holding O shows no original");
+  await page.keyboard.up("o");
+  await settled(page);
+  assert.deepEqual(await shot(page), look, "letting go of O does not end it");
+
+  await page.keyboard.press("w");
+  const edge = page.getByRole("slider", { name: "Edge between the original and the look" });
+  const from = await edge.boundingBox();
+  await page.mouse.move(from.x + from.width / 2, from.y + from.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(from.x + from.width / 2 + 90, from.y + from.height / 2, { steps: 4 });
+  await page.mouse.up();
+  const to = await edge.boundingBox();
+  assert.ok(Math.abs(to.x - from.x - 90) < 3, `the edge moved by ${to.x - from.x} pixels, not 90`);
+  await page.keyboard.press("w");
+
+  await slide(page, "Saturation", 0);
+  await addressSays(page, '"saturation":0');
+  await page.locator(".control", { has: page.getByLabel("Saturation", { exact: true }) }).locator("label").dblclick();
+  await settled(page);
+  assert.equal((await lookOfSettled(page, (given) => !("saturation" in given.parameters))).parameters.saturation, undefined);
+
+  await page.locator('[data-look="style-painting"]').click();
+  await addressSays(page, '"style":"painting"');
+  await page.goBack();
+  await addressSays(page, '"style":"cartoon"');
+  await settled(page);
+  assert.equal(await page.locator("#look-name").innerText(), "Saturday comic");
+  await page.close();
+});
+
+/** The look in the address, once it is as wanted. */
+async function lookOfSettled(page, isWanted) {
+  for (let round = 0; round < 40; round += 1) {
+    const look = await lookOf(page);
+    if (isWanted(look)) {
+      return look;
+    }
+    await new Promise((done) => { setTimeout(done, 100); });
+  }
+  throw new Error(`the address keeps ${JSON.stringify(await lookOf(page))}`);
+}
+
+test("presets are opened and saved; what is none is told", async () => {
+  const page = await open();
+  const preset = { name: "Mine", style: "ink", lengths: "relative", parameters: { style: "woodcut", line_width: 3 } };
+  await drop(page, [{ name: "mine.json", type: "application/json", data: JSON.stringify(preset) }]);
+  await addressSays(page, '"style":"ink"');
+  await settled(page);
+  assert.deepEqual((await lookOf(page)).parameters, preset.parameters);
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Save preset" }).click()]);
+  const saved = JSON.parse(readFileSync(await download.path(), "utf8"));
+  assert.deepEqual({ ...saved, name: "Mine" }, preset);
+
+  await drop(page, [{ name: "other.json", data: '{"style":"cartoon","parameters":{"line_widht":3}}' }]);
+  assert.match(await message(page, "file"), /other\.json is no preset of Isophote: .*line_widht/);
+  await drop(page, [{ name: "notes.png", type: "image/png", data: "no picture at all" }]);
+  await page.getByText("notes.png is no picture that this browser can read").waitFor();
+  assert.equal((await lookOf(page)).style, "ink", "what was refused changed the look");
+  await page.close();
+});
+
+test("broken links are told and leave the page usable", async () => {
+  const page = await open("#look=%7B%22style%22:%22carto");
+  assert.match(await message(page, "link"), /The link holds no look: .*Copy the whole link/);
+  await page.evaluate(() => { location.hash = '#look={"style":"cartoonish"}'; });
+  await page.getByText("The link's look cannot be shown").waitFor();
+  await page.evaluate(() => { location.hash = '#look={"style":"watercolor","parameters":{"wobble":4}}'; });
+  await page.waitForFunction(() => document.querySelector("#look-name").textContent === "Watercolor");
+  await settled(page);
+  assert.equal(await page.locator(".note.error").count(), 0, "the message stays after a good link");
+  await page.close();
+});
+
+test("models are stylized and turned; a missing buffer is named", async () => {
+  const page = await open();
+  await drop(page, [{ name: "thing.glb", data: glb() }]);
+  await opened(page, "thing.glb");
+  const front = await shot(page);
+  assert.ok(await hasColor(page, front), "the red model is not seen");
+  const box = await page.locator("#canvas").boundingBox();
+  await page.mouse.move(box.x + 150, box.y + 150);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 230, box.y + 150, { steps: 3 });
+  await page.mouse.up();
+  await settled(page);
+  await page.waitForTimeout(500);
+  await settled(page);
+  assert.notDeepEqual(await shot(page), front, "dragging does not turn the model");
+  assert.ok(await page.getByLabel("Outline width", { exact: true }).isVisible(), "sliders of guides are hidden");
+
+  const { json, bin } = tetrahedron();
+  json.buffers[0].uri = "thing%20data.bin";
+  const document = { name: "thing.gltf", data: JSON.stringify(json) };
+  await drop(page, [document]);
+  assert.match(await message(page, "file"), /thing\.gltf needs thing%20data\.bin.*Drop them together/);
+  await drop(page, [document, { name: "thing data.bin", data: bin }]);
+  await opened(page, "thing.gltf");
+  assert.equal(await page.locator(".note.error").count(), 0);
+  await page.close();
+});
+
+/** Whether a picture has red pixels, as the browser decodes it. */
+function hasColor(page, bytes) {
+  return page.evaluate(async (text) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]));
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    let red = 0;
+    for (let at = 0; at < data.length; at += 4) {
+      red += data[at] > 90 && data[at + 1] < 60 && data[at + 2] < 60 ? 1 : 0;
+    }
+    return red > 500;
+  }, bytes.toString("base64"));
+}
+
+test("saving gives all pixels, and can be cancelled", async () => {
+  const page = await open("#look=" + encodeURIComponent('{"style":"gaussian"}'));
+  await drop(page, [{ name: "wide.png", type: "image/png", data: photo(2700, 20) }]);
+  await opened(page, "wide.png, 2700 × 20");
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Save PNG" }).click()]);
+  assert.equal(download.suggestedFilename(), "wide-gaussian.png");
+  assert.deepEqual(sizeOf(readFileSync(await download.path())), [2700, 20]);
+  await page.close();
+});
+
+test("nothing is asked of the network, and nothing is complained of", () => {
+  assert.deepEqual(requests, []);
+  assert.deepEqual(complaints, []);
+});
