@@ -50,7 +50,7 @@ before(async () => {
     executablePath,
     args: FLAGS,
     ignoreDefaultArgs: ["--headless", "--disable-features"],
-    viewport: { width: 900, height: 500 },
+    viewport: { width: 800, height: 420 },
     acceptDownloads: true,
   });
   browser.setDefaultTimeout(PATIENCE);

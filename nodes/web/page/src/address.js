@@ -43,9 +43,13 @@ function decode(text) {
   }
 }
 
+/** The look that was chosen before it was changed, as the browser's history keeps it beside the address. */
+export const chosen = () => history.state?.chosen;
+
 /** Keeps the address up to date with the look. */
 export class Address {
   #wanted = null;
+  #chosen = null;
   #timer = null;
   #last = 0;
 
@@ -67,18 +71,20 @@ export class Address {
 
   /**
    * Shows a look in the address.
+   * @param chosen the look that it was made of
    * @param {boolean} isStep whether going back returns to what is shown now
    */
-  show(look, isStep) {
+  show(look, chosen, isStep) {
     const hash = fragment(look);
     if (isStep) {
       this.flush();
+      this.#chosen = chosen;
       if (hash !== location.hash) {
         this.#write(hash, "pushState");
       }
       return;
     }
-    this.#wanted = hash;
+    [this.#wanted, this.#chosen] = [hash, chosen];
     const wait = Math.max(0, this.#last + PACE - performance.now());
     this.#timer ??= setTimeout(() => this.flush(), wait);
   }
@@ -95,7 +101,7 @@ export class Address {
   #write(hash, how) {
     this.#last = performance.now();
     try {
-      history[how](null, "", hash);
+      history[how]({ chosen: this.#chosen }, "", hash);
     } catch {
       // Too many in a short time: the next change writes it.
     }

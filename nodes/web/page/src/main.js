@@ -1,6 +1,6 @@
 // The page: what is open, the look, and what ties them together.
 
-import { Address, fragment, read } from "./address.js";
+import { Address, chosen, fragment, read } from "./address.js";
 import { Browser } from "./browser.js";
 import { byId } from "./dom.js";
 import { openEngine, sentence } from "./engine.js";
@@ -64,7 +64,7 @@ class Page {
     } catch (error) {
       fault(error.message, { key: "link" });
     }
-    this.session.choose(look ?? first, "address");
+    this.session.choose(look ?? first, "address", look === null ? first : chosen());
     const [sample] = samples();
     this.#openPicture(sample.blob(), sample.name);
   }
@@ -86,7 +86,7 @@ class Page {
       const look = this.#checked(read(hash));
       if (look !== null) {
         drop("link");
-        this.session.choose(look, "address");
+        this.session.choose(look, "address", chosen());
       }
     } catch (error) {
       fault(error.message, { key: "link" });
@@ -94,12 +94,12 @@ class Page {
   }
 
   #changed(why) {
-    const { look, chosen } = this.session;
-    const entry = this.browser.find(chosen);
+    const { look, chosen: before } = this.session;
+    const entry = this.browser.find(before);
     this.lookName = entry?.name ?? styleName(this.isophote.catalogue, look);
     byId("look-name").textContent = this.lookName;
     byId("look-about").textContent = entry?.about ?? "";
-    byId("reset").disabled = isSame(look, chosen);
+    byId("reset").disabled = isSame(look, before);
     byId("undo").disabled = !this.session.canUndo;
     byId("redo").disabled = !this.session.canRedo;
     if (why !== "edit") {
@@ -110,7 +110,7 @@ class Page {
     this.browser.mark(look);
     this.stage.setLook(look);
     if (why !== "address") {
-      this.address.show(look, why === "choose");
+      this.address.show(look, before, why === "choose");
     }
     document.title = `${this.lookName} – Isophote`;
   }

@@ -1,7 +1,7 @@
 // Pictures: read from files, and small enough to be worked on.
 
-/** Pixels of the longer side while a picture is worked on. */
-const SIDE = 2560;
+/** Pixels of the longer side while a picture is worked on: with a graphics card, and without one. */
+const [SIDE, SIDE_WITHOUT] = [2560, 960];
 
 /** Pixels of the longer side of thumbnails. */
 const SMALL = 320;
@@ -40,7 +40,7 @@ export class Picture {
   /** Makes one of a bitmap. */
   static async open(isophote, bitmap, name) {
     const picture = new Picture();
-    const limit = Math.min(SIDE, isophote.device.limits.maxTextureDimension2D);
+    const limit = Math.min(isophote.isSoftware ? SIDE_WITHOUT : SIDE, isophote.device.limits.maxTextureDimension2D);
     const worked = await shrunk(bitmap, limit);
     Object.assign(picture, { name, bitmap, width: worked.width, height: worked.height });
     picture.texture = isophote.texture(worked);

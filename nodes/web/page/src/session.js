@@ -35,9 +35,12 @@ export class Session extends EventTarget {
     return this.#at + 1 < this.#steps.length;
   }
 
-  /** Takes a look of the browser, a file or a link. */
-  choose(look, why = "choose") {
-    this.#put({ look: bare(look), chosen: bare(look) }, null, why);
+  /**
+   * Takes a look of the browser, a file or a link.
+   * @param chosen the look that it was made of, if it is another
+   */
+  choose(look, why = "choose", chosen = look) {
+    this.#put({ look: bare(look), chosen: bare(chosen) }, null, why);
   }
 
   /**

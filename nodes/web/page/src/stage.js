@@ -157,6 +157,9 @@ export class Stage extends EventTarget {
       this.#isophote.painter.paint(encoder, picture, this.#target(subject));
       device.queue.submit([encoder.finish()]);
     });
+    if (subject !== this.#subject) {
+      return;
+    }
     this.#before = inputs.color;
     this.viewport.resize(this.viewport.canvas, [subject.width, subject.height]);
     this.#paint();
