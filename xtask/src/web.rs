@@ -77,6 +77,7 @@ pub fn pack(built: &Built) -> Result<PathBuf> {
     let out = target_dir("web");
     let mut pack = npm();
     pack.args(["pack", "--silent", "--pack-destination"]).arg(&out).current_dir(&built.package);
+    pack.stdout(std::process::Stdio::null());
     run_command(&mut pack)?;
     Ok(out.join(format!("isophote-{}.tgz", env!("CARGO_PKG_VERSION"))))
 }
