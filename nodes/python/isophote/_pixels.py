@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,9 @@ def pixels(image: Any, name: str) -> Array:
 
     `name` is the input's, which says what other types of numbers mean.
     """
+    if isinstance(image, (str, os.PathLike)):
+        fix = "read it first, by numpy.asarray(PIL.Image.open(...)) or what else reads such files"
+        raise InvalidValueError(f"input image '{name}' is the name of a file; {fix}")
     array = np.asarray(image)
     if array.ndim == 2:
         array = array[:, :, np.newaxis]
@@ -71,6 +75,8 @@ class Target:
             out = np.empty(shape, dtype.newbyteorder("="))
         elif out.ndim not in (2, 3) or out.shape[:2] != (height, width):
             raise InvalidValueError(f"out has the shape {out.shape}, and the picture has {height} rows of {width} pixels")
+        if not out.flags.writeable:
+            raise InvalidValueError("out is read-only")
         self.out = out
         _format(out.dtype, "out")
         view = out[:, :, np.newaxis] if out.ndim == 2 else out

@@ -1,6 +1,7 @@
 //! The exceptions that Python sees.
 
 use crate::loader::Refusal;
+use crate::loader::contract::ISOPHOTE_ERROR_INVALID_ARGUMENT;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
@@ -13,6 +14,11 @@ pub fn raised(py: Python<'_>, refusal: &Refusal) -> PyErr {
         Ok(exception) => PyErr::from_value(exception),
         Err(failed) => failed,
     }
+}
+
+/// The exception for a value that cannot be, as the library's own for such values.
+pub fn invalid(message: String) -> PyErr {
+    Python::attach(|py| raised(py, &Refusal { status: ISOPHOTE_ERROR_INVALID_ARGUMENT, message }))
 }
 
 /// The exception for wrong use of this module.

@@ -1,15 +1,15 @@
 //! Motion vectors of renderers as the library's, by the conventions that all faces share.
 
 use crate::array::{Pixels, Use};
+use crate::exception::invalid;
 use crate::loader::contract::ISOPHOTE_SAMPLE_F32;
 use isophote_motion::{Convention, Way};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// Writes the vectors of a way into an array of two channels, from those of two passes, one of which may be missing.
 ///
 /// # Errors
-/// `ValueError` for a convention that does not exist, passes that lack its channels, and arrays of another size or type.
+/// `InvalidValueError` for a convention that does not exist, passes that lack its channels, and arrays of another size or type.
 #[pyfunction]
 #[pyo3(signature = (backward, forward, target, convention, is_forward))]
 pub fn motion(
@@ -25,9 +25,9 @@ pub fn motion(
     let passes =
         [pass(backward, "the pass to the frame before")?, pass(forward, "the pass to the frame after")?];
     let target = Pixels::of(target, "the target of vectors", Use::Write)?;
-    let convention: Convention = convention.parse().map_err(|fix| {
-        PyValueError::new_err(format!("'{convention}' is no convention of motion vectors; {fix}"))
-    })?;
+    let convention: Convention = convention
+        .parse()
+        .map_err(|fix| invalid(format!("'{convention}' is no convention of motion vectors; {fix}")))?;
     let way = if is_forward { Way::Forward } else { Way::Backward };
     let channels = passes.each_ref().map(|pass| pass.as_ref().map_or(0, |pass| pass.channels as usize));
     let found = convention.among(way, channels).and_then(|(from, places, rule)| {
@@ -36,11 +36,11 @@ pub fn motion(
         pass.as_ref().map(|pass| (pass, places, rule))
     });
     let Some((pass, places, rule)) = found else {
-        return Err(PyValueError::new_err("the passes of motion vectors have too few channels"));
+        return Err(invalid("the passes of motion vectors have too few channels".into()));
     };
     let shape = |pixels: &Pixels| (pixels.width, pixels.height, pixels.sample);
     if shape(pass) != shape(&target) || target.sample != ISOPHOTE_SAMPLE_F32 || target.channels != 2 {
-        return Err(PyValueError::new_err("motion vectors are arrays of float32 of one size"));
+        return Err(invalid("motion vectors are arrays of float32 of one size".into()));
     }
     let size = [target.width as f32, target.height as f32];
     let mut row = vec![0.0; target.width as usize * 2];

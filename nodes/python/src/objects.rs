@@ -1,21 +1,20 @@
 //! The classes of the extension module. `isophote/_native.pyi` describes them to type checkers.
 
 use crate::array::{Pixels, Use};
-use crate::exception::{raised, usage};
+use crate::exception::{invalid, raised, usage};
 use crate::loader::contract::{self as c, IsophoteRequest};
 use crate::loader::{self, Answer, Call, DeviceHandle, Report};
 use crate::opened::library;
 use crate::owned::Owned;
 use crate::watch::Watch;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// One of some words, or a `ValueError` that lists them.
+/// One of some words, or an error that lists them.
 fn word<T: Copy>(what: &str, given: &str, words: &[(&str, T)]) -> PyResult<T> {
     words.iter().find(|(word, _)| *word == given).map(|(_, value)| *value).ok_or_else(|| {
         let known: Vec<String> = words.iter().map(|(word, _)| format!("'{word}'")).collect();
-        PyValueError::new_err(format!("{what} is {}, not '{given}'", known.join(" or ")))
+        invalid(format!("{what} is {}, not '{given}'", known.join(" or ")))
     })
 }
 

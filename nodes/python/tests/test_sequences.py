@@ -141,7 +141,7 @@ def test_motion_vectors_of_renderers_are_understood() -> None:
     assert np.array_equal(arnold["motion"], -vector[:, ::-1, :2])
     own = isophote.motion(vector[..., :2], vector[..., 2:])
     assert np.array_equal(own["motion"], np.dstack([x, -y])) and np.array_equal(own["motion_forward"], np.dstack([z, -w]))
-    with pytest.raises(ValueError, match="no convention"):
+    with pytest.raises(isophote.InvalidValueError, match="no convention"):
         isophote.motion(vector, convention="cinema")
     with pytest.raises(ValueError, match="too few channels"):
         isophote.motion(vector[..., :1])
