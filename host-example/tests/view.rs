@@ -198,5 +198,5 @@ fn without_a_display_the_reason_is_the_system_s_own() {
         command.env_remove(name);
     }
     let problem = "error: no window can be opened: neither WAYLAND_DISPLAY";
-    support::fails(&mut command, 1, &[problem, "start the viewer in a desktop session"]);
+    support::fails(&mut command, 1, &[problem, "is set; start the viewer in a desktop session"]);
 }

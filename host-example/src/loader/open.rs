@@ -13,7 +13,8 @@ use crate::error::{Error, Result};
 const VARIABLE: &str = "ISOPHOTE_LIBRARY";
 
 /// How to fix most of what can go wrong.
-const FIX: &str = "build the library (cargo build -p isophote-plugin) or set ISOPHOTE_LIBRARY to its file";
+const FIX: &str = "copy the archive's folder lib beside its folder bin (in the sources: cargo build --workspace), or set \
+                   ISOPHOTE_LIBRARY to the library's file";
 
 /// The table of the library, and the file it came from.
 pub fn find() -> Result<(&'static IsophoteApi, PathBuf)> {

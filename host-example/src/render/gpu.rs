@@ -33,6 +33,14 @@ struct Faults {
     lost: Option<String>,
 }
 
+/// What wgpu says of the kinds of drivers that it looked for, without those that this program was not made for.
+fn reason(error: &wgpu::RequestAdapterError) -> String {
+    let text = error.to_string();
+    let said = text.split([';', ',']).map(str::trim).filter(|kind| !kind.contains("not compiled in"));
+    let said: Vec<&str> = said.filter(|kind| *kind != "No suitable graphics adapter found").collect();
+    if said.is_empty() { String::new() } else { format!(": {}", said.join(", ")) }
+}
+
 impl Gpu {
     /// Opens the best adapter there is, software drivers included; `WGPU_BACKEND` restricts the choice.
     ///
@@ -55,8 +63,9 @@ impl Gpu {
             compatible_surface: surface,
             ..Default::default()
         };
-        let adapter = pollster::block_on(instance.request_adapter(&options))
-            .map_err(|e| Error::failure(format!("no graphics adapter was found: {e}"), NO_ADAPTER))?;
+        let adapter = pollster::block_on(instance.request_adapter(&options)).map_err(|e| {
+            Error::failure(format!("no graphics adapter was found{}", reason(&e)), NO_ADAPTER)
+        })?;
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("isophote"),
             // Only for measuring; everything works without.

@@ -92,5 +92,9 @@ pub fn show(mut session: Session, size: Option<(u32, u32)>, with_report: bool) -
 
 /// Why the system refuses a window, without the line of winit's source that the text begins with.
 fn reason(problem: &str) -> &str {
-    problem.split_once(".rs:").and_then(|(_, place)| place.split_once(": ")).map_or(problem, |(_, why)| why)
+    problem
+        .split_once(".rs:")
+        .and_then(|(_, place)| place.split_once(": "))
+        .map_or(problem, |(_, why)| why)
+        .trim_end_matches('.')
 }
