@@ -132,7 +132,13 @@ fn files(folder: &Path) -> BTreeSet<String> {
 fn there_are_archives_and_checksums_and_nothing_half_done() {
     let archives = ["library", "openfx", "program", "card"].map(|kind| format!("{}.tar.gz", name(kind)));
     let expected: BTreeSet<String> = archives.into_iter().chain(["SHA256SUMS".to_owned()]).collect();
-    assert_eq!(files(&Unpacked::get().archives()), expected);
+    let mut found = files(&Unpacked::get().archives());
+    for ending in [".whl", ".zip"] {
+        let named: Vec<String> = found.iter().filter(|name| name.ends_with(ending)).cloned().collect();
+        assert!(matches!(named.as_slice(), [name] if name.contains(VERSION)), "{found:?}");
+        found.remove(&named[0]);
+    }
+    assert_eq!(found, expected);
 }
 
 #[test]
@@ -146,10 +152,13 @@ fn what_cannot_be_packed_leaves_what_was_there() {
     std::fs::write(bundle.join("Isophote.ofx"), b"\x7fELF\x02\x01\x01").unwrap();
     let built = library::path().parent().unwrap();
     let mut pack = Command::new(built.join("isophote-dist"));
-    pack.arg("--built")
+    pack.arg("pack")
+        .arg("--built")
         .arg(built)
         .arg("--bundle")
         .arg(&bundle)
+        .arg("--python")
+        .arg(folder.path())
         .arg("--out")
         .arg(folder.path())
         .arg("--draft");
@@ -346,4 +355,30 @@ fn licences_of_all_dependencies_come_along() {
     }
     // What only tests use is not given away.
     assert!(!program.contains("allocation-counter"));
+}
+
+#[test]
+fn the_wheel_and_the_extension_hold_licences_too() {
+    let unpacked = Unpacked::get();
+    let library = unpacked.of("library").join("share/doc/isophote/LICENSES-OF-OTHERS.txt");
+    let library = std::fs::read_to_string(library).unwrap();
+    let out = TempDir::new().unwrap();
+    let archives = unpacked.archives();
+    for (ending, place) in [("whl", "*.dist-info/licenses"), ("zip", ".")] {
+        let folder = out.path().join(ending);
+        let archive = format!("'{}'/*.{ending}", archives.display());
+        unpacked.run_in(out.path(), &format!("python3 -m zipfile -e {archive} {ending}"));
+        let listed = unpacked.run_in(&folder, &format!("cd {place} && ls LICENSE*"));
+        let expected = ["LICENSE-APACHE", "LICENSE-MIT", "LICENSES-OF-OTHERS.txt"];
+        assert_eq!(listed.lines().collect::<Vec<_>>(), expected);
+        let others = unpacked.run_in(&folder, &format!("cat {place}/LICENSES-OF-OTHERS.txt"));
+        // Those of the library, and of what makes it a module of Python.
+        for name in ["wgpu ", "naga ", "rayon ", "the Rust standard library"] {
+            assert!(library.contains(name) && others.contains(name), "{ending}: {name}");
+        }
+        assert!(others.contains("pyo3 ") && !library.contains("pyo3 "), "{ending}");
+    }
+    // The extension has the very wheel that is published by itself.
+    let same = format!("cmp zip/wheels/*.whl '{}'/*.whl", archives.display());
+    unpacked.run_in(out.path(), &same);
 }

@@ -1,15 +1,12 @@
-//! `cargo xtask dist`: the archives that users install, for the system and the machine that it runs on.
+//! `cargo xtask dist`: all that users install, for the system and the machine that it runs on.
 
 use crate::bundle;
 use crate::error::Result;
+use crate::packing;
+use crate::python::{self, RELEASED};
+use crate::setup::{self, C_COMPILER, PYTHON};
 use crate::tools::{build_with_host, heading, program, root, run as run_command, target_dir};
 use std::path::PathBuf;
-
-/// The package that packs.
-const PACKAGE: &str = "isophote-dist";
-
-/// The profile of what users get.
-const RELEASED: &str = "dist";
 
 /// Options of `cargo xtask dist`.
 #[derive(clap::Args)]
@@ -34,15 +31,25 @@ impl Options {
 /// # Errors
 /// The first step that fails.
 pub fn run(options: &Options) -> Result<()> {
+    setup::ensure(&[&C_COMPILER, &PYTHON])?;
     heading("build");
     // The folder of this profile has another name.
     let profile = if options.profile == "dev" { "debug" } else { &options.profile };
-    build_with_host(profile, &[bundle::ICONS, PACKAGE])?;
+    build_with_host(profile, &[bundle::ICONS, packing::PACKAGE])?;
     let bundle = target_dir("packed-bundle").join(bundle::FOLDER);
     bundle::write(&bundle, profile)?;
+    heading("Python");
+    let packed = target_dir("packed-python");
+    python::pack(profile, &packed)?;
     heading("archives");
-    let mut pack = program(PACKAGE, profile);
-    pack.arg("--built").arg(target_dir(profile)).arg("--bundle").arg(bundle);
+    let mut pack = program(packing::PACKAGE, profile);
+    pack.arg("pack")
+        .arg("--built")
+        .arg(target_dir(profile))
+        .arg("--bundle")
+        .arg(bundle)
+        .arg("--python")
+        .arg(packed);
     pack.arg("--out").arg(root().join(&options.out)).args(options.is_draft().then_some("--draft"));
     run_command(&mut pack)
 }

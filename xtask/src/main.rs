@@ -12,6 +12,7 @@ mod gallery;
 mod gpu_cost;
 mod header;
 mod looks;
+mod packing;
 mod python;
 mod readme;
 mod samples;
@@ -58,7 +59,7 @@ enum Chore {
     Card(dist::Options),
     /// Makes the OpenFX bundle, and installs it
     Bundle(bundle::Options),
-    /// Packs the library, the plugin and the program as archives that users install
+    /// Packs all that users install: the library, the plugin, the program, the wheel, the Blender extension
     Dist(dist::Options),
     /// Writes include/isophote.h from the Rust declarations
     Header(header::Options),

@@ -6,14 +6,16 @@
 //! interpreter, which would have it compiled anew with every change between the two.
 
 use crate::error::{Context, Failure, Result};
+use crate::packing;
 use crate::setup::{self, C_COMPILER, PYTHON};
 use crate::tools::{build_library, heading, host_file, library_file, root, run as run_command, target_dir};
 use std::ffi::OsStr;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The profile of what users get.
-const RELEASED: &str = "dist";
+pub const RELEASED: &str = "dist";
 
 /// Options of `cargo xtask wheel` and `cargo xtask blender`.
 #[derive(clap::Args)]
@@ -49,10 +51,32 @@ fn released(options: &WheelOptions) -> Result<(Environment, PathBuf)> {
     setup::ensure(&[&C_COMPILER, &PYTHON])?;
     heading("build");
     let profile = if options.debug { "debug" } else { RELEASED };
-    build_library(profile)?;
+    build_library(profile, &[packing::PACKAGE])?;
+    let _turn = turn()?;
     let environment = Environment::tools()?;
     let wheel = build_wheel(&environment, profile, &target_dir("wheels"))?;
     Ok((environment, wheel))
+}
+
+/// The right to change what all chores share, until it is dropped: the environments, and what is put beside the package.
+fn turn() -> Result<File> {
+    let (folder, failed) =
+        (target_dir("python"), || "cannot lock the folder of what Python needs".to_owned());
+    std::fs::create_dir_all(&folder).context(failed)?;
+    let file = File::create(folder.join("turn")).context(failed)?;
+    file.lock().context(failed)?;
+    Ok(file)
+}
+
+/// Packs the wheel and the extension of a build into a folder. The library and the program that packs must be built.
+///
+/// # Errors
+/// The first step that fails.
+pub fn pack(profile: &str, out: &Path) -> Result<()> {
+    let _turn = turn()?;
+    let environment = Environment::tools()?;
+    let wheel = build_wheel(&environment, profile, out)?;
+    pack_extension(&environment, &wheel, out).map(drop)
 }
 
 /// Packs the Blender extension with a wheel.
@@ -79,7 +103,7 @@ pub struct StubsOptions {
 /// When the package cannot be built, or (checking) the file is stale.
 pub fn stubs(options: &StubsOptions) -> Result<()> {
     setup::ensure(&[&C_COMPILER, &PYTHON])?;
-    build_library("debug")?;
+    build_library("debug", &[packing::PACKAGE])?;
     let (environment, _) = installed()?;
     let mut tool = environment.program("python");
     tool.arg(package().join("tools/stubs.py")).arg(package().join("isophote/nodes.pyi"));
@@ -130,20 +154,30 @@ const BLENDER_TESTS: &str = "blender/tests";
 /// The version of Python that the Blender of the tests is for.
 const BLENDER_PYTHON: &str = "3.11";
 
-/// Runs the tests of the extension in Blender, where this machine's Python has one.
-fn test_in_blender(tools: &Environment, wheel: &Path, filter: Option<&str>) -> Result<()> {
-    heading("Blender");
+/// An environment with Blender, or why there is none.
+fn with_blender(tools: &Environment) -> Result<std::result::Result<Environment, String>> {
     let version = tools.printed("import sys; print('%d.%d' % sys.version_info[:2])")?;
     if version != BLENDER_PYTHON {
-        let why = format!("Blender's module is for Python {BLENDER_PYTHON}, and this one is {version}");
-        if std::env::var_os("CI").is_some() {
-            return Err(Failure(why));
-        }
-        println!("{why}: the extension is not tested");
-        return Ok(());
+        return Ok(Err(format!(
+            "Blender's module is for Python {BLENDER_PYTHON}, and this one is {version}"
+        )));
     }
     let environment = Environment(target_dir("python").join("blender"));
     environment.fill(&package().join("blender/requirements.txt"))?;
+    Ok(Ok(environment))
+}
+
+/// Runs the tests of the extension in Blender, where this machine's Python has one.
+fn test_in_blender(tools: &Environment, wheel: &Path, filter: Option<&str>) -> Result<()> {
+    heading("Blender");
+    let environment = match with_blender(tools)? {
+        Ok(environment) => environment,
+        Err(why) if std::env::var_os("CI").is_some() => return Err(Failure(why)),
+        Err(why) => {
+            println!("{why}: the extension is not tested");
+            return Ok(());
+        }
+    };
     let extension = pack_extension(tools, wheel, &target_dir("python").join("extension"))?;
     // Blender's settings of the user stay as they are.
     let resources = target_dir("python").join("blender-user");
@@ -165,8 +199,32 @@ fn run_tests(pytest: &mut Command, filter: Option<&str>) -> Result<()> {
     if status.success() || is_none { Ok(()) } else { Err(Failure(format!("pytest ended with {status}"))) }
 }
 
+/// What the documentation's pages about Python and Blender are run with.
+pub struct Documented {
+    /// Folder of the wheel and the extension.
+    pub packages: PathBuf,
+    /// Folder of wheels of others, which pip takes instead of asking the network.
+    pub wheels: PathBuf,
+    /// Folder of the programs of an environment with Blender; none where this machine's Python has no Blender.
+    pub blender: Option<PathBuf>,
+}
+
+/// Makes it, of the build for development. The library and the program that packs must be built.
+///
+/// # Errors
+/// The first step that fails.
+pub fn documented() -> Result<Documented> {
+    let packages = target_dir("python").join("documented");
+    pack("debug", &packages)?;
+    let _turn = turn()?;
+    let tools = Environment::tools()?;
+    let blender = with_blender(&tools)?.ok().map(|environment| environment.programs());
+    Ok(Documented { packages, wheels: tools.downloaded()?, blender })
+}
+
 /// The environment with the wheel of the build for development in it, and that wheel.
 fn installed() -> Result<(Environment, PathBuf)> {
+    let _turn = turn()?;
     let environment = Environment::tools()?;
     let wheel = build_wheel(&environment, "debug", &target_dir("python").join("wheels"))?;
     let mut pip = environment.program("python");
@@ -194,13 +252,15 @@ fn build_wheel(environment: &Environment, profile: &str, out: &Path) -> Result<P
     maturin.arg("--target-dir").arg(target_dir("python")).arg("--out").arg(out);
     maturin.arg("--interpreter").arg(environment.file("python"));
     maturin.args(["--profile", if profile == "debug" { "dev" } else { profile }]);
-    // The library that is packed needs no later C library than the one that it was linked with.
-    if let Some(version) = environment.c_library()? {
+    if let Some(version) = packing::needed_glibc(&library_file(profile), profile)? {
         maturin.args(["--compatibility", &format!("manylinux_{}", version.replace('.', "_"))]);
     }
     run_command(&mut maturin)?;
     files(out, "whl")?.pop().ok_or_else(|| Failure("maturin has left no wheel".into()))
 }
+
+/// The packages that the wheel's binaries are.
+const COMPILED: [&str; 2] = ["isophote-plugin", "isophote-python"];
 
 /// Copies what is no part of the package's sources to where maturin packs it.
 fn put_beside_the_package(profile: &str) -> Result<()> {
@@ -211,6 +271,7 @@ fn put_beside_the_package(profile: &str) -> Result<()> {
     for licence in ["LICENSE-APACHE", "LICENSE-MIT"] {
         copy(&root().join(licence), &package())?;
     }
+    packing::write_licences(&COMPILED, profile, &package().join(packing::OTHERS))?;
     let (library, inner) = (library_file(profile), package().join("isophote"));
     copy(&library, &inner)?;
     let looks = inner.join("looks");
@@ -269,9 +330,41 @@ impl Environment {
         std::fs::write(&filled, wanted).context(|| format!("cannot write {}", filled.display()))
     }
 
+    /// Wheels of what the pages about Python install, in the versions of the environment.
+    fn downloaded(&self) -> Result<PathBuf> {
+        let failed = || "cannot keep the wheels that pages install".to_owned();
+        let folder = target_dir("python").join("downloaded");
+        let requirements = std::fs::read_to_string(self.0.join("requirements.txt")).context(failed)?;
+        let wanted: Vec<&str> = requirements
+            .lines()
+            .filter(|line| line.starts_with("numpy=") || line.starts_with("pillow="))
+            .collect();
+        let list = folder.join("list.txt");
+        if std::fs::read_to_string(&list).is_ok_and(|has| has == wanted.join("\n")) {
+            return Ok(folder);
+        }
+        let mut pip = self.program("python");
+        pip.args([
+            "-m",
+            "pip",
+            "download",
+            "--quiet",
+            "--disable-pip-version-check",
+            "--only-binary",
+            ":all:",
+        ]);
+        run_command(pip.arg("--dest").arg(&folder).args(&wanted))?;
+        std::fs::write(&list, wanted.join("\n")).context(failed)?;
+        Ok(folder)
+    }
+
+    /// The folder of its programs.
+    fn programs(&self) -> PathBuf {
+        self.0.join(if cfg!(windows) { "Scripts" } else { "bin" })
+    }
+
     fn file(&self, program: &str) -> PathBuf {
-        let folder = self.0.join(if cfg!(windows) { "Scripts" } else { "bin" });
-        folder.join(format!("{program}{}", std::env::consts::EXE_SUFFIX))
+        self.programs().join(format!("{program}{}", std::env::consts::EXE_SUFFIX))
     }
 
     fn program(&self, program: impl AsRef<str>) -> Command {
@@ -305,11 +398,5 @@ impl Environment {
         let output = self.program("python").args(["-c", line]).output();
         let output = output.context(|| "Python cannot be started".into())?;
         Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
-    }
-
-    /// The version of the GNU C library, where there is one.
-    fn c_library(&self) -> Result<Option<String>> {
-        let printed = self.printed("import platform; print(*platform.libc_ver())")?;
-        Ok(printed.strip_prefix("glibc ").map(str::to_owned))
     }
 }

@@ -70,12 +70,14 @@ fn chosen(profile: &str) -> Vec<&str> {
     if profile == "debug" { Vec::new() } else { vec!["--profile", profile] }
 }
 
-/// Builds the dynamic library, and the others of the workspace as [`build_with_host`] does.
+/// Builds the dynamic library, the others of the workspace as [`build_with_host`] does, and some programs.
 ///
 /// # Errors
 /// The command line, when it fails.
-pub fn build_library(profile: &str) -> Result<()> {
-    run(cargo_command(&["build", "--quiet", "--workspace", "--lib"]).args(chosen(profile)))
+pub fn build_library(profile: &str, programs: &[&str]) -> Result<()> {
+    let mut command = cargo_command(&["build", "--quiet", "--workspace", "--lib"]);
+    command.args(programs.iter().flat_map(|program| ["--bin", program]));
+    run(command.args(chosen(profile)))
 }
 
 /// The dynamic library of a build.

@@ -44,7 +44,8 @@ def main() -> None:
     parser.add_argument("wheel", type=Path)
     parser.add_argument("out", type=Path)
     options = parser.parse_args()
-    source = Path(__file__).parents[1] / "blender/isophote_blender"
+    package = Path(__file__).parents[1]
+    source = package / "blender/isophote_blender"
     version = options.wheel.name.split("-")[1]
     options.out.mkdir(parents=True, exist_ok=True)
     packed = options.out / f"isophote-blender-{version}-{platform(options.wheel)}.zip"
@@ -53,6 +54,9 @@ def main() -> None:
         archive.writestr("blender_manifest.toml", manifest(text, options.wheel))
         for file in sorted(source.glob("*.py")):
             archive.write(file, file.name)
+        # Those that the wheel was made with, too.
+        for licence in sorted(package.glob("LICENSE*")):
+            archive.write(licence, licence.name)
         # Wheels are compressed already.
         archive.write(options.wheel, f"wheels/{options.wheel.name}", zipfile.ZIP_STORED)
     print(packed)

@@ -3,6 +3,7 @@
 use crate::binary;
 use crate::editors;
 use crate::error::{Error, Result};
+use crate::pack;
 use crate::share::{Names, VERSION, abi_version, add_library, add_licences};
 use crate::tree::{Entry, Tree};
 use std::path::{Path, PathBuf};
@@ -12,42 +13,66 @@ use std::process::Command;
 pub struct Archive {
     /// What it is, in its name.
     kind: &'static str,
-    fill: fn(&Built, &mut Tree) -> Result<()>,
+    contents: Contents,
+}
+
+/// Where the contents of an archive come from.
+enum Contents {
+    /// They are gathered and packed here.
+    Gathered(fn(&Built, &mut Tree) -> Result<()>),
+    /// Python's tools have packed them, into a file with this ending.
+    Packed(&'static str),
 }
 
 /// All archives.
-pub const ARCHIVES: [Archive; 4] = [
-    Archive { kind: "library", fill: library },
-    Archive { kind: "openfx", fill: openfx },
-    Archive { kind: "program", fill: program },
-    Archive { kind: "card", fill: card },
+pub const ARCHIVES: [Archive; 6] = [
+    Archive { kind: "library", contents: Contents::Gathered(library) },
+    Archive { kind: "openfx", contents: Contents::Gathered(openfx) },
+    Archive { kind: "program", contents: Contents::Gathered(program) },
+    Archive { kind: "card", contents: Contents::Gathered(card) },
+    Archive { kind: "wheel", contents: Contents::Packed("whl") },
+    Archive { kind: "blender", contents: Contents::Packed("zip") },
 ];
 
 impl Archive {
-    /// Name of the file without its ending, and of the folder in it.
-    pub fn name(&self) -> String {
-        let (system, machine) = (std::env::consts::OS, std::env::consts::ARCH);
-        format!("isophote-{}-{VERSION}-{system}-{machine}", self.kind)
-    }
-
-    /// What it holds.
+    /// Writes it into a folder; returns its name and its checksum.
     ///
     /// # Errors
-    /// A binary or a licence that must not leave, and what cannot be read.
-    pub fn tree(&self, built: &Built) -> Result<Tree> {
-        let mut tree = Tree::default();
-        (self.fill)(built, &mut tree)?;
-        Ok(tree)
+    /// A binary or a licence that must not leave, and what cannot be read or written.
+    pub fn write(&self, built: &Built, to: &Path) -> Result<(String, String)> {
+        match self.contents {
+            Contents::Gathered(fill) => {
+                let mut tree = Tree::default();
+                fill(built, &mut tree)?;
+                let (system, machine) = (std::env::consts::OS, std::env::consts::ARCH);
+                let folder = format!("isophote-{}-{VERSION}-{system}-{machine}", self.kind);
+                let name = format!("{folder}.tar.gz");
+                let sum = pack::pack(&tree, &folder, &to.join(&name), built.draft)?;
+                Ok((name, sum))
+            }
+            Contents::Packed(ending) => {
+                let file = built.packed(self.kind, ending)?;
+                let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                let copy = to.join(&name);
+                std::fs::copy(&file, &copy).map_err(Error::at(&file))?;
+                Ok((name, pack::checksum(&copy)?))
+            }
+        }
     }
 }
 
 /// What was built before.
 pub struct Built {
-    root: PathBuf,
+    /// The root of the repository.
+    pub root: PathBuf,
     /// Folder of the library and the program.
-    folder: PathBuf,
-    bundle: PathBuf,
-    draft: bool,
+    pub folder: PathBuf,
+    /// The OpenFX bundle.
+    pub bundle: PathBuf,
+    /// Folder of the wheel and the Blender extension.
+    pub python: PathBuf,
+    /// Whether it is not what users get.
+    pub draft: bool,
 }
 
 impl Built {
@@ -55,11 +80,26 @@ impl Built {
     ///
     /// # Errors
     /// [`Error::File`] naming what is missing.
-    pub fn find(root: &Path, folder: &Path, bundle: &Path, draft: bool) -> Result<Self> {
-        for path in [root, folder, bundle] {
+    pub fn check(&self) -> Result<()> {
+        for path in [&self.root, &self.folder, &self.bundle, &self.python] {
             std::fs::metadata(path).map_err(Error::at(path))?;
         }
-        Ok(Self { root: root.to_owned(), folder: folder.to_owned(), bundle: bundle.to_owned(), draft })
+        Ok(())
+    }
+
+    /// The one file with this ending that Python's tools have packed.
+    fn packed(&self, kind: &str, ending: &str) -> Result<PathBuf> {
+        let entries = std::fs::read_dir(&self.python).map_err(Error::at(&self.python))?;
+        let files = entries.flatten().map(|entry| entry.path());
+        let found: Vec<PathBuf> =
+            files.filter(|path| path.extension().is_some_and(|e| e == ending)).collect();
+        match found.as_slice() {
+            [file] => Ok(file.clone()),
+            _ => {
+                let problem = format!("holds {} files .{ending} instead of one, the {kind}", found.len());
+                Err(Error::malformed(&self.python, problem))
+            }
+        }
     }
 
     fn source(&self, path: &str) -> PathBuf {
@@ -86,6 +126,7 @@ fn library(built: &Built, tree: &mut Tree) -> Result<()> {
         text.replace("@VERSION@", VERSION)
             .replace("@LIBRARY@", &format!("{folder}/{}", names.file))
             .replace("@SONAME@", &names.soname)
+            .replace("@PLAIN@", &names.plain)
     };
     tree.text("lib/pkgconfig/isophote.pc", filled(include_str!("../files/isophote.pc")));
     let cmake = "lib/cmake/Isophote";

@@ -1,5 +1,6 @@
-//! `isophote-dist`, run by `cargo xtask dist`: packs what was built into the archives that users install, and writes
-//! their checksums. Every archive appears under its name only when all of them are complete.
+//! `isophote-dist`, run by `cargo xtask dist`: packs what was built into what users install, and writes the checksums.
+//! Every file appears under its name only when all of them are complete. The wheel and the Blender extension are packed
+//! by tools of Python's; this gives them the licences of others, and publishes them with the rest.
 
 mod archives;
 mod binary;
@@ -20,14 +21,38 @@ use std::process::ExitCode;
 /// Packs what was built.
 #[derive(Parser)]
 #[command(bin_name = "cargo xtask dist")]
-struct Options {
+enum Options {
+    /// Writes all that users install
+    Pack(Pack),
+    /// Prints the version of the C library that a binary needs
+    Needs {
+        /// The binary
+        #[arg(value_name = "FILE")]
+        binary: PathBuf,
+    },
+    /// Writes the licences of all packages that some of the workspace's are compiled of
+    Licences {
+        /// The file
+        #[arg(value_name = "FILE")]
+        to: PathBuf,
+        /// Packages of the workspace
+        #[arg(value_name = "PACKAGE", required = true)]
+        of: Vec<String>,
+    },
+}
+
+#[derive(clap::Args)]
+struct Pack {
     /// Folder of the build: the library and the program
     #[arg(long, value_name = "DIR")]
     built: PathBuf,
     /// The OpenFX bundle, with its catalogue beside it
     #[arg(long, value_name = "DIR")]
     bundle: PathBuf,
-    /// Where the archives go
+    /// Folder of the wheel and the Blender extension
+    #[arg(long, value_name = "DIR")]
+    python: PathBuf,
+    /// Where all goes
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Takes binaries with symbols, and packs fast instead of small
@@ -36,7 +61,17 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
+    let done = match Options::parse() {
+        Options::Pack(options) => pack_all(&options),
+        Options::Needs { binary } => {
+            binary::needed_glibc(&binary).map(|version| println!("{}", version.unwrap_or_default()))
+        }
+        Options::Licences { to, of } => {
+            share::licences_of(&root(), &of.iter().map(String::as_str).collect::<Vec<_>>())
+                .and_then(|text| std::fs::write(&to, text).map_err(Error::at(&to)))
+        }
+    };
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("isophote-dist: {error}");
@@ -45,9 +80,16 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(options: &Options) -> Result<()> {
+fn pack_all(options: &Pack) -> Result<()> {
     std::fs::create_dir_all(&options.out).map_err(Error::at(&options.out))?;
-    let built = Built::find(&root(), &options.built, &options.bundle, options.draft)?;
+    let built = Built {
+        root: root(),
+        folder: options.built.clone(),
+        bundle: options.bundle.clone(),
+        python: options.python.clone(),
+        draft: options.draft,
+    };
+    built.check()?;
     let half_done = tempfile::Builder::new()
         .prefix(".packing-")
         .tempdir_in(&options.out)
@@ -55,11 +97,9 @@ fn run(options: &Options) -> Result<()> {
     let mut sums = String::new();
     let mut names = Vec::new();
     for archive in &ARCHIVES {
-        let name = archive.name();
-        let file = half_done.path().join(format!("{name}.tar.gz"));
-        let sum = pack::pack(&archive.tree(&built)?, &name, &file, options.draft)?;
-        sums.push_str(&format!("{sum}  {name}.tar.gz\n"));
-        names.push(format!("{name}.tar.gz"));
+        let (name, sum) = archive.write(&built, half_done.path())?;
+        sums.push_str(&format!("{sum}  {name}\n"));
+        names.push(name);
     }
     names.push("SHA256SUMS".to_owned());
     let list = half_done.path().join("SHA256SUMS");

@@ -55,7 +55,11 @@ fn header(size: u64, mode: u32) -> Header {
     header
 }
 
-fn checksum(file: &Path) -> Result<String> {
+/// The SHA-256 of a file as it is written in lists of checksums.
+///
+/// # Errors
+/// [`Error::File`] when it cannot be read.
+pub fn checksum(file: &Path) -> Result<String> {
     let bytes = std::fs::read(file).map_err(Error::at(file))?;
     Ok(Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect())
 }

@@ -29,8 +29,16 @@ pub fn add_licences(tree: &mut Tree, place: &str, root: &Path, packages: &[&str]
     for name in ["LICENSE-APACHE", "LICENSE-MIT"] {
         tree.copy(format!("{place}/{name}"), root.join(name));
     }
-    tree.text(format!("{place}/LICENSES-OF-OTHERS.txt"), licences::text(&dependencies(root, packages)?)?);
+    tree.text(format!("{place}/LICENSES-OF-OTHERS.txt"), licences_of(root, packages)?);
     Ok(())
+}
+
+/// The licences of all packages that `packages` are compiled of, as one text.
+///
+/// # Errors
+/// A licence that is not allowed, and what cannot be read.
+pub fn licences_of(root: &Path, packages: &[&str]) -> Result<String> {
+    licences::text(&dependencies(root, packages)?)
 }
 
 /// Names of the installed library: the file, and those that lead to it.
