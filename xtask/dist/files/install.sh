@@ -40,7 +40,11 @@ case $what in
     kdenlive) from=$here/kdenlive; names=$(ls "$from"); folder=${folder:-$data/kdenlive/effects} ;;
 esac
 
-if [ "$remove" = no ] && { ! mkdir -p "$folder" 2>/dev/null || [ ! -w "$folder" ]; }; then
+if [ "$remove" = yes ] && [ ! -d "$folder" ]; then
+    echo "nothing to remove: there is no $folder"
+    exit 0
+fi
+if ! mkdir -p "$folder" 2>/dev/null || [ ! -w "$folder" ]; then
     echo "$0: $folder cannot be written: run this as an administrator (sudo), or name another folder with --to" >&2
     exit 1
 fi
@@ -62,5 +66,8 @@ if [ "$remove" = yes ]; then
     echo "removed from $folder"
 else
     echo "installed into $folder"
+    if [ "$what" = plugin ] && [ "$folder" != "$plugins" ]; then
+        echo "Hosts search it when OFX_PLUGIN_PATH names it: export OFX_PLUGIN_PATH='$folder'"
+    fi
     echo "Start the host anew. OPENFX.md says what each host remembers of an older version."
 fi
