@@ -7,8 +7,9 @@ use isophote::registry;
 use std::path::Path;
 
 /// Pages written for the site: part, place, title.
-const WRITTEN: [(&str, &str, &str); 17] = [
+const WRITTEN: [(&str, &str, &str); 20] = [
     ("", "index", "Isophote"),
+    ("", "install", "Install"),
     ("For artists", "artists/first-look", "First look in five minutes"),
     ("For artists", "artists/window", "The artist's window"),
     ("For artists", "artists/recipes", "Recipes"),
@@ -23,6 +24,8 @@ const WRITTEN: [(&str, &str, &str); 17] = [
     ("For engine authors", "engines/rust", "From Rust"),
     ("For render TDs", "farms/sequences", "Sequences"),
     ("For render TDs", "farms/memory", "Memory and threads"),
+    ("For Python programmers", "python/arrays", "Arrays, looks, sequences"),
+    ("For Blender users", "blender/extension", "The Blender extension"),
     ("For contributors", "contributors/start", "Where to begin"),
     ("Nodes", "nodes/index", "All nodes"),
 ];

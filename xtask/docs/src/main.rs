@@ -50,6 +50,15 @@ struct Options {
     /// The demo scene
     #[arg(long, value_name = "FILE", hide = true)]
     scene: PathBuf,
+    /// Folder of the wheel and the Blender extension
+    #[arg(long, value_name = "DIR", hide = true)]
+    packages: PathBuf,
+    /// Folder of wheels of others
+    #[arg(long, value_name = "DIR", hide = true)]
+    wheels: PathBuf,
+    /// Folder of the Python that has Blender as a module; without it, what needs Blender is not run
+    #[arg(long, value_name = "DIR", hide = true)]
+    blender: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
@@ -91,6 +100,9 @@ fn run(options: &Options) -> Result<()> {
         scene: &options.scene,
         library: &options.library,
         root: &root,
+        packages: &options.packages,
+        wheels: &options.wheels,
+        blender: options.blender.as_deref(),
     };
     let counts = commands(&seed, &pages, &rendered, [&root, scratch.path(), &site])?;
 

@@ -45,6 +45,11 @@ impl Block {
         self.info.split_whitespace().any(|word| word == "by-hand")
     }
 
+    /// Commands whose `python` has Blender as a module.
+    pub fn needs_blender(&self) -> bool {
+        self.info.split_whitespace().any(|word| word == "blender")
+    }
+
     /// The file that it is.
     pub fn file(&self) -> Option<&str> {
         self.info.split_whitespace().find_map(|word| word.strip_prefix("file="))

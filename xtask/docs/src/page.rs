@@ -24,13 +24,15 @@ pub const DOCUMENTS: [(&str, &str, &str, &str); 4] = [
 ];
 
 /// Parts in their order.
-pub const PARTS: [&str; 8] = [
+pub const PARTS: [&str; 10] = [
     "",
     "For artists",
     "Styles",
     "For compositors",
     "For engine authors",
     "For render TDs",
+    "For Python programmers",
+    "For Blender users",
     "For contributors",
     "Nodes",
 ];

@@ -21,6 +21,12 @@ pub struct Seed<'a> {
     pub library: &'a Path,
     /// The repository.
     pub root: &'a Path,
+    /// Folder of the wheel and the Blender extension.
+    pub packages: &'a Path,
+    /// Folder of wheels of others, from which pip installs.
+    pub wheels: &'a Path,
+    /// Folder of the Python that has Blender as a module, if there is one.
+    pub blender: Option<&'a Path>,
 }
 
 /// Number of commands on a page.
@@ -34,7 +40,7 @@ pub struct Counts {
 
 impl Seed<'_> {
     /// Renders the demo scene as `photo.png` and as the sequence `shot.1001.exr` to `shot.1004.exr`, and puts the scene
-    /// (`scene.gltf`), the program, the header and the library beside them.
+    /// (`scene.gltf`), the program, the header, the library, the wheel and the Blender extension beside them.
     fn make(&self) -> Result<()> {
         let folder = &self.folder;
         for name in ["bin", "include", "lib"] {
@@ -43,7 +49,13 @@ impl Seed<'_> {
         }
         link(self.host, &folder.join("bin/isophote"))?;
         link(&self.root.join("include/isophote.h"), &folder.join("include/isophote.h"))?;
-        link(self.library, &folder.join("lib/libisophote.so"))?;
+        for name in ["libisophote.so", "libisophote.so.1"] {
+            link(self.library, &folder.join("lib").join(name))?;
+        }
+        for entry in std::fs::read_dir(self.packages).map_err(Error::at(self.packages))? {
+            let path = entry.map_err(Error::at(self.packages))?.path();
+            link(&path, &folder.join(path.file_name().unwrap_or_default()))?;
+        }
         let sources = self.scene.parent().unwrap_or(self.scene);
         for entry in std::fs::read_dir(sources).map_err(Error::at(sources))? {
             let path = entry.map_err(Error::at(sources))?.path();
@@ -60,9 +72,13 @@ impl Seed<'_> {
         render("shot.####.exr", &["--size", "240x160", "--animate", "--frames", "1001-1004"])
     }
 
-    /// The folder of the program in front of the system's.
-    fn path(&self) -> OsString {
+    /// The folders of the program, and of a Python with Blender where that is asked for, in front of the system's.
+    fn path(&self, blender: Option<&Path>) -> OsString {
         let mut path = self.folder.join("bin").into_os_string();
+        if let Some(blender) = blender {
+            path.push(":");
+            path.push(blender);
+        }
         if let Some(system) = std::env::var_os("PATH") {
             path.push(":");
             path.push(system);
@@ -87,7 +103,7 @@ impl Seed<'_> {
                 std::fs::create_dir_all(scratch).map_err(Error::at(scratch))?;
                 let file = scratch.join(name);
                 std::fs::write(&file, &block.text).map_err(Error::at(&file))?;
-            } else if block.is_shell() && block.is_by_hand() {
+            } else if block.is_shell() && (block.is_by_hand() || self.is_without(block)) {
                 counts.by_hand += 1;
             } else if block.is_shell() {
                 self.shell(page, block, scratch)?;
@@ -97,9 +113,18 @@ impl Seed<'_> {
         Ok(counts)
     }
 
+    /// Whether a block needs a Blender that is not there.
+    fn is_without(&self, block: &Block) -> bool {
+        block.needs_blender() && self.blender.is_none()
+    }
+
     fn shell(&self, page: &Page, block: &Block, scratch: &Path) -> Result<()> {
         let mut command = Command::new("sh");
-        command.args(["-e", "-c", &block.text]).current_dir(scratch).env("PATH", self.path());
+        let blender = self.blender.filter(|_| block.needs_blender());
+        command.args(["-e", "-c", &block.text]).current_dir(scratch).env("PATH", self.path(blender));
+        // What pages install comes from this machine, and nothing of its user is used or changed.
+        command.env("PIP_NO_INDEX", "1").env("PIP_FIND_LINKS", self.wheels);
+        command.env("BLENDER_USER_RESOURCES", scratch.join("blender")).env_remove("PYTHONPATH");
         let output = command.output().map_err(Error::at(Path::new("sh")))?;
         if output.status.success() {
             return Ok(());

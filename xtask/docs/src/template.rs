@@ -26,19 +26,18 @@ pub fn framed(page: &Page, rendered: &Rendered, pages: &[Page]) -> String {
 /// All pages, the part of the one that is shown open.
 fn contents(shown: &Page, pages: &[Page], top: &str) -> String {
     let mut html = format!("<a class=\"home\" href=\"{top}index.html\">Isophote</a>\n");
+    let link = |page: &Page| {
+        let is_shown = if page.path == shown.path { " aria-current=\"page\"" } else { "" };
+        format!("<li><a href=\"{top}{}.html\"{is_shown}>{}</a></li>\n", page.path, escaped(&page.title))
+    };
+    let links = |part: &str| -> String {
+        pages.iter().filter(|page| page.part == part && page.path != "index").map(link).collect()
+    };
+    let _ = writeln!(html, "<ul>\n{}</ul>", links(""));
     for part in PARTS.iter().filter(|part| !part.is_empty()) {
         let is_open = if shown.part == *part { " open" } else { "" };
-        let _ = writeln!(html, "<details{is_open}><summary>{part}</summary><ul>");
-        for page in pages.iter().filter(|page| page.part == *part) {
-            let is_shown = if page.path == shown.path { " aria-current=\"page\"" } else { "" };
-            let _ = writeln!(
-                html,
-                "<li><a href=\"{top}{}.html\"{is_shown}>{}</a></li>",
-                page.path,
-                escaped(&page.title)
-            );
-        }
-        html.push_str("</ul></details>\n");
+        let _ =
+            writeln!(html, "<details{is_open}><summary>{part}</summary><ul>\n{}</ul></details>", links(part));
     }
     html
 }
