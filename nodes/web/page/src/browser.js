@@ -2,7 +2,7 @@
 
 import { looks } from "isophote";
 import { byId, make } from "./dom.js";
-import { isSame } from "./look.js";
+import { firstSentence, isSame } from "./look.js";
 
 /** Looks, styles and filters as cards; `{id, name, about, style, look, words}`. */
 function entries(catalogue) {
@@ -19,7 +19,7 @@ function entries(catalogue) {
     id: `style-${id}`,
     section,
     name: label,
-    about: doc.split(/(?<=[.:])\s/)[0].replace(/:$/, "."),
+    about: firstSentence(doc),
     style: id,
     look: { style: id, lengths: "relative", parameters: {} },
     words: `${label} ${doc} ${section}`.toLowerCase(),

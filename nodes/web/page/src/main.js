@@ -6,7 +6,7 @@ import { byId } from "./dom.js";
 import { openEngine, sentence } from "./engine.js";
 import { listen, sort } from "./files.js";
 import { keys, tabs } from "./keys.js";
-import { fromFile, isSame, styleName } from "./look.js";
+import { description, fromFile, isSame } from "./look.js";
 import { readModel } from "./gltf.js";
 import { Model } from "./model.js";
 import { Navigation } from "./navigation.js";
@@ -95,10 +95,10 @@ class Page {
 
   #changed(why) {
     const { look, chosen: before } = this.session;
-    const entry = this.browser.find(before);
-    this.lookName = entry?.name ?? styleName(this.isophote.catalogue, look);
-    byId("look-name").textContent = this.lookName;
-    byId("look-about").textContent = entry?.about ?? "";
+    const { name, about } = this.browser.find(before) ?? description(this.isophote.catalogue, look);
+    this.lookName = name;
+    byId("look-name").textContent = name;
+    byId("look-about").textContent = about;
     byId("reset").disabled = isSame(look, before);
     byId("undo").disabled = !this.session.canUndo;
     byId("redo").disabled = !this.session.canRedo;

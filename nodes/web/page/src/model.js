@@ -9,9 +9,10 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { NAMES, targets } from "isophote/three";
 import { frame } from "./framing.js";
 import { furnish } from "./light.js";
+import { small } from "./picture.js";
 
-/** Pixels of the longer side: of what is shown, at most; of what is saved, at least; of thumbnails. */
-const [SHOWN, SAVED, SMALL] = [2560, 2560, 320];
+/** Pixels of the longer side: of what is shown, at most; of what is saved, at least. */
+const [SHOWN, SAVED] = [2560, 2560];
 
 /** Samples for each pixel of the colour; guides have one, since depths of different things have no mean. */
 const SAMPLES = 4;
@@ -200,7 +201,7 @@ export class Model {
 
   /** What thumbnails are made of; it lasts until the model is closed. */
   async thumbnail() {
-    return this.#at(SMALL).inputs;
+    return this.#at(small(this.isophote)).inputs;
   }
 
   /** What is saved. */

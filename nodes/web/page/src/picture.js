@@ -1,10 +1,10 @@
 // Pictures: read from files, and small enough to be worked on.
 
 /** Pixels of the longer side while a picture is worked on: with a graphics card, and without one. */
-const [SIDE, SIDE_WITHOUT] = [2560, 960];
+const [SIDE, SIDE_WITHOUT] = [2560, 640];
 
 /** Pixels of the longer side of thumbnails. */
-const SMALL = 320;
+export const small = (isophote) => (isophote.isSoftware ? 144 : 320);
 
 /**
  * Reads a picture.
@@ -44,7 +44,7 @@ export class Picture {
     const worked = await shrunk(bitmap, limit);
     Object.assign(picture, { name, bitmap, width: worked.width, height: worked.height });
     picture.texture = isophote.texture(worked);
-    picture.small = await shrunk(worked, SMALL);
+    picture.small = await shrunk(worked, small(isophote));
     return picture;
   }
 
