@@ -1,69 +1,33 @@
-// The browser page, from its file, in a browser without a window and without a graphics card.
-//
-// ISOPHOTE_PAGE is the page, ISOPHOTE_PACKAGE the package that it was made of, ISOPHOTE_CHROMIUM the browser, if not the system's.
+// The browser page, from its file. ISOPHOTE_PAGE is the file; `browser.mjs` says which browser.
 
 import assert from "node:assert/strict";
-import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join, resolve } from "node:path";
+import { readFileSync } from "node:fs";
+import { resolve } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { chromium } from "playwright-core";
+import { built, launch } from "./browser.mjs";
 import { glb, photo, sizeOf, tetrahedron } from "./made.mjs";
 
 /** Milliseconds that a step may take: the device of these tests is a processor. */
 const PATIENCE = 120_000;
 
-const FLAGS = [
-  "--headless=new",
-  "--no-sandbox",
-  "--enable-unsafe-webgpu",
-  "--use-webgpu-adapter=swiftshader",
-  // Canvases are shown by the same software driver; without it the browser's process for graphics ends at the first frame.
-  "--enable-features=Vulkan",
-  "--use-vulkan=swiftshader",
-  "--use-angle=swiftshader",
-  "--disable-gpu-sandbox",
-  "--disable-quic",
-  "--no-first-run",
-  "--disable-background-networking",
-  "--disable-component-update",
-  "--disable-sync",
-];
-
 let browser;
-let profile;
 let address;
 /** What went wrong on any page, and what any page asked the network for. */
 const complaints = [];
 const requests = [];
 
 before(async () => {
-  const file = process.env.ISOPHOTE_PAGE;
-  assert.ok(file && existsSync(file), "ISOPHOTE_PAGE names no file: bundle the page first");
-  address = pathToFileURL(resolve(file)).href;
-  const candidates = [process.env.ISOPHOTE_CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-headless-shell"];
-  const executablePath = candidates.find((path) => path && existsSync(path));
-  assert.ok(executablePath, "no browser: install Debian's package chromium, or set ISOPHOTE_CHROMIUM");
-  profile = mkdtempSync(join(tmpdir(), "isophote-page-"));
-  browser = await chromium.launchPersistentContext(profile, {
-    executablePath,
-    args: FLAGS,
-    ignoreDefaultArgs: ["--headless", "--disable-features"],
-    viewport: { width: 800, height: 420 },
-    acceptDownloads: true,
-  });
-  browser.setDefaultTimeout(PATIENCE);
+  address = pathToFileURL(resolve(built("ISOPHOTE_PAGE"))).href;
+  browser = await launch();
 });
 
-after(async () => {
-  await browser?.close();
-  rmSync(profile, { recursive: true, force: true });
-});
+after(() => browser?.close());
 
 /** Opens the page and waits until its first picture is shown. */
 async function open(hash = "") {
-  const page = await browser.newPage();
+  const page = await browser.newPage({ viewport: { width: 800, height: 420 }, acceptDownloads: true });
+  page.setDefaultTimeout(PATIENCE);
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
   page.on("pageerror", (error) => complaints.push(error.message));
   page.on("request", (request) => /^(https?|wss?|ftp):/.test(request.url()) && requests.push(request.url()));
@@ -305,6 +269,23 @@ test("saving gives all pixels", async () => {
   const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Save PNG" }).click()]);
   assert.equal(download.suggestedFilename(), "wide-gaussian.png");
   assert.deepEqual(sizeOf(readFileSync(await download.path())), [2700, 20]);
+  await page.close();
+});
+
+test("a lost device is told, and the page goes on with another", async () => {
+  const page = await open();
+  await dropPhoto(page);
+  const look = await shot(page);
+  const known = complaints.length;
+  const session = await page.context().newCDPSession(page);
+  await session.send("Browser.crashGpuProcess");
+  assert.match(await message(page, "lost"), /The graphics device was lost/);
+  await page.getByRole("button", { name: "Go on" }).click();
+  await page.waitForFunction(() => document.querySelector("#stage").getAttribute("aria-busy") === "true");
+  await settled(page);
+  assert.deepEqual(await shot(page), look, "the new device shows other pixels");
+  // The browser itself warns of the device that is gone.
+  complaints.splice(known, complaints.length, ...complaints.slice(known).filter((text) => !/external Instance/.test(text)));
   await page.close();
 });
 
