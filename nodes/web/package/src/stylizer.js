@@ -9,6 +9,8 @@ export class Stylizer {
   #picture;
   #plan;
   #program;
+  /** Whether the planner is ahead of the device, which refused what it should build. */
+  #isBehind = false;
   /** Updates follow one another, however long shaders compile. */
   #last = Promise.resolve();
 
@@ -55,10 +57,12 @@ export class Stylizer {
       const picture = { ...this.#picture, frame, origin };
       const { json, bytes } = this.#isophote.planner.ask({ ask: "update", plan: this.#plan, look, picture });
       [this.#look, this.#picture] = [look, picture];
-      if (json.change === "uniforms") {
+      if (json.change === "uniforms" && !this.#isBehind) {
         this.#program.repack(json, bytes);
       } else {
+        this.#isBehind = true;
         await this.#build(json, bytes);
+        this.#isBehind = false;
       }
       return json.change;
     });
