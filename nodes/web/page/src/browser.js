@@ -69,7 +69,7 @@ export class Browser {
     for (const entry of this.#entries.filter((other) => other.section === section)) {
       const canvas = make("canvas", { width: 3, height: 2, "aria-hidden": "true" });
       const card = make("button", {
-        class: "card", title: entry.about, "aria-pressed": "false", dataset: { look: entry.id }, onclick: () => onChoose(entry),
+        class: "card", title: `${entry.name}: ${entry.about}`, "aria-pressed": "false", dataset: { look: entry.id }, onclick: () => onChoose(entry),
       }, canvas, make("span", {}, entry.name));
       this.#cards.set(entry, { card, canvas, state: "none" });
       grid.append(card);
@@ -109,6 +109,7 @@ export class Browser {
       section.hidden = section.querySelector(".card:not([hidden])") === null;
     }
     byId("cards").querySelector(".none")?.remove();
+    byId("cards").scrollTop = 0;
     if (found === 0) {
       byId("cards").append(make("p", { class: "none faint" }, "No look has these words. Try fewer, or another style."));
     }
@@ -152,7 +153,7 @@ export class Browser {
       slot.state = "done";
       slot.card.classList.toggle("failed", image === null);
       if (image === null) {
-        slot.card.title = `${entry.about} There is no thumbnail: ${error.message}`;
+        slot.card.title = `${entry.name}: ${entry.about} There is no thumbnail: ${error.message}`;
         return;
       }
       [slot.canvas.width, slot.canvas.height] = [image.width, image.height];

@@ -4,7 +4,7 @@
 const [SIDE, SIDE_WITHOUT] = [2560, 640];
 
 /** Pixels of the longer side of thumbnails. */
-export const small = (isophote) => (isophote.isSoftware ? 144 : 320);
+export const small = (isophote) => (isophote.isSoftware ? 192 : 320);
 
 /**
  * Reads a picture.
