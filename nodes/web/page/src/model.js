@@ -11,8 +11,8 @@ import { frame } from "./framing.js";
 import { furnish } from "./light.js";
 import { small } from "./picture.js";
 
-/** Pixels of the longer side: of what is shown, at most; of what is saved, at least. */
-const [SHOWN, SAVED] = [2560, 2560];
+/** Pixels of the longer side: of what is shown, at most, with a graphics card and without; of what is saved, at least. */
+const [SHOWN, SHOWN_WITHOUT, SAVED] = [2560, 720, 2560];
 
 /** Samples for each pixel of the colour; guides have one, since depths of different things have no mean. */
 const SAMPLES = 4;
@@ -138,7 +138,7 @@ export class Model {
 
   /** Takes the size of the canvas, and says whether that is another. */
   fill(width, height) {
-    const factor = Math.min(1, SHOWN / Math.max(width, height));
+    const factor = Math.min(1, (this.isophote.isSoftware ? SHOWN_WITHOUT : SHOWN) / Math.max(width, height));
     const [across, down] = [width, height].map((side) => Math.max(8, Math.round(side * factor)));
     if (across === this.width && down === this.height) {
       return false;

@@ -56,12 +56,11 @@ export class Thumbnails {
       if (this.#isHeld || (this.#stage.isBusy && !this.#stage.subject?.isMoving) || document.hidden || this.#source === null) {
         continue;
       }
-      const [[key, { look, done }] = []] = this.#waiting;
-      if (key === undefined) {
-        break;
+      // It may have been forgotten meanwhile.
+      for (const [key, { look, done }] of [...this.#waiting].slice(0, 1)) {
+        this.#waiting.delete(key);
+        await this.#make(look, done);
       }
-      this.#waiting.delete(key);
-      await this.#make(look, done);
     }
     this.#isRunning = false;
   }
