@@ -4,7 +4,7 @@
 //! uniform bytes and shaders. It runs nothing, holds no kernel's CPU function, and is one module of WebAssembly that imports
 //! nothing. `package/src/planner.js` calls it, `package/src/program.js` runs what it says.
 //!
-//! A call is a [`Request`](ask::Request) as JSON, its answer JSON and bytes; [`exports`] moves both.
+//! A call is a request as JSON (`ask.rs`), its answer JSON and bytes (`answer.rs`); `exports.rs` moves both.
 
 mod answer;
 mod ask;

@@ -72,7 +72,7 @@ function looksOfNodes() {
   return [...byId.keys()].map((id) => [id, graph(id)]);
 }
 
-test("every node runs in every precision", { timeout: 300_000 }, async () => {
+test("every node runs in every precision", { timeout: 600_000 }, async () => {
   const outcome = await page.evaluate(async (source) => {
     const [width, height] = [48, 32];
     const { device } = window.iso;
@@ -114,7 +114,7 @@ test("every node runs in every precision", { timeout: 300_000 }, async () => {
   assert.deepEqual(complaints, []);
 });
 
-test("pictures are those of apply", { timeout: 300_000 }, async () => {
+test("pictures are those of apply", { timeout: 600_000 }, async () => {
   const encoded = await page.evaluate(async () => {
     const blob = await window.picture.convertToBlob({ type: "image/png" });
     return [...new Uint8Array(await blob.arrayBuffer())];
@@ -159,6 +159,26 @@ test("tiles are the whole picture", { timeout: 120_000 }, async () => {
   });
   assert.equal(differences[0], 0);
   assert.ok(differences[1].length > 1 && differences[1].at(-1) === 1, `${differences[1]}`);
+});
+
+test("masks are pictures, normals are not", async () => {
+  const [left, right, refused] = await page.evaluate(async () => {
+    const { width, height } = window.picture;
+    const mask = new OffscreenCanvas(width, height);
+    const context = mask.getContext("2d");
+    context.fillRect(0, 0, width, height);
+    context.fillStyle = "#ffffff";
+    context.fillRect(0, 0, width / 2, height);
+    const plain = window.picture.getContext("2d").getImageData(0, 0, width, height).data;
+    const { data } = await window.iso.apply({ style: "kuwahara", lengths: "pixels" }, { color: window.picture, mask });
+    const changed = [0, 0];
+    data.forEach((value, at) => { changed[(at >> 2) % width < width / 2 ? 0 : 1] += Math.abs(value - plain[at]) > 1 ? 1 : 0; });
+    const sources = { color: window.picture, normal: window.picture };
+    return [...changed, await window.iso.apply({ style: "ink" }, sources).catch((error) => error.message)];
+  });
+  assert.ok(left > 1000, `${left} values`);
+  assert.equal(right, 0);
+  assert.match(refused, /'normal'.*texture of floats/);
 });
 
 test("a number is a matter of uniforms", async () => {

@@ -101,7 +101,8 @@ function inputs(device, program, sources, held) {
       encoder.copyTextureToTexture({ texture: source, origin: [x, y] }, { texture: made }, size(texture));
       device.queue.submit([encoder.finish()]);
     } else {
-      const target = { texture: made, premultipliedAlpha: true };
+      // Only colours are multiplied by their alpha.
+      const target = { texture: made, premultipliedAlpha: texture.name === "color" };
       device.queue.copyExternalImageToTexture({ source, origin: [x, y] }, target, size(texture));
     }
     found[texture.name] = made;

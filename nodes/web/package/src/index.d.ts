@@ -78,6 +78,12 @@ export type Guide =
 /** A picture: anything that `GPUQueue.copyExternalImageToTexture` takes, or a texture of the same device. */
 export type Source = GPUCopyExternalImageSource | GPUTexture;
 
+/** A picture and its guides, of which only masks and flow maps may have eight bits. */
+export type Sources =
+  & { color: Source }
+  & Partial<Record<"mask" | "flow", Source>>
+  & Partial<Record<Exclude<Guide, "mask" | "flow">, GPUTexture>>;
+
 export interface PictureOptions {
   /** Space of the colour that enters and leaves: gamma-encoded `srgb` (the default), or scene-linear. */
   space?: "srgb" | "linear" | "acescg";
@@ -103,7 +109,7 @@ export interface StylizerOptions extends PictureOptions {
   guides?: Guide[];
 }
 
-export interface ApplyOptions extends PictureOptions {
+export interface ApplyOptions extends Omit<PictureOptions, "space" | "alpha"> {
   /** Bytes that textures may take; larger pictures are computed in tiles. 512 MiB without. */
   memory?: number;
   /** Told the share that is done. */
@@ -159,7 +165,7 @@ export class Isophote {
   /** The look on one picture of any size, as gamma-encoded pixels; alpha is straight. */
   apply(
     look: Look,
-    inputs: Source | ({ color: Source } & Partial<Record<Guide, Source>>),
+    inputs: Source | Sources,
     options?: ApplyOptions,
   ): Promise<ImageData>;
   /** A picture as a texture that stylizers read. */

@@ -8,6 +8,9 @@ import { Stylizer } from "./stylizer.js";
 
 const GUIDES = ["normal", "depth", "object_id", "mask", "flow", "motion", "motion_forward", "rest_position"];
 
+/** Guides that may be pictures of a page. */
+const OF_EIGHT_BITS = ["mask", "flow"];
+
 /** The planner with a graphics device. */
 export class Isophote {
   #catalogue;
@@ -73,7 +76,12 @@ export class Isophote {
     const sources = "color" in inputs ? inputs : { color: inputs };
     const { width, height } = extent(sources.color);
     const guides = GUIDES.filter((guide) => sources[guide] !== undefined);
-    return apply(this, look, picture({ width, height, guides, ...options }), sources, options);
+    const coarse = guides.find((guide) => !(sources[guide] instanceof GPUTexture) && !OF_EIGHT_BITS.includes(guide));
+    if (coarse !== undefined) {
+      throw new Error(`the guide '${coarse}' holds numbers that a picture of a page cannot: give a texture of floats`);
+    }
+    const { precision, frame, origin, scale } = options;
+    return apply(this, look, picture({ width, height, guides, precision, frame, origin, scale }), sources, options);
   }
 
   /** A picture as a texture that stylizers read: gamma-encoded, premultiplied, 8 bits. */

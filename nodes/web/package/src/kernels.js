@@ -1,7 +1,7 @@
 // Compiled shaders of one device, each compiled when a plan first names it.
 
 /** Where shaders that interpolate by a sampler have it. */
-const SAMPLER = 15;
+export const SAMPLER = 15;
 
 export class Kernels {
   #pipelines = new Map();

@@ -72,12 +72,18 @@ fn shade(corner: Corner) -> @location(0) vec4f {
 }
 `;
 
+/** Pictures that one submission may draw, and the distance of their uniform blocks. */
+const [SLOTS, STRIDE] = [64, 256];
+
 /** Draws what stylizers compute. */
 export class Painter {
   #device;
   #pipelines = new Map();
   #module;
   #layout;
+  /** Uniform blocks, which take turns. */
+  #blocks;
+  #turn = 0;
 
   constructor(device) {
     this.#device = device;
@@ -90,7 +96,7 @@ export class Painter {
       entries: [
         { binding: 0, visibility: GPUShaderStage.FRAGMENT, texture: { sampleType: "unfilterable-float" } },
         { binding: 1, visibility: GPUShaderStage.FRAGMENT, texture: { sampleType: "unfilterable-float" } },
-        { binding: 2, visibility: GPUShaderStage.FRAGMENT, buffer: {} },
+        { binding: 2, visibility: GPUShaderStage.FRAGMENT, buffer: { hasDynamicOffset: true, minBindingSize: 32 } },
       ],
     });
     if (!this.#pipelines.has(format)) {
@@ -105,7 +111,7 @@ export class Painter {
   }
 
   /**
-   * Records a picture that fills a texture.
+   * Records a picture that fills a texture; a submission may have 64 of them.
    * @param {GPUCommandEncoder} encoder
    * @param {GPUTexture} picture gamma-encoded and premultiplied, as stylizers of space `srgb` compute it
    * @param {GPUTexture} target such as `context.getCurrentTexture()`
@@ -119,15 +125,16 @@ export class Painter {
     new Float32Array(frame).set([...scale, ...offset, edge]);
     new Uint32Array(frame)[5] = straight ? 1 : 0;
     const usage = GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST;
-    const uniform = this.#device.createBuffer({ label: "painter", size: 32, usage, mappedAtCreation: true });
-    new Uint8Array(uniform.getMappedRange()).set(new Uint8Array(frame));
-    uniform.unmap();
+    this.#blocks ??= this.#device.createBuffer({ label: "painter", size: SLOTS * STRIDE, usage });
+    this.#turn = (this.#turn + 1) % SLOTS;
+    const at = this.#turn * STRIDE;
+    this.#device.queue.writeBuffer(this.#blocks, at, frame);
     const group = this.#device.createBindGroup({
       layout: this.#layout,
       entries: [
         { binding: 0, resource: beside.createView() },
         { binding: 1, resource: picture.createView() },
-        { binding: 2, resource: { buffer: uniform } },
+        { binding: 2, resource: { buffer: this.#blocks, size: 32 } },
       ],
     });
     const pass = encoder.beginRenderPass({
@@ -135,7 +142,7 @@ export class Painter {
       colorAttachments: [{ view: target.createView(), loadOp: "clear", storeOp: "store", clearValue: [0, 0, 0, 0] }],
     });
     pass.setPipeline(pipeline);
-    pass.setBindGroup(0, group);
+    pass.setBindGroup(0, group, [at]);
     pass.draw(3);
     pass.end();
   }

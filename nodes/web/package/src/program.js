@@ -2,6 +2,8 @@
 //
 // The same work in Rust is `host-example/src/stylize/plan_runner.rs`.
 
+import { SAMPLER } from "./kernels.js";
+
 const BYTES = { r32float: 4, rg32float: 8, rgba32float: 16, rgba16float: 8 };
 
 /** Pixels of a texture of a program. */
@@ -147,7 +149,7 @@ export class Program {
       entries.push({ binding: 2 + index, resource: this.#textures[texture].view });
     });
     if (kernel.isFiltered) {
-      entries.push({ binding: 15, resource: this.#kernels.sampler });
+      entries.push({ binding: SAMPLER, resource: this.#kernels.sampler });
     }
     return this.#kernels.device.createBindGroup({ label: shader, layout: kernel.layout, entries });
   }
