@@ -7,6 +7,11 @@ use clap::error::ErrorKind;
 use isophote_host::cli::Cli;
 use isophote_host::{drivers, limits};
 
+/// The program starts where the C library is older.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+#[used]
+static OWN: isophote_glibc::Kept = isophote_glibc::KEPT;
+
 fn main() -> ExitCode {
     drivers::keep_quiet();
     limits::end_where_memory_ends();

@@ -33,7 +33,7 @@ pub fn picture((width, height): (u32, u32)) -> Pixels {
         for x in 0..width {
             let (u, v) = (x as f32 / width as f32, y as f32 / height as f32);
             let cell = [(x % 160) as f32 - 80.0, (y % 160) as f32 - 80.0];
-            let disc = if cell[0].hypot(cell[1]) < 50.0 { 0.35 } else { 0.0 };
+            let disc = if cell[0] * cell[0] + cell[1] * cell[1] < 50.0 * 50.0 { 0.35 } else { 0.0 };
             let hash = (x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77)).wrapping_mul(0xc2b2_ae3d);
             let noise = (hash >> 24) as f32 / 255.0 * 0.04;
             let waves = 0.05 * (x as f32 * 0.3 + y as f32 * 0.1).sin();

@@ -13,6 +13,12 @@ const LN2_LOW: f32 = -2.121_944_4e-4;
 /// 1.5 2^23: the sum with a small number is rounded to a whole one, which stays in its lowest bits.
 const WHOLE: f32 = 12_582_912.0;
 
+/// sqrt(a^2 + b^2) of numbers whose squares are finite. The function of the standard library is the C library's, which
+/// would have to be of 2022 or newer.
+pub fn hypot(a: f32, b: f32) -> f32 {
+    (a * a + b * b).sqrt()
+}
+
 /// exp, exp2, log, pow and tanh on lanes.
 pub trait Elementary: Sized {
     /// e^x; 0 below -87.3 and saturated above 88.3.

@@ -5,6 +5,11 @@
 
 #![allow(unsafe_code, reason = "foreign pointers come in here; nowhere else in the library")]
 
+/// The library starts where the C library is older.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+#[used]
+static OWN: isophote_glibc::Kept = isophote_glibc::KEPT;
+
 pub mod abi;
 pub mod ofx;
 mod pinned;

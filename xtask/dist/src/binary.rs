@@ -7,8 +7,8 @@ use object::read::elf::{Dyn as _, FileHeader as _, SectionHeader as _, SectionTa
 use object::{Endianness, StringTable};
 use std::path::Path;
 
-/// The GNU C library of Ubuntu 22.04, the oldest system that is promised. Debian 12 builds what runs there.
-const NEWEST_GLIBC: [u32; 3] = [2, 35, 0];
+/// The GNU C library of Rocky Linux 9, the oldest system that is promised. Debian 12 builds what runs there.
+const NEWEST_GLIBC: [u32; 3] = [2, 34, 0];
 
 /// What comes with every system that has the GNU C library. `ld-linux` is named by its machine.
 const SYSTEM: [&str; 5] = ["libc.so.6", "libm.so.6", "libdl.so.2", "libpthread.so.0", "libgcc_s.so.1"];
@@ -106,7 +106,7 @@ fn written(version: [u32; 3]) -> String {
 pub fn fault(facts: &Facts, soname: Option<&str>, draft: bool) -> Option<String> {
     if let Some(newest) = facts.glibc.last().filter(|newest| **newest > NEWEST_GLIBC) {
         return Some(format!(
-            "needs the C library {}, newer than {} of Ubuntu 22.04: build on that or on Debian 12",
+            "needs the C library {}, newer than {} of Rocky Linux 9: build on that or on Debian 12",
             written(*newest),
             written(NEWEST_GLIBC)
         ));
@@ -157,7 +157,7 @@ mod tests {
         assert_eq!(fault(&good(), soname, false), None);
         assert!(fault(&good(), None, false).unwrap().contains("libx.so.1"));
         let newer = Facts { glibc: vec![[2, 2, 5], [2, 38, 0]], ..good() };
-        assert!(fault(&newer, soname, false).unwrap().contains("2.38, newer than 2.35"));
+        assert!(fault(&newer, soname, false).unwrap().contains("2.38, newer than 2.34"));
         let search = Facts { search: vec!["/home/me".into()], ..good() };
         assert!(fault(&search, soname, true).unwrap().contains("/home/me"));
         let needy = Facts { needed: vec!["libfoo.so.3".into()], ..good() };

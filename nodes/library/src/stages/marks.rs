@@ -10,7 +10,7 @@ use crate::kernels::time::carried_noise::{self, Layers};
 use crate::kernels::time::mark_chain::{self, Step};
 use crate::ports::REST_POSITION;
 use crate::spec::Scope;
-use isophote_engine::{Class, ImageId};
+use isophote_engine::{Class, ImageId, math};
 
 /// White noise, smoothed by `sigma` pixels of the picture that is rendered.
 pub(crate) fn grains(scope: &mut Scope<'_>, sigma: f32, seed: u32) -> ImageId {
@@ -41,7 +41,7 @@ pub(crate) fn clouds(scope: &mut Scope<'_>, layers: [Layer; 2]) -> Option<ImageI
     const BORDER: f32 = 4.0;
     let [(f, a, seed), (g, b, _)] = layers;
     let sigma = WIDTH * (a / f + b / g) / (a + b);
-    let marks = Marks { sigma: sigma * scale, deviation: DEVIATION * a.hypot(b), seed };
+    let marks = Marks { sigma: sigma * scale, deviation: DEVIATION * math::hypot(a, b), seed };
     let clouds = on_things(scope, screen, &marks);
     // Outlines waver, and clouds of things must not end beside them; leaves make no crumbs.
     Some(gaussian_blur::pass(scope.plan, clouds, BORDER * scale, Class::Colour))
@@ -70,7 +70,7 @@ pub(crate) fn hatching(
     let soft = grains(scope, across * scale, seed);
     let Marks { deviation, .. } = Marks::of_smoothed_noise(across * scale, scale, seed);
     // A Gaussian along lines leaves this share of the deviation.
-    let left = (across / ALONG.hypot(across)).sqrt();
+    let left = (across / math::hypot(ALONG, across)).sqrt();
     let gain = HATCHING_DEVIATION / (deviation * left);
     let step = (1.5 * scale).max(1.0);
     Some(directions.map(|direction| {

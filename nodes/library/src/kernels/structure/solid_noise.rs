@@ -17,7 +17,7 @@ use crate::kernels::simd::pixels::{Block, for_blocks, write};
 use crate::kernels::simd::window_sum::{gaussian_radius, gaussian_table};
 use isophote_engine::dispatch::at_most_avx2;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*, u32x8};
-use isophote_engine::math::Elementary;
+use isophote_engine::math::{self, Elementary};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 use std::f32::consts::LOG2_E;
 
@@ -77,7 +77,7 @@ pub fn pass(
     screen: ImageId,
     marks: &Marks,
 ) -> ImageId {
-    let sigma = marks.sigma.hypot(PIXEL).max(LEAST);
+    let sigma = math::hypot(marks.sigma, PIXEL).max(LEAST);
     let params = Params { spacing: (2.0 * sigma).log2(), deviation: marks.deviation, seed: marks.seed };
     plan.pass(&KERNEL, &[points, scales, screen], &params, Class::Colour, Support::Pixels(0))
 }

@@ -24,7 +24,7 @@ use crate::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::{ADVANCED, LOOK, lines, marks, tone};
-use isophote_engine::ImageId;
+use isophote_engine::{ImageId, math};
 
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
@@ -124,7 +124,7 @@ fn strokes(scope: &mut Scope<'_>, tensor: ImageId, [width, length]: [f32; 2]) ->
     let options = Lic { sigma: length * scale, ..lic::options() };
     let long = line_integral_convolution::pass_unadapted(scope.plan, soft, tensor, &options);
     // A Gaussian along lines leaves this share of the deviation.
-    let left = (width / length.hypot(width)).sqrt();
+    let left = (width / math::hypot(length, width)).sqrt();
     const DEVIATION: f32 = 0.22;
     (contrast::pass(scope.plan, long, DEVIATION / (deviation * left)), DEVIATION)
 }

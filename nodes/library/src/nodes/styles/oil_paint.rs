@@ -13,7 +13,7 @@ use crate::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::{ADVANCED, LOOK, marks, tone};
-use isophote_engine::ImageId;
+use isophote_engine::{ImageId, math};
 
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
@@ -159,6 +159,6 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
 fn evenness(across: f32, along: f32) -> f32 {
     // Each axis of a Gaussian reduces the variance of independent values by 1 / (2 sqrt(pi) sigma).
     let reduced = |sigma: f32| (3.545 * sigma).max(1.0);
-    let deviation = (1.0 / 12.0 / (reduced(across) * reduced(across.hypot(along)))).sqrt();
+    let deviation = (1.0 / 12.0 / (reduced(across) * reduced(math::hypot(across, along)))).sqrt();
     0.25 / deviation
 }
