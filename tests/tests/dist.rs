@@ -131,7 +131,8 @@ fn files(folder: &Path) -> BTreeSet<String> {
 #[test]
 fn there_are_archives_and_checksums_and_nothing_half_done() {
     let archives = ["library", "openfx", "program", "card"].map(|kind| format!("{}.tar.gz", name(kind)));
-    let expected: BTreeSet<String> = archives.into_iter().chain(["SHA256SUMS".to_owned()]).collect();
+    let others = [format!("isophote-{VERSION}.tgz"), "isophote.html".to_owned(), "SHA256SUMS".to_owned()];
+    let expected: BTreeSet<String> = archives.into_iter().chain(others).collect();
     let mut found = files(&Unpacked::get().archives());
     for ending in [".whl", ".zip"] {
         let named: Vec<String> = found.iter().filter(|name| name.ends_with(ending)).cloned().collect();
@@ -139,6 +140,29 @@ fn there_are_archives_and_checksums_and_nothing_half_done() {
         found.remove(&named[0]);
     }
     assert_eq!(found, expected);
+}
+
+#[test]
+fn the_npm_package_is_whole() {
+    let unpacked = Unpacked::get();
+    let package = unpacked.archives().join(format!("isophote-{VERSION}.tgz"));
+    let folder = TempDir::new().unwrap();
+    unpacked.run_in(folder.path(), &format!("tar xzf '{}'", package.display()));
+    let read = |file: &str| std::fs::read(folder.path().join("package").join(file)).unwrap();
+    assert!(read("isophote.wasm").starts_with(b"\0asm"));
+    let texts = [
+        "src/index.js",
+        "src/index.d.ts",
+        "src/three.js",
+        "src/looks.js",
+        "README.md",
+        "LICENSES-OF-OTHERS.txt",
+    ];
+    for text in texts {
+        assert!(!read(text).is_empty(), "{text}");
+    }
+    let manifest: serde_json::Value = serde_json::from_slice(&read("package.json")).unwrap();
+    assert_eq!(manifest["version"], VERSION);
 }
 
 #[test]
@@ -157,7 +181,7 @@ fn what_cannot_be_packed_leaves_what_was_there() {
         .arg(built)
         .arg("--bundle")
         .arg(&bundle)
-        .arg("--python")
+        .arg("--packed")
         .arg(folder.path())
         .arg("--out")
         .arg(folder.path())

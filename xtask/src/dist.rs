@@ -4,8 +4,9 @@ use crate::bundle;
 use crate::error::Result;
 use crate::packing;
 use crate::python::{self, RELEASED};
-use crate::setup::{self, C_COMPILER, PYTHON};
+use crate::setup::{self, C_COMPILER, NODE, PYTHON, WASM};
 use crate::tools::{build_with_host, heading, program, root, run as run_command, target_dir};
+use crate::web;
 use std::path::PathBuf;
 
 /// Options of `cargo xtask dist`.
@@ -31,16 +32,17 @@ impl Options {
 /// # Errors
 /// The first step that fails.
 pub fn run(options: &Options) -> Result<()> {
-    setup::ensure(&[&C_COMPILER, &PYTHON])?;
+    setup::ensure(&[&C_COMPILER, &PYTHON, &WASM, &NODE])?;
     heading("build");
     // The folder of this profile has another name.
     let profile = if options.profile == "dev" { "debug" } else { &options.profile };
     build_with_host(profile, &[bundle::ICONS, packing::PACKAGE])?;
     let bundle = target_dir("packed-bundle").join(bundle::FOLDER);
     bundle::write(&bundle, profile)?;
+    let packed = target_dir("packed");
     heading("Python");
-    let packed = target_dir("packed-python");
     python::pack(profile, &packed)?;
+    web::pack(profile, &packed)?;
     heading("archives");
     let mut pack = program(packing::PACKAGE, profile);
     pack.arg("pack")
@@ -48,7 +50,7 @@ pub fn run(options: &Options) -> Result<()> {
         .arg(target_dir(profile))
         .arg("--bundle")
         .arg(bundle)
-        .arg("--python")
+        .arg("--packed")
         .arg(packed);
     pack.arg("--out").arg(root().join(&options.out)).args(options.is_draft().then_some("--draft"));
     run_command(&mut pack)

@@ -4,11 +4,15 @@
 //! three.js and Playwright are in `nodes/web/node_modules`, in the versions of `package-lock.json`.
 
 use crate::error::{Context, Failure, Result};
+use crate::packing;
 use crate::setup::{self, BROWSER, C_COMPILER, NODE, WASM};
-use crate::tools::{cargo_command, heading, host_file, library_file, root, run as run_command, target_dir};
+use crate::tools::{
+    build as build_programs, cargo_command, heading, host_file, library_file, root, run as run_command,
+    target_dir,
+};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
@@ -31,34 +35,46 @@ pub struct Options {
 /// # Errors
 /// The first step that fails.
 pub fn run(options: &Options) -> Result<()> {
-    let built = build()?;
+    setup::ensure(&[&C_COMPILER, &WASM, &NODE])?;
+    build_programs("debug", &[packing::PACKAGE])?;
+    let built = build("debug")?;
     if options.pack {
-        println!("{}", pack(&built)?.display());
+        println!("{}", pack_package(&built, &target_dir("web"))?.display());
     }
     println!("{}\n{}", built.package.display(), built.page.display());
     Ok(())
 }
 
-/// What `cargo xtask web` leaves.
-pub struct Built {
-    /// Folder of the npm package.
-    pub package: PathBuf,
-    /// The page, one file.
-    pub page: PathBuf,
-}
-
-/// Builds planner, package and page.
+/// Puts the npm package, as it is published, and the page into a folder. The program that packs must be built.
 ///
 /// # Errors
 /// The first step that fails.
-pub fn build() -> Result<Built> {
-    setup::ensure(&[&C_COMPILER, &WASM, &NODE])?;
+pub fn pack(profile: &str, out: &Path) -> Result<()> {
+    let built = build(profile)?;
+    pack_package(&built, out)?;
+    copy(&built.page, &out.join(PAGE))
+}
+
+/// File of the page.
+const PAGE: &str = "isophote.html";
+
+/// What is built.
+struct Built {
+    /// Folder of the npm package.
+    package: PathBuf,
+    /// The page, one file.
+    page: PathBuf,
+}
+
+/// Builds planner, package and page; `profile` is that of the program that packs.
+fn build(profile: &str) -> Result<Built> {
     heading("planner");
     let planner = planner()?;
     heading("package and page");
     install()?;
-    let (package, page) = (target_dir("web").join("package"), target_dir("web").join("isophote.html"));
+    let (package, page) = (target_dir("web").join("package"), target_dir("web").join(PAGE));
     stage(&planner, &package)?;
+    packing::write_licences(&["isophote-web"], profile, &package.join(packing::OTHERS))?;
     let mut bundle = node();
     bundle.arg(folder().join("page/bundle.mjs")).arg(&package).arg(&page);
     run_command(&mut bundle)?;
@@ -70,15 +86,11 @@ pub fn build() -> Result<Built> {
 }
 
 /// Packs the package as npm publishes it.
-///
-/// # Errors
-/// When npm fails.
-pub fn pack(built: &Built) -> Result<PathBuf> {
-    let out = target_dir("web");
+fn pack_package(built: &Built, out: &Path) -> Result<PathBuf> {
+    fs::create_dir_all(out).context(|| format!("cannot create {}", out.display()))?;
     let mut pack = npm();
-    pack.args(["pack", "--silent", "--pack-destination"]).arg(&out).current_dir(&built.package);
-    pack.stdout(std::process::Stdio::null());
-    run_command(&mut pack)?;
+    pack.args(["pack", "--silent", "--pack-destination"]).arg(out).current_dir(&built.package);
+    run_command(pack.stdout(Stdio::null()))?;
     Ok(out.join(format!("isophote-{}.tgz", env!("CARGO_PKG_VERSION"))))
 }
 
@@ -101,17 +113,23 @@ pub fn tests() -> Result<Vec<String>> {
 /// # Errors
 /// The first step that fails.
 pub fn test(filter: Option<&str>) -> Result<()> {
-    setup::ensure(&[&BROWSER])?;
-    let built = build()?;
-    let packed = pack(&built)?;
+    setup::ensure(&[&C_COMPILER, &WASM, &NODE, &BROWSER])?;
+    let built = build("debug")?;
+    let packed = pack_package(&built, &target_dir("web"))?;
     heading("browser");
-    let mut tests = node();
-    tests.arg("--test").args(filter.iter().map(|filter| format!("--test-name-pattern={filter}")));
-    tests.args(test_files()?);
-    tests.env("ISOPHOTE_PACKAGE", &built.package).env("ISOPHOTE_PACKED", packed);
-    tests.env("ISOPHOTE_PAGE", &built.page);
-    tests.env("ISOPHOTE_HOST", host_file("debug")).env("ISOPHOTE_LIBRARY", library_file("debug"));
-    run_command(&mut tests)
+    // One after the other: on a processor that is a graphics device, several browsers take longer together.
+    for file in test_files()? {
+        let mut tests = node();
+        tests
+            .arg("--test")
+            .args(filter.iter().map(|filter| format!("--test-name-pattern={filter}")))
+            .arg(file);
+        tests.env("ISOPHOTE_PACKAGE", &built.package).env("ISOPHOTE_PACKED", &packed);
+        tests.env("ISOPHOTE_PAGE", &built.page);
+        tests.env("ISOPHOTE_HOST", host_file("debug")).env("ISOPHOTE_LIBRARY", library_file("debug"));
+        run_command(&mut tests)?;
+    }
+    Ok(())
 }
 
 fn test_files() -> Result<Vec<PathBuf>> {

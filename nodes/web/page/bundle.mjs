@@ -68,6 +68,18 @@ function data(id, bytes, label) {
   return `<script type="application/octet-stream" id="${id}"${name}>${bytes.toString("base64")}</script>`;
 }
 
+/** Under which licences the page stands, and what it holds of others. */
+function licences(packageDir) {
+  const files = [
+    join(packageDir, "LICENSE-MIT"),
+    join(packageDir, "LICENSE-APACHE"),
+    join(modules, "three/LICENSE"),
+    join(packageDir, "LICENSES-OF-OTHERS.txt"),
+  ];
+  const text = files.filter(existsSync).map((file) => readFileSync(file, "utf8")).join("\n\n");
+  return `<script type="text/plain" id="licences">\n${text.replaceAll("</script", "<\\/script")}</script>`;
+}
+
 /** Writes a size as people read it. */
 function kilobytes(bytes) {
   return `${Math.round(bytes / 1024)} KB`;
@@ -84,7 +96,7 @@ async function main([packageDir, out]) {
   const [code, sheet] = await Promise.all([script(resolve(packageDir)), style()]);
   const planner = data("isophote-wasm", gzipSync(readFileSync(wasm), { level: 9 }));
   const pictures = SAMPLES.map(([file, label]) => data(`sample-${file}`, readFileSync(join(samples, file)), label)).join("\n");
-  const parts = { style: `<style>${sheet}</style>`, data: `${planner}\n${pictures}`, script: `<script type="module">${code}</script>` };
+  const parts = { style: `<style>${sheet}</style>`, data: `${licences(resolve(packageDir))}\n${planner}\n${pictures}`, script: `<script type="module">${code}</script>` };
   const page = readFileSync(join(here, "src/index.html"), "utf8").replace(/<!-- (style|data|script) -->/g, (_, part) => parts[part]);
   mkdirSync(dirname(resolve(out)), { recursive: true });
   writeFileSync(out, page);

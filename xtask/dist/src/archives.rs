@@ -20,18 +20,20 @@ pub struct Archive {
 enum Contents {
     /// They are gathered and packed here.
     Gathered(fn(&Built, &mut Tree) -> Result<()>),
-    /// Python's tools have packed them, into a file with this ending.
+    /// The tools of other languages have packed them, into a file with this ending.
     Packed(&'static str),
 }
 
 /// All archives.
-pub const ARCHIVES: [Archive; 6] = [
+pub const ARCHIVES: [Archive; 8] = [
     Archive { kind: "library", contents: Contents::Gathered(library) },
     Archive { kind: "openfx", contents: Contents::Gathered(openfx) },
     Archive { kind: "program", contents: Contents::Gathered(program) },
     Archive { kind: "card", contents: Contents::Gathered(card) },
     Archive { kind: "wheel", contents: Contents::Packed("whl") },
     Archive { kind: "blender", contents: Contents::Packed("zip") },
+    Archive { kind: "npm", contents: Contents::Packed("tgz") },
+    Archive { kind: "page", contents: Contents::Packed("html") },
 ];
 
 impl Archive {
@@ -51,7 +53,7 @@ impl Archive {
                 Ok((name, sum))
             }
             Contents::Packed(ending) => {
-                let file = built.packed(self.kind, ending)?;
+                let file = built.only(self.kind, ending)?;
                 let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
                 let copy = to.join(&name);
                 std::fs::copy(&file, &copy).map_err(Error::at(&file))?;
@@ -69,8 +71,8 @@ pub struct Built {
     pub folder: PathBuf,
     /// The OpenFX bundle.
     pub bundle: PathBuf,
-    /// Folder of the wheel and the Blender extension.
-    pub python: PathBuf,
+    /// Folder of what the tools of other languages have packed: wheel, Blender extension, npm package, page.
+    pub packed: PathBuf,
     /// Whether it is not what users get.
     pub draft: bool,
 }
@@ -81,15 +83,15 @@ impl Built {
     /// # Errors
     /// [`Error::File`] naming what is missing.
     pub fn check(&self) -> Result<()> {
-        for path in [&self.root, &self.folder, &self.bundle, &self.python] {
+        for path in [&self.root, &self.folder, &self.bundle, &self.packed] {
             std::fs::metadata(path).map_err(Error::at(path))?;
         }
         Ok(())
     }
 
-    /// The one file with this ending that Python's tools have packed.
-    fn packed(&self, kind: &str, ending: &str) -> Result<PathBuf> {
-        let entries = std::fs::read_dir(&self.python).map_err(Error::at(&self.python))?;
+    /// The one file with this ending that the tools of other languages have packed.
+    fn only(&self, kind: &str, ending: &str) -> Result<PathBuf> {
+        let entries = std::fs::read_dir(&self.packed).map_err(Error::at(&self.packed))?;
         let files = entries.flatten().map(|entry| entry.path());
         let found: Vec<PathBuf> =
             files.filter(|path| path.extension().is_some_and(|e| e == ending)).collect();
@@ -97,7 +99,7 @@ impl Built {
             [file] => Ok(file.clone()),
             _ => {
                 let problem = format!("holds {} files .{ending} instead of one, the {kind}", found.len());
-                Err(Error::malformed(&self.python, problem))
+                Err(Error::malformed(&self.packed, problem))
             }
         }
     }

@@ -49,9 +49,9 @@ struct Pack {
     /// The OpenFX bundle, with its catalogue beside it
     #[arg(long, value_name = "DIR")]
     bundle: PathBuf,
-    /// Folder of the wheel and the Blender extension
+    /// Folder of the wheel, the Blender extension, the npm package and the page
     #[arg(long, value_name = "DIR")]
-    python: PathBuf,
+    packed: PathBuf,
     /// Where all goes
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
@@ -86,7 +86,7 @@ fn pack_all(options: &Pack) -> Result<()> {
         root: root(),
         folder: options.built.clone(),
         bundle: options.bundle.clone(),
-        python: options.python.clone(),
+        packed: options.packed.clone(),
         draft: options.draft,
     };
     built.check()?;
