@@ -7,7 +7,7 @@ use isophote::registry;
 use std::path::Path;
 
 /// Pages written for the site: part, place, title.
-const WRITTEN: [(&str, &str, &str); 20] = [
+const WRITTEN: [(&str, &str, &str); 21] = [
     ("", "index", "Isophote"),
     ("", "install", "Install"),
     ("For artists", "artists/first-look", "First look in five minutes"),
@@ -26,6 +26,7 @@ const WRITTEN: [(&str, &str, &str); 20] = [
     ("For render TDs", "farms/memory", "Memory and threads"),
     ("For Python programmers", "python/arrays", "Arrays, looks, sequences"),
     ("For Blender users", "blender/extension", "The Blender extension"),
+    ("For the web", "web/page", "The page"),
     ("For contributors", "contributors/start", "Where to begin"),
     ("Nodes", "nodes/index", "All nodes"),
 ];

@@ -16,15 +16,16 @@ pub struct Page {
 }
 
 /// Documents of the repository that are pages, too: part, place, title, document.
-pub const DOCUMENTS: [(&str, &str, &str, &str); 4] = [
+pub const DOCUMENTS: [(&str, &str, &str, &str); 5] = [
     ("For compositors", "compositors/openfx", "Every host, in detail", "nodes/plugin/OPENFX.md"),
     ("For render TDs", "farms/farm", "Farms", "host-example/FARM.md"),
     ("For render TDs", "farms/benchmarks", "How fast the nodes are", "host-example/BENCHMARKS.md"),
+    ("For the web", "web/package", "The npm package", "nodes/web/package/README.md"),
     ("For contributors", "contributors/contributing", "Contributing", "CONTRIBUTING.md"),
 ];
 
 /// Parts in their order.
-pub const PARTS: [&str; 10] = [
+pub const PARTS: [&str; 11] = [
     "",
     "For artists",
     "Styles",
@@ -33,6 +34,7 @@ pub const PARTS: [&str; 10] = [
     "For render TDs",
     "For Python programmers",
     "For Blender users",
+    "For the web",
     "For contributors",
     "Nodes",
 ];
