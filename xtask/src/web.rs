@@ -19,7 +19,7 @@ const TARGET: &str = "wasm32-unknown-unknown";
 /// The profile of the planner.
 const PROFILE: &str = "web";
 
-/// Most bytes of the planner, compressed or not, and of the page: what someone waits for before the first picture.
+/// Most bytes of the page: what someone waits for before the first picture.
 const MOST: u64 = 3 << 20;
 
 /// Options of `cargo xtask web`.

@@ -1,6 +1,6 @@
 //! `isophote-dist`, run by `cargo xtask dist`: packs what was built into what users install, and writes the checksums.
-//! Every file appears under its name only when all of them are complete. The wheel and the Blender extension are packed
-//! by tools of Python's; this gives them the licences of others, and publishes them with the rest.
+//! Every file appears under its name only when all of them are complete. Wheel, Blender extension, npm
+//! package and page are made by tools of other languages; this gives them the licences of others, and publishes them with the rest.
 
 mod archives;
 mod binary;
