@@ -4,6 +4,23 @@
 
 @group(0) @binding(15) var filtering: sampler;
 
+fn multiplied_between(
+    image: texture_2d<f32>,
+    slot: u32,
+    p: vec2i,
+    texel: vec2i,
+    next: vec2i,
+    share: f32,
+    inside: bool,
+) -> vec4f {
+    var at = vec2f(texel) + share * vec2f(next);
+    if !inside {
+        // Samplers clamp to the texture, which may be larger than the picture.
+        at = min(at, vec2f(grid.inputs[slot].zw - 1 - grid.inputs[slot].xy));
+    }
+    return textureSampleLevel(image, filtering, (at + 0.5) / vec2f(textureDimensions(image)), 0.0);
+}
+
 fn covered_between(
     image: texture_2d<f32>,
     slot: u32,
@@ -13,10 +30,7 @@ fn covered_between(
     share: f32,
     inside: bool,
 ) -> vec4f {
-    // Samplers clamp to the texture, which may be larger than the picture.
-    let last = grid.inputs[slot].zw - 1 - grid.inputs[slot].xy;
-    let at = min(vec2f(texel) + share * vec2f(next), vec2f(last));
-    let v = textureSampleLevel(image, filtering, (at + 0.5) / vec2f(textureDimensions(image)), 0.0);
+    let v = multiplied_between(image, slot, p, texel, next, share, inside);
     if v.a == 1.0 {
         return v;
     }
@@ -25,9 +39,13 @@ fn covered_between(
     return a + (b - a) * share;
 }
 
-fn sample_covered_among(image: texture_2d<f32>, s: Surroundings) -> vec4f {
+fn sample_multiplied_among(image: texture_2d<f32>, s: Surroundings) -> vec4f {
     let at = vec2f(s.near) + s.f + 0.5;
-    let v = textureSampleLevel(image, filtering, at / vec2f(textureDimensions(image)), 0.0);
+    return textureSampleLevel(image, filtering, at / vec2f(textureDimensions(image)), 0.0);
+}
+
+fn sample_covered_among(image: texture_2d<f32>, s: Surroundings) -> vec4f {
+    let v = sample_multiplied_among(image, s);
     if v.a == 1.0 {
         return v;
     }

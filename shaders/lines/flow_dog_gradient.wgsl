@@ -5,6 +5,7 @@
 // one row or column, and two loads interpolate it exactly as a bilinear sample would.
 // Cost: 4 loads and two exponentials per step, about 3 k sigma_e steps.
 #import gpu/line
+#import shared/coverage
 #import shared/tensor
 #import shared/edge_threshold
 
@@ -29,8 +30,10 @@ struct Params {
 
 // The interpolated sample k steps along the line.
 fn sample(line: Line, k: i32, inside: bool) -> vec2f {
-    let tap = line_tap(lightness, 0u, line, k, inside);
-    return tap.a.xy + (tap.b.xy - tap.a.xy) * tap.f;
+    let place = line_place(line, k);
+    let p = line.pixel + place.offset;
+    let texel = line.texel + place.offset;
+    return multiplied_between(lightness, 0u, p, texel, place.next, place.f, inside).xy;
 }
 
 struct Sums {

@@ -3,6 +3,7 @@
 // Cost: per step one bilinear sample of the response and one (Euler, two-step) or two tensor
 // samples.
 #import shared/stream
+#import shared/coverage
 #import shared/edge_threshold
 
 struct Params {
@@ -40,7 +41,7 @@ fn gather(origin: vec2f, tangent: vec2f, limit: f32, first: vec2f, inside: bool)
                 break;
             }
             let around = stream_surroundings(line, 0u, line.position);
-            sum += exp2(falloff * u * u) * sample_among(response, around).xy;
+            sum += exp2(falloff * u * u) * sample_multiplied_among(response, around).xy;
         }
     }
     return sum;

@@ -53,6 +53,33 @@ fn sample_covered_among(image: texture_2d<f32>, s: Surroundings) -> vec4f {
     return bilinear(a, b, c, d, s.f);
 }
 
+// `sample_among` of values that are multiplied by their coverage already, such as (L alpha, alpha).
+fn sample_multiplied_among(image: texture_2d<f32>, s: Surroundings) -> vec4f {
+    return sample_among(image, s);
+}
+
+// Such values between two pixels, as `covered_between`.
+fn multiplied_between(
+    image: texture_2d<f32>,
+    slot: u32,
+    p: vec2i,
+    texel: vec2i,
+    next: vec2i,
+    share: f32,
+    inside: bool,
+) -> vec4f {
+    var a: vec4f;
+    var b: vec4f;
+    if inside {
+        a = textureLoad(image, texel, 0);
+        b = textureLoad(image, texel + next, 0);
+    } else {
+        a = fetch(image, slot, p);
+        b = fetch(image, slot, p + next);
+    }
+    return a + (b - a) * share;
+}
+
 // `sample_linear` of colours multiplied by their alpha.
 fn sample_covered(image: texture_2d<f32>, slot: u32, p: vec2f) -> vec4f {
     return sample_covered_among(image, surroundings(slot, p));
