@@ -100,10 +100,11 @@ fn shared_texts(shaders: &Path, kernels: &BTreeMap<Name, Shader>) -> String {
     for name in names {
         let wgsl = imports::imported(shaders, name).expect("it was read for a shader");
         let filtered = filtered::filtered(shaders, name).expect("it was read for a shader");
+        let packed = imports::packed(shaders, name).expect("it can be read");
         let _ = write!(
             text,
             "/// `shaders/{name}.wgsl`.\npub static {}: isophote_engine::kernel::Import = \
-             isophote_engine::kernel::Import {{ name: {name:?}, text: {wgsl:?}, filtered: {filtered:?} }};\n",
+             isophote_engine::kernel::Import {{ name: {name:?}, text: {wgsl:?}, filtered: {filtered:?}, packed: {packed:?} }};\n",
             constant(name),
         );
     }
@@ -157,7 +158,7 @@ fn generated(kernels: &BTreeMap<Name, Shader>, rust: &BTreeMap<Name, PathBuf>) -
              /// Bytes of the uniform block; 0 for none.\npub const PARAMS_SIZE: usize = {};\n\
              /// What the module is put together from.\n\
              pub const PARTS: isophote_engine::kernel::Parts = isophote_engine::kernel::Parts {{\n\
-             imports: &[{}],\nown: {:?},\nis_per_pixel: {},\naround: &{:?},\ncan_produce: {},\nfiltered: &{:?},\ncan_lead: {} }};\n{}}}\n",
+             imports: &[{}],\nown: {:?},\nis_per_pixel: {},\naround: &{:?},\ncan_produce: {},\nfiltered: &{:?},\nwindowed: {:?},\ncan_lead: {} }};\n{}}}\n",
             shader.source,
             shader.inputs,
             shader.outputs,
@@ -168,6 +169,7 @@ fn generated(kernels: &BTreeMap<Name, Shader>, rust: &BTreeMap<Name, PathBuf>) -
             shader.around,
             shader.can_produce,
             shader.filtered,
+            shader.windowed,
             shader.can_lead,
             shader.params.as_ref().map_or_else(String::new, |block| block.rust(&path)),
         );

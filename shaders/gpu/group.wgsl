@@ -1,6 +1,7 @@
 #import gpu/grid
+#import gpu/tap
 
-// The 8 x 8 pixels of a workgroup, for kernels that load their neighbours together.
+// The pixels of a workgroup, for kernels that load their neighbours together.
 //
 // All invocations must reach every barrier. Those of edge workgroups that have no texel to write therefore
 // go along, in the place of the nearest one that has: nothing is read that a pixel of the pass does not
@@ -13,17 +14,23 @@ override shared_windows: bool = true;
 
 // Absolute position of the workgroup's first pixel.
 fn group_corner(id: vec3u) -> vec2i {
-    return grid.origin + vec2i(id.xy & vec2u(0xfffffff8u));
+    return grid.origin + vec2i(id.xy & vec2u(~(GROUP_SIDE - 1u)));
 }
 
-// Columns and rows of the workgroup that have a texel to write, 1..8.
+// Columns and rows of the workgroup that have a texel to write, 1..GROUP_SIDE.
 fn group_size(id: vec3u) -> vec2i {
-    return min(grid.size - vec2i(id.xy & vec2u(0xfffffff8u)), vec2i(8));
+    return min(grid.size - vec2i(id.xy & vec2u(~(GROUP_SIDE - 1u))), vec2i(i32(GROUP_SIDE)));
 }
 
 // The invocation's own place in the workgroup, for sharing out work.
 fn group_local(id: vec3u) -> vec2i {
-    return vec2i(id.xy & vec2u(7u));
+    return vec2i(id.xy & vec2u(GROUP_SIDE - 1u));
+}
+
+// Its number in the workgroup, from 0 on.
+fn group_index(id: vec3u) -> u32 {
+    let local = id.xy & vec2u(GROUP_SIDE - 1u);
+    return local.y * GROUP_SIDE + local.x;
 }
 
 // Place in the workgroup of the pixel that the invocation computes.

@@ -4,7 +4,7 @@
 // texture once.
 //
 // The shader defines `window_tap(p: vec2i) -> vec4f`, what a window holds of the pixel at absolute position p, and
-// `WINDOW_PIXELS`, one of the sizes below. A window is gone through in parts that fit the memory:
+// `WINDOW_PIXELS`, one of the sizes of gpu/tap. A window is gone through in parts that fit the memory:
 //
 //   let step = window_step(end - begin + 1);
 //   for (var y = begin.y; y <= end.y; y += step.y) {
@@ -18,20 +18,10 @@
 //
 // Offsets are those of taps from their own pixel. What `first` and `last` are made of must be uniform.
 
-// Pixels that the taps of a part take. Fewer leave room for more workgroups at once, which is what hides the time that
-// loads take; more taps share what is loaded. Two windows of any size stay below the 16 KiB of the smallest devices.
-//
-// Windows of one row or column are gone through 8 taps at a time; their sums are the same however they are cut.
-const WINDOW_LINE: i32 = 120;
-// Windows of many rows and columns lose more by being cut than by waiting.
-const WINDOW_AREA: i32 = 504;
-// Windows of 5 x 5 pixels, which are not cut.
-const WINDOW_SMALL: i32 = 144;
-
-var<workgroup> window: array<vec4f, WINDOW_PIXELS>;
+var<workgroup> window: array<WindowTap, WINDOW_PIXELS>;
 
 // The taps opposite those of `window`, for kernels that take both at once.
-var<workgroup> window_opposite: array<vec4f, WINDOW_PIXELS>;
+var<workgroup> window_opposite: array<WindowTap, WINDOW_PIXELS>;
 
 struct WindowPart {
     // The invocation's own pixel: absolute, and its index in the two arrays if that were in them.
@@ -47,12 +37,15 @@ struct WindowPart {
 // How many of `taps` columns and rows to take at once. Parts of wide windows are about as high as wide, which
 // shares the most.
 fn window_step(taps: vec2i) -> vec2i {
-    var columns = min(taps.x, WINDOW_PIXELS / 8 - 7);
+    let side = i32(GROUP_SIDE);
+    let most = WINDOW_PIXELS / side - (side - 1);
+    var columns = min(taps.x, most);
     if taps.y > 1 {
-        let parts = (taps.x + 31) / 32;
+        let widest = min(most, 32);
+        let parts = (taps.x + widest - 1) / widest;
         columns = (taps.x + parts - 1) / parts;
     }
-    return vec2i(columns, min(taps.y, WINDOW_PIXELS / (columns + 7) - 7));
+    return vec2i(columns, min(taps.y, WINDOW_PIXELS / (columns + side - 1) - (side - 1)));
 }
 
 // How far a disc reaches to either side in row `dy`: the largest whole number whose square and that of dy are `limit`
@@ -78,9 +71,9 @@ fn window_load(id: vec3u, first: vec2i, last: vec2i) -> WindowPart {
     let local = group_local(id);
     // All have read the part before.
     workgroupBarrier();
-    for (var y = local.y; y < size.y; y += 8) {
-        for (var x = local.x; x < size.x; x += 8) {
-            window[y * part.stride + x] = window_tap(corner + vec2i(x, y));
+    for (var y = local.y; y < size.y; y += i32(GROUP_SIDE)) {
+        for (var x = local.x; x < size.x; x += i32(GROUP_SIDE)) {
+            window[y * part.stride + x] = window_pack(window_tap(corner + vec2i(x, y)));
         }
     }
     workgroupBarrier();
@@ -98,11 +91,11 @@ fn window_load_both(id: vec3u, first: vec2i, last: vec2i) -> WindowPart {
     let corner = group_corner(id);
     let local = group_local(id);
     workgroupBarrier();
-    for (var y = local.y; y < size.y; y += 8) {
-        for (var x = local.x; x < size.x; x += 8) {
+    for (var y = local.y; y < size.y; y += i32(GROUP_SIDE)) {
+        for (var x = local.x; x < size.x; x += i32(GROUP_SIDE)) {
             let place = corner + vec2i(x, y);
-            let tap = window_tap(place + first);
-            let opposite = window_tap(place - last);
+            let tap = window_pack(window_tap(place + first));
+            let opposite = window_pack(window_tap(place - last));
             window[y * part.stride + x] = tap;
             window_opposite[y * part.stride + x] = opposite;
         }
@@ -113,7 +106,7 @@ fn window_load_both(id: vec3u, first: vec2i, last: vec2i) -> WindowPart {
 
 // Where the invocation's taps of a part are.
 fn window_part(id: vec3u, first: vec2i, last: vec2i) -> WindowPart {
-    let stride = last.x - first.x + 8;
+    let stride = last.x - first.x + i32(GROUP_SIDE);
     let seat = group_seat(id);
     let index = (seat.y - first.y) * stride + seat.x - first.x;
     let opposite = (seat.y + last.y) * stride + seat.x + last.x;
@@ -123,7 +116,7 @@ fn window_part(id: vec3u, first: vec2i, last: vec2i) -> WindowPart {
 // The tap at `offset`.
 fn window_read(part: WindowPart, offset: vec2i) -> vec4f {
     if part.loaded {
-        return window[part.index + offset.y * part.stride + offset.x];
+        return window_unpack(window[part.index + offset.y * part.stride + offset.x]);
     }
     return window_tap(part.pixel + offset);
 }
@@ -131,7 +124,7 @@ fn window_read(part: WindowPart, offset: vec2i) -> vec4f {
 // The tap at -`offset`.
 fn window_read_opposite(part: WindowPart, offset: vec2i) -> vec4f {
     if part.loaded {
-        return window_opposite[part.opposite - offset.y * part.stride - offset.x];
+        return window_unpack(window_opposite[part.opposite - offset.y * part.stride - offset.x]);
     }
     return window_tap(part.pixel - offset);
 }

@@ -50,7 +50,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let stretch = 1.0 + params.elongation * tensor_anisotropy(tensor);
     let ellipse = sector_ellipse(t, params.radius, stretch);
     let eight = params.sectors == 8u;
-    let mask = select(vec4f(1.0, 0.0, 1.0, 0.0), vec4f(1.0), eight);
+    // Of four sectors those between them get no weight anywhere on the disc.
+    let zeta = select(vec4f(params.zeta, -4.0, params.zeta, -4.0), vec4f(params.zeta), eight);
+    let eta = params.eta;
 
     let origin = fetch(source, 0u, p);
     // Sums of sectors 0, 1, 2, 3 with their opposites, and differences from them.
@@ -85,11 +87,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                     // Components along sectors 0 to 3, and the squares of those across them.
                     let forward = vec4f(v.x, u.x, v.y, u.y);
                     let side = vec4f(v.y * v.y, u.y * u.y, v.x * v.x, u.x * u.x);
-                    let k = params.zeta - params.eta * side;
+                    let k = zeta - eta * side;
                     let z0 = max(k + forward, vec4f(0.0));
                     let z1 = max(k - forward, vec4f(0.0));
-                    let near = z0 * z0 * mask;
-                    let far = z1 * z1 * mask;
+                    let near = z0 * z0;
+                    let far = z1 * z1;
                     let g = exp(-3.125 * distance2) / dot(near + far, vec4f(1.0));
                     let both = (near + far) * g;
                     let apart = (near - far) * g;

@@ -30,7 +30,7 @@ struct Params {
 @group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
 @group(0) @binding(5) var deviations: texture_storage_2d<r32float, write>;
 
-const WINDOW_PIXELS: i32 = WINDOW_AREA;
+const WINDOW_PIXELS: i32 = WINDOW_AREA_BESIDE_WEIGHTS;
 
 fn window_tap(p: vec2i) -> vec4f {
     return fetch(source, 0u, p);
@@ -38,6 +38,7 @@ fn window_tap(p: vec2i) -> vec4f {
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
+    sector_weights_load(id);
     let p = group_pixel(id);
     let tensor = fetch(tensors, 1u, p);
     let t = tensor_tangent(tensor);

@@ -28,7 +28,7 @@ struct Params {
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
 
-const WINDOW_PIXELS: i32 = WINDOW_AREA;
+const WINDOW_PIXELS: i32 = WINDOW_AREA_BESIDE_WEIGHTS;
 
 fn window_tap(p: vec2i) -> vec4f {
     return fetch(source, 0u, p);
@@ -36,6 +36,7 @@ fn window_tap(p: vec2i) -> vec4f {
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
+    sector_weights_load(id);
     let p = group_pixel(id);
     let origin = fetch(source, 0u, p);
     let eight = params.sectors == 8u;

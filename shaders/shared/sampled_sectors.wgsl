@@ -1,7 +1,9 @@
 #import shared/sectors
+#import gpu/sector_weights
 
 // Sectors whose weighting functions are sampled (thesis § 5.3, 5.4.2), for shaders whose parameters hold
-// `weights`: h_0 and its quarter turns at 43 x 22 nodes over the half y >= 0 of the disc's bounding square.
+// `weights`: h_0 and its quarter turns at 43 x 22 nodes over the half y >= 0 of the disc's bounding square. They call
+// `sector_weights_load` first.
 // Twin of kernels/shared/sampled_sectors.rs.
 //
 // The four weights a quarter turn apart are one texel; those between them lie at positions turned by 45
@@ -10,7 +12,7 @@
 
 // Texel `at` and its right neighbour, interpolated.
 fn sector_texels(at: u32, f: f32) -> vec4f {
-    return mix(params.weights[at], params.weights[at + 1u], f);
+    return mix(sector_weights_at(at), sector_weights_at(at + 1u), f);
 }
 
 // The four weights at a point of the unit disc, interpolated. The lower half mirrors the upper one, with

@@ -18,6 +18,9 @@ pub const PAIR_REACH: u32 = 8;
 /// Side of the square workgroups of dispatches of such windows.
 pub const PAIR_WORKGROUP: u32 = 16;
 
+/// Side of the square workgroups whose windows of neighbours hold 16-bit floats; `shaders/gpu/tap_half.wgsl` has it, too.
+pub const PACKED_WORKGROUP: u32 = 16;
+
 /// Binding of the sampler of shaders that interpolate by one.
 pub const SAMPLER_BINDING: u32 = 15;
 
@@ -69,6 +72,9 @@ pub struct Parts {
     pub can_produce: bool,
     /// Inputs that are interpolated by [`Import::filtered`] alone, if the kernel imports any text that has one.
     pub filtered: &'static [usize],
+    /// The input of which its windows of neighbours hold pixels as they are: where that has 16-bit floats, the windows may,
+    /// too, by [`Import::packed`].
+    pub windowed: Option<usize>,
     /// Whether kernels of single pixels can follow in the same pass: there is one output, stored in one place by
     /// `textureStore(target_image, vec2i(id.xy), VALUE);`, or the kernel is of single pixels itself.
     pub can_lead: bool,
@@ -96,6 +102,8 @@ pub struct Import {
     /// The same functions with the sampler at [`SAMPLER_BINDING`] in place of loads and arithmetic, for textures that a
     /// device filters; none where nothing is interpolated.
     pub filtered: Option<&'static str>,
+    /// What takes its place where windows hold 16-bit floats, for workgroups of [`PACKED_WORKGROUP`].
+    pub packed: Option<&'static str>,
 }
 
 impl Parts {
@@ -107,6 +115,7 @@ impl Parts {
         around: &[],
         can_produce: false,
         filtered: &[],
+        windowed: None,
         can_lead: false,
     };
 }

@@ -11,8 +11,12 @@ use isophote_engine::program::{Format, Precision, Program};
 use isophote_engine::{Band, Class, Image, ImageId, Kernel, Plan, PlanBuilder, Rect, Support, Tolerance};
 use std::sync::Arc;
 
-static GRID: Import =
-    Import { name: "gpu/grid", text: include_str!("../../../shaders/gpu/grid.wgsl"), filtered: None };
+static GRID: Import = Import {
+    name: "gpu/grid",
+    text: include_str!("../../../shaders/gpu/grid.wgsl"),
+    filtered: None,
+    packed: None,
+};
 
 const EXACT: Tolerance = Tolerance { absolute: 1e-5, relative: 1e-5, outliers: 0.0, reason: "few sums" };
 

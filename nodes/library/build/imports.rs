@@ -69,6 +69,14 @@ impl Text {
         sampled(&self.own).enumerate().filter(|(_, name)| has_constant(name)).map(|(slot, _)| slot).collect()
     }
 
+    /// The input of which its windows hold pixels as they are.
+    pub fn windowed(&self) -> Option<usize> {
+        let (_, rest) = self.own.split_once("fn window_tap(p: vec2i) -> vec4f {\n    return fetch(")?;
+        let (texture, rest) = rest.split_once(", ")?;
+        let slot = sampled(&self.own).position(|name| name == texture)?;
+        rest.starts_with(&format!("{slot}u, p);\n}}")).then_some(slot)
+    }
+
     /// The complete module, with an entry point for a shader of single pixels.
     ///
     /// # Errors
@@ -93,6 +101,17 @@ pub fn imported(shaders: &Path, name: &str) -> Result<String, String> {
     let text = read(&shaders.join(format!("{name}.wgsl")))?;
     let lines = text.lines().filter(|line| !line.starts_with("#import "));
     Ok(lines.flat_map(|line| [line, "\n"]).collect())
+}
+
+/// What stands for an import where windows hold 16-bit floats: the file of its name with `_half` behind it; none where
+/// there is no such file.
+///
+/// # Errors
+/// When it cannot be read.
+pub fn packed(shaders: &Path, name: &str) -> Result<Option<String>, String> {
+    let name = format!("{name}_half");
+    let is_there = shaders.join(format!("{name}.wgsl")).exists();
+    is_there.then(|| imported(shaders, &name)).transpose()
 }
 
 /// Names of the textures that a shader's own text reads, in order.

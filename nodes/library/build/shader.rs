@@ -27,6 +27,8 @@ pub struct Shader {
     pub can_produce: bool,
     /// Inputs that are interpolated by functions of which there are filtered ones.
     pub filtered: Vec<usize>,
+    /// The input of which its windows hold pixels as they are.
+    pub windowed: Option<usize>,
     /// Whether it stores its only result in one place, by the usual words.
     pub can_lead: bool,
     /// Number of sampled textures.
@@ -59,6 +61,7 @@ impl Shader {
         let is_per_pixel = text.is_per_pixel();
         let around = if is_per_pixel { text.around() } else { Vec::new() };
         let can_produce = text.own.contains(AT_PLACE) && sampled(&text.own).eq(["source"]);
+        let windowed = text.windowed();
         let can_lead = (is_per_pixel || stores_once) && outputs.len() == 1;
         let Text { imports, own, .. } = text;
         Ok(Self {
@@ -69,6 +72,7 @@ impl Shader {
             around,
             can_produce,
             filtered,
+            windowed,
             can_lead,
             inputs,
             outputs,

@@ -25,22 +25,28 @@ pub fn concerns(steps: &[Step]) -> bool {
 
 /// Compares both twins on some of the steps; kernels that keep nothing in 16-bit floats have nothing to compare.
 pub fn agreement(kernel: &'static Kernel, steps: &[Step]) -> Option<Report> {
-    let mut gpu = device::executor(kernel.name)?;
-    gpu.set_precision(Precision::Fast);
+    let mut devices = vec![device::executor(kernel.name)?];
+    if kernel.parts.windowed.is_some() && !devices[0].device().shares_windows() {
+        devices.push(device::executor_with_windows(kernel.name, true)?);
+    }
+    devices.iter_mut().for_each(|gpu| gpu.set_precision(Precision::Fast));
     let mut tally = Tally::default();
     for step in spoiled::sample(steps, STEPS).into_iter().filter(|_| concerns(steps)) {
         let plan = step.plan_with(kernel);
         let (inputs, expected) = step.in_half();
         let named: Vec<_> = plan.inputs().iter().map(|port| port.name.as_str()).zip(&inputs).collect();
-        tally.runs += 1;
-        match gpu.run_images(&plan, &named, step.region(), Control::default()) {
-            Ok(results) => {
-                for (index, (ours, theirs)) in expected.iter().zip(&results).enumerate() {
-                    let difference = Difference::between(ours, theirs, &kernel.fast);
-                    tally.add(&format!("{} output {index}", step.label), &kernel.fast, &difference);
+        for gpu in &mut devices {
+            tally.runs += 1;
+            let label = format!("{}, windows {}", step.label, gpu.device().shares_windows());
+            match gpu.run_images(&plan, &named, step.region(), Control::default()) {
+                Ok(results) => {
+                    for (index, (ours, theirs)) in expected.iter().zip(&results).enumerate() {
+                        let difference = Difference::between(ours, theirs, &kernel.fast);
+                        tally.add(&format!("{label}, output {index}"), &kernel.fast, &difference);
+                    }
                 }
+                Err(e) => tally.failures.push(format!("{label}: {e}")),
             }
-            Err(e) => tally.failures.push(format!("{}: {e}", step.label)),
         }
     }
     Some(tally.report("fast", kernel.name, &kernel.fast))

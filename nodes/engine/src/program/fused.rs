@@ -2,8 +2,8 @@
 
 use super::format::Format;
 use super::fusion::Lead;
-use super::shader::{NEAREST_HALF, STORE, Shader, variant};
-use crate::kernel::{Import, Kernel, PAIR_WORKGROUP, WORKGROUP};
+use super::shader::{NEAREST_HALF, Reading, STORE, Shader, variant};
+use crate::kernel::{Kernel, PAIR_WORKGROUP};
 use std::collections::HashSet;
 use std::fmt::Write as _;
 
@@ -31,8 +31,8 @@ pub(super) struct Fused {
     pub outputs: Vec<(usize, Format)>,
     /// Whether what the first of several reads is held in the window that is summed, as it is at the same level.
     pub is_held: bool,
-    /// Whether the first interpolates by a sampler.
-    pub is_filtered: bool,
+    /// How the first reads.
+    pub reading: Reading,
 }
 
 /// The uniform bytes of several kernels: each block begins at a multiple of 16 bytes.
@@ -52,11 +52,8 @@ impl Fused {
             inputs: self.textures(),
             outputs: outputs.into(),
             params_size,
-            workgroup: if self.lead == Lead::Single { WORKGROUP } else { PAIR_WORKGROUP },
-            filtered: match self.links.first() {
-                Some(link) if self.is_filtered => link.kernel.parts.filtered.into(),
-                _ => (&[]).into(),
-            },
+            workgroup: if self.lead == Lead::Single { self.reading.workgroup() } else { PAIR_WORKGROUP },
+            filtered: self.links.first().map_or(&[][..], |link| self.reading.filtered(link.kernel)).into(),
         }
     }
 
@@ -97,7 +94,7 @@ impl Fused {
                 name.push('*');
             }
         }
-        name + variant(self.is_half(), self.is_filtered)
+        name + &variant(self.is_half(), self.reading)
     }
 
     /// The module. What kernels after the first declare gets the number of their place behind its name, so that two may use
@@ -139,11 +136,9 @@ impl Fused {
         for (place, link) in self.links.iter().enumerate() {
             let pair = link.kernel.pair.as_ref().filter(|_| self.is_of_pair(place));
             let imports = pair.map_or(link.kernel.parts.imports, |pair| pair.imports);
-            for Import { text: loaded, filtered, .. } in
-                imports.iter().filter(|import| known.insert(import.name))
-            {
+            for import in imports.iter().filter(|import| known.insert(import.name)) {
                 // Only what the first kernel imports may know of its parameters.
-                for line in filtered.filter(|_| self.is_filtered).unwrap_or(loaded).lines() {
+                for line in self.reading.text(import).lines() {
                     rename(line, &mut text, |word| {
                         (word == "params").then(|| "uniforms.params_0".to_owned())
                     });
@@ -187,7 +182,7 @@ impl Fused {
                  if !outside(id) {{\n        {FOLLOW}of_pixel(id{arguments}));\n    }}\n}}\n"
             );
         }
-        text.push_str(&own.text);
+        text.push_str(&self.reading.own(&own.text));
         format!("    let value_0 = {};\n", stored("first", link.kernel.outputs[0]))
     }
 

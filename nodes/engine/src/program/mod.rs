@@ -19,6 +19,7 @@ mod fusion;
 mod shader;
 
 pub use format::{Format, Precision};
+use shader::Reading;
 pub use shader::Shader;
 
 use crate::error::{Error, Result};
@@ -154,20 +155,22 @@ impl Program {
             });
         }
         program.textures = lowering.textures;
-        program.keep_inputs();
+        program.keep_inputs(plan);
         Ok(program)
     }
 
     /// Asks for inputs as the caller has them, but for those that a sampler reads.
-    fn keep_inputs(&mut self) {
+    fn keep_inputs(&mut self, plan: &Plan) {
         let filtered = |dispatch: &Dispatch| {
             let inputs = dispatch.shader.filtered.iter().filter_map(|at| dispatch.inputs.get(*at).copied());
             inputs.collect::<Vec<u32>>()
         };
         let filtered: Vec<u32> = self.dispatches.iter().flat_map(filtered).collect();
         for (index, texture) in (0..).zip(&mut self.textures) {
-            if matches!(texture.role, Role::Input(_)) && !filtered.contains(&index) {
-                texture.format = Format::exact(texture.format.channels());
+            let Role::Input(name) = &texture.role else { continue };
+            let port = plan.inputs().iter().find(|port| port.name == *name);
+            if let Some(port) = port.filter(|_| !filtered.contains(&index)) {
+                texture.format = Format::exact(plan.desc(port.image).channels);
             }
         }
     }
@@ -325,12 +328,7 @@ impl<'p> Lowering<'p> {
 
     fn texture(&self, image: ImageId, role: Role, window: Rect) -> Texture {
         let desc = self.plan.desc(image);
-        let format = match role {
-            // A caller's picture of two channels stays one.
-            Role::Input(_) if desc.channels == 2 => Format::Rg32,
-            _ => Format::of(desc, self.precision),
-        };
-        Texture { role, format, class: desc.class, window }
+        Texture { role, format: Format::of(desc, self.precision), class: desc.class, window }
     }
 
     fn push(&mut self, image: ImageId, texture: Texture) -> u32 {
@@ -406,14 +404,10 @@ impl<'p> Lowering<'p> {
     fn shader(&self, fusion: &Fusion, passes: &[&Pass]) -> Shader {
         let format = |image: &ImageId| Format::of(self.plan.desc(*image), self.precision);
         let first = passes[0];
-        let filtered = first.kernel.parts.filtered;
-        let is_filtered = self.precision == Precision::Fast
-            && fusion.lead == Lead::Single
-            && !filtered.is_empty()
-            && filtered.iter().all(|input| format(&first.inputs[*input]) == Format::Rgba16);
+        let reading = if fusion.lead == Lead::Single { self.reading(first) } else { Reading::default() };
         if let [pass] = passes {
             let outputs: Vec<Format> = pass.outputs.iter().map(format).collect();
-            return Shader::of(pass.kernel, &outputs, is_filtered);
+            return Shader::of(pass.kernel, &outputs, reading);
         }
         let place = |image: &ImageId, before: usize| {
             passes[..before].iter().position(|pass| pass.outputs.contains(image))
@@ -430,9 +424,23 @@ impl<'p> Lowering<'p> {
             lead: fusion.lead,
             outputs: outputs.collect(),
             is_held: level(first.inputs[0]) == level(first.outputs[0]),
-            is_filtered,
+            reading,
         };
         fused.shader()
+    }
+
+    /// How a pass reads.
+    fn reading(&self, pass: &Pass) -> Reading {
+        let parts = &pass.kernel.parts;
+        let is_half =
+            |input: &usize| Format::of(self.plan.desc(pass.inputs[*input]), self.precision) == Format::Rgba16;
+        let is_fast = self.precision == Precision::Fast;
+        // What enters is the caller's, and may be more precise, unless it is asked for in 16 bits.
+        let is_own = |input: &usize| self.plan.inputs().iter().all(|port| port.image != pass.inputs[*input]);
+        Reading {
+            is_filtered: is_fast && !parts.filtered.is_empty() && parts.filtered.iter().all(is_half),
+            is_packed: parts.windowed.as_ref().is_some_and(|at| is_half(at) && (is_fast || is_own(at))),
+        }
     }
 }
 

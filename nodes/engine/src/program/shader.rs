@@ -1,7 +1,7 @@
 //! Shaders of dispatches, and that of one kernel.
 
 use super::format::Format;
-use crate::kernel::{Kernel, WORKGROUP};
+use crate::kernel::{Import, Kernel, PACKED_WORKGROUP, WORKGROUP};
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
@@ -11,8 +11,8 @@ pub struct Shader {
     /// Name of the kernel, or of several: with an ampersand between those that compute a window together, and a plus before
     /// each that follows for single pixels. Behind a follower stands which value each of its inputs is, unless the first is
     /// that of the kernel before and the others are textures, and a star behind values that are stored though others follow.
-    /// At the end stand `/half` of those that write 16-bit floats and `/filtered` of those that interpolate by a sampler.
-    /// Shaders of one name are the same.
+    /// At the end stand `/half` of those that write 16-bit floats, `/filtered` of those that interpolate by a sampler and
+    /// `/packed` of those whose windows of neighbours hold 16-bit floats. Shaders of one name are the same.
     pub name: Cow<'static, str>,
     /// Complete WGSL module, entry point `main`.
     pub source: Cow<'static, str>,
@@ -45,12 +45,18 @@ fn nearest_half(value: vec4f) -> vec4f {
 ";
 
 impl Shader {
-    /// That of one kernel, which writes `outputs` and interpolates by a sampler if `is_filtered`.
-    pub(super) fn of(kernel: &'static Kernel, outputs: &[Format], is_filtered: bool) -> Self {
+    /// That of one kernel, which writes `outputs`.
+    pub(super) fn of(kernel: &'static Kernel, outputs: &[Format], reading: Reading) -> Self {
         let is_half = outputs.contains(&Format::Rgba16);
-        let source = if is_filtered { filtered_source(kernel).into() } else { Cow::Borrowed(kernel.shader) };
+        let source = if reading == Reading::default() {
+            Cow::Borrowed(kernel.shader)
+        } else {
+            let imports = kernel.parts.imports.iter().map(|import| reading.text(import));
+            let own = reading.own(kernel.parts.own);
+            imports.chain([own.as_ref()]).collect::<String>().into()
+        };
         Self {
-            name: match variant(is_half, is_filtered) {
+            name: match variant(is_half, reading).as_str() {
                 "" => Cow::Borrowed(kernel.name),
                 variant => format!("{}{variant}", kernel.name).into(),
             },
@@ -58,26 +64,52 @@ impl Shader {
             inputs: kernel.inputs,
             outputs: outputs.to_vec().into(),
             params_size: kernel.params_size,
-            workgroup: WORKGROUP,
-            filtered: if is_filtered { kernel.parts.filtered.into() } else { Cow::Borrowed(&[]) },
+            workgroup: reading.workgroup(),
+            filtered: reading.filtered(kernel).into(),
         }
     }
 }
 
-/// What stands behind the names of shaders that differ from those of their kernels.
-pub(super) fn variant(is_half: bool, is_filtered: bool) -> &'static str {
-    match (is_half, is_filtered) {
-        (false, false) => "",
-        (true, false) => "/half",
-        (false, true) => "/filtered",
-        (true, true) => "/half/filtered",
+/// How a kernel reads textures of 16-bit floats; the default is what it does with all others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Reading {
+    /// Whether it interpolates by a sampler.
+    pub is_filtered: bool,
+    /// Whether its windows of neighbours hold 16-bit floats.
+    pub is_packed: bool,
+}
+
+impl Reading {
+    /// What stands in a module for what a kernel imports.
+    pub fn text(self, import: &'static Import) -> &'static str {
+        let filtered = import.filtered.filter(|_| self.is_filtered);
+        filtered.or(import.packed.filter(|_| self.is_packed)).unwrap_or(import.text)
+    }
+
+    /// A kernel's own text, for workgroups of the right size.
+    pub fn own(self, own: &str) -> Cow<'_, str> {
+        if !self.is_packed {
+            return Cow::Borrowed(own);
+        }
+        let size = |side: u32| format!("@workgroup_size({side}, {side})");
+        own.replace(&size(WORKGROUP), &size(PACKED_WORKGROUP)).into()
+    }
+
+    /// The side of its workgroups.
+    pub const fn workgroup(self) -> u32 {
+        if self.is_packed { PACKED_WORKGROUP } else { WORKGROUP }
+    }
+
+    /// The inputs that it reads through a sampler.
+    pub const fn filtered(self, kernel: &'static Kernel) -> &'static [usize] {
+        if self.is_filtered { kernel.parts.filtered } else { &[] }
     }
 }
 
-/// The module of a kernel that interpolates by a sampler.
-fn filtered_source(kernel: &Kernel) -> String {
-    let imports = kernel.parts.imports.iter().map(|import| import.filtered.unwrap_or(import.text));
-    imports.chain([kernel.parts.own]).collect()
+/// What stands behind the names of shaders that differ from those of their kernels.
+pub(super) fn variant(is_half: bool, reading: Reading) -> String {
+    let words = [(is_half, "/half"), (reading.is_filtered, "/filtered"), (reading.is_packed, "/packed")];
+    words.iter().filter(|(is, _)| *is).map(|(_, word)| *word).collect()
 }
 
 /// A module whose storage textures have these formats in place of those of 32-bit floats.

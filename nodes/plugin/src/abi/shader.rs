@@ -123,7 +123,8 @@ fn refused(kernel: &Shader, why: &str) -> Failure {
 fn parsed(kernel: &Shader, shared_windows: bool) -> Outcome<(Module, ModuleInfo, Vec<Bound>)> {
     let fail = |what: &str| refused(kernel, what);
     let module = naga::front::wgsl::parse_str(&kernel.source).map_err(|e| fail(&e.to_string()))?;
-    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+    // The functions of WGSL that pack 16-bit floats into words need no 16-bit arithmetic.
+    let info = Validator::new(ValidationFlags::all(), Capabilities::SHADER_FLOAT16_IN_FLOAT32)
         .validate(&module)
         .map_err(|e| fail(&e.to_string()))?;
     let bindings = bindings(&module);
