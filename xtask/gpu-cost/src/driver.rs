@@ -229,6 +229,7 @@ fn layout_binding(binding: &Binding) -> vk::DescriptorSetLayoutBinding<'static> 
     let kind = match binding.kind {
         BindingKind::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
         BindingKind::Sampled => vk::DescriptorType::SAMPLED_IMAGE,
+        BindingKind::Sampler => vk::DescriptorType::SAMPLER,
         BindingKind::Storage => vk::DescriptorType::STORAGE_IMAGE,
     };
     vk::DescriptorSetLayoutBinding::default()

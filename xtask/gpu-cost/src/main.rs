@@ -6,6 +6,8 @@
 
 mod driver;
 mod error;
+#[path = "../../../nodes/library/build/filtered.rs"]
+mod filtered;
 #[path = "../../../nodes/library/build/imports.rs"]
 mod imports;
 mod machine_code;

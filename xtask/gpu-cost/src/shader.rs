@@ -2,7 +2,8 @@
 //! those of graphics cards.
 
 use crate::error::{Error, Result};
-use crate::imports::Text;
+use crate::filtered::{filtered, filtered_inputs};
+use crate::imports::{Text, imported, packed};
 use naga::back::{PipelineConstants, pipeline_constants::process_overrides, spv};
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -15,7 +16,7 @@ const NO_KERNELS: [&str; 2] = ["shared", "gpu"];
 
 /// A kernel's shader.
 pub struct Kernel {
-    /// Stem of its file.
+    /// Stem of its file, and behind a stroke in which way it reads 16-bit floats.
     pub name: String,
     /// Its text, complete.
     pub source: String,
@@ -44,11 +45,13 @@ pub enum BindingKind {
     Uniform,
     /// A texture to read.
     Sampled,
+    /// A sampler.
+    Sampler,
     /// A texture to write.
     Storage,
 }
 
-/// All kernels of the folder `shaders`, by name.
+/// All kernels of the folder `shaders`, by name; those that read 16-bit floats in ways of their own, in these ways besides.
 ///
 /// # Errors
 /// Files that cannot be read.
@@ -61,13 +64,33 @@ pub fn kernels(shaders: &Path) -> Result<Vec<Kernel>> {
         for path in entries(&group)?.into_iter().filter(|path| path.extension().is_some_and(|e| e == "wgsl"))
         {
             let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            match Text::read(shaders, &path).and_then(|text| text.module()) {
-                Ok(source) => found.push(Kernel { name, source }),
-                Err(reason) => return Err(Error::Shader { name, reason }),
-            }
+            let variants = Text::read(shaders, &path).and_then(|text| variants(shaders, &name, &text));
+            found.extend(variants.map_err(|reason| Error::Shader { name, reason })?);
         }
     }
     found.sort_by(|a, b| a.name.cmp(&b.name));
+    Ok(found)
+}
+
+/// A kernel as it is, and as it reads 16-bit floats.
+fn variants(shaders: &Path, name: &str, text: &Text) -> std::result::Result<Vec<Kernel>, String> {
+    let mut found = vec![Kernel { name: name.to_owned(), source: text.module()? }];
+    let with = |other: &dyn Fn(&str) -> std::result::Result<Option<String>, String>| {
+        let shared = text.imports.iter().map(|import| match other(import)? {
+            Some(text) => Ok(text),
+            None => imported(shaders, import),
+        });
+        Ok::<_, String>(shared.collect::<std::result::Result<String, String>>()? + &text.own)
+    };
+    if !text.is_per_pixel() && !filtered_inputs(&text.own, shaders, &text.imports)?.is_empty() {
+        let source = with(&|import| filtered(shaders, import))?;
+        found.push(Kernel { name: format!("{name}/filtered"), source });
+    }
+    if text.windowed().is_some() {
+        let source = with(&|import| packed(shaders, import))?;
+        let source = source.replace("@workgroup_size(8, 8)", "@workgroup_size(16, 16)");
+        found.push(Kernel { name: format!("{name}/packed"), source });
+    }
     Ok(found)
 }
 
@@ -84,7 +107,7 @@ pub fn translate(kernel: &Kernel) -> Result<Spirv> {
     let fail = |reason: String| Error::Shader { name: kernel.name.clone(), reason };
     let module =
         naga::front::wgsl::parse_str(&kernel.source).map_err(|e| fail(e.emit_to_string(&kernel.source)))?;
-    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+    let info = Validator::new(ValidationFlags::all(), Capabilities::SHADER_FLOAT16_IN_FLOAT32)
         .validate(&module)
         .map_err(|e| fail(e.emit_to_string(&kernel.source)))?;
     let entry_point = Some((ShaderStage::Compute, "main"));
@@ -118,6 +141,7 @@ fn bindings(module: &Module) -> Vec<Binding> {
         let kind = match (&variable.space, &module.types[variable.ty].inner) {
             (AddressSpace::Uniform, _) => BindingKind::Uniform,
             (_, TypeInner::Image { class: ImageClass::Storage { .. }, .. }) => BindingKind::Storage,
+            (_, TypeInner::Sampler { .. }) => BindingKind::Sampler,
             _ => BindingKind::Sampled,
         };
         Some(Binding { number: variable.binding.as_ref()?.binding, kind })
