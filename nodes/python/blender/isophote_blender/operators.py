@@ -117,10 +117,11 @@ class ISOPHOTE_OT_use_look(bpy.types.Operator):
 
 
 def _show(context: bpy.types.Context, image: bpy.types.Image) -> None:
-    """Shows the image where renders are shown."""
-    for area in context.screen.areas if context.screen else ():
-        if area.type == "IMAGE_EDITOR":
-            area.spaces.active.image = image
+    """Shows the image where renders are shown, mostly in a window of their own."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "IMAGE_EDITOR":
+                area.spaces.active.image = image
 
 
 _CLASSES = (

@@ -20,6 +20,11 @@ STYLES: dict[str, isophote.Node] = {
 }
 """Nodes that make a picture of a picture, by id: styles first, as the catalogue has them."""
 
+# A path of files to come, which would be red otherwise; Blender 4.5 and later ask whether it may be relative, too.
+_OUTPUT = {"ANIMATABLE", "OUTPUT_PATH"}
+if "is_path_supports_blend_relative" in bpy.types.Property.bl_rna.properties:
+    _OUTPUT.add("PATH_SUPPORTS_BLEND_RELATIVE")
+
 # Blender keeps no copy of the texts of items.
 _STYLE_ITEMS = [(id, node.label, node.doc) for id, node in STYLES.items()]
 
@@ -94,6 +99,7 @@ class ISOPHOTE_PG_settings(bpy.types.PropertyGroup):
             description="Files of a stylized animation; # stands for digits of the frame",
             default="//stylized/####",
             subtype="FILE_PATH",
+            options=_OUTPUT,
         ),
         **{group_name(id): PointerProperty(type=group) for id, group in _GROUPS.items()},
     }

@@ -37,6 +37,10 @@ def test_settings_are_those_of_the_catalogue(scene: Any, extension: ModuleType) 
             if param.range and param.type in ("float", "int"):
                 assert (declared.hard_min, declared.hard_max) == pytest.approx(param.range, rel=1e-6)
 
+    output = settings.bl_rna.properties["output"]
+    # Blender paints paths red that have to exist, and those with // where they must not be relative.
+    assert output.is_path_output and getattr(output, "is_path_supports_blend_relative", True)
+
     class Layout:
         """Notes what is drawn, as no window is there to draw in."""
 
@@ -177,6 +181,18 @@ def test_an_animation_is_written_frame_by_frame(
         assert np.abs(pixels.reshape(expected.shape)[::-1] - expected).max() < tolerance
         alone = isophote.apply(style, frames[number].color, frame=number, **space)
         assert not np.allclose(alone, expected, atol=tolerance), "neighbours count"
+
+
+def test_all_windows_with_images_show_the_result(scene: Any, extension: ModuleType) -> None:
+    image = bpy.data.images.new("Stylized Render", 2, 2)
+    views = [
+        SimpleNamespace(type=kind, spaces=SimpleNamespace(active=SimpleNamespace(image=None)))
+        for kind in ("PROPERTIES", "VIEW_3D", "IMAGE_EDITOR")
+    ]
+    # Where nobody has chosen otherwise, Blender opens a window for each render.
+    windows = [SimpleNamespace(screen=SimpleNamespace(areas=areas)) for areas in (views[:2], views[2:])]
+    extension.operators._show(SimpleNamespace(window_manager=SimpleNamespace(windows=windows)), image)
+    assert [view.spaces.active.image for view in views] == [None, None, image]
 
 
 def test_mistakes_are_told(scene: Any, extension: ModuleType, tmp_path: Path) -> None:
