@@ -23,7 +23,7 @@ struct Control {
     kind: String,
     /// As MLT writes it; of choices the text of the option.
     default: String,
-    /// Ends of the slider.
+    /// Ends of the slider; of whole numbers the lower one is the least that there is.
     slider: Option<[f32; 2]>,
     options: Vec<String>,
 }
@@ -56,7 +56,8 @@ fn plugin() -> &'static BTreeMap<String, BTreeMap<String, Control>> {
 fn control(set: &Set, kind: String) -> Control {
     let numbers = set.numbers(kOfxParamPropDefault);
     let options = set.texts(kOfxParamPropChoiceOption);
-    let ends = [kOfxParamPropDisplayMin, kOfxParamPropDisplayMax];
+    let least = if kind == "Integer" { kOfxParamPropMin } else { kOfxParamPropDisplayMin };
+    let ends = [least, kOfxParamPropDisplayMax];
     let byte = |index: usize| (numbers[index] * 255.0).round() as u8;
     let default = match kind.as_str() {
         "Choice" => options[numbers[0] as usize].clone(),

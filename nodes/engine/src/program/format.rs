@@ -9,7 +9,8 @@ pub enum Precision {
     #[default]
     Exact,
     /// Images of class [`Class::Colour`] with two to four channels hold 16-bit floats, those that leave included: half the
-    /// bytes, or as many for two, which share textures with the others, and eleven bits for each value up to 65504, where larger ones are cut. What enters is the caller's.
+    /// bytes, or as many for two, which share textures with the others, and eleven bits for each value up to 65504, where
+    /// larger ones are cut. Workgroups hold what they read of such images in as many bits. What enters is the caller's.
     Half,
     /// As `Half`; besides, samplers interpolate them, whose weights have eight bits on common hardware. An input whose format
     /// is [`Format::Rgba16`] is read so, too, and must have a format that the device filters.

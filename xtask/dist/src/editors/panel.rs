@@ -152,7 +152,11 @@ fn controls(nodes: &[(&str, &Value)]) -> Option<Vec<Control>> {
 fn kind(param: &Value) -> Option<Kind> {
     let default = &param["default"];
     let number = |is_whole| {
-        let slider = [param["slider"][0].as_f64()?, param["slider"][1].as_f64()?];
+        let mut slider = [param["slider"][0].as_f64()?, param["slider"][1].as_f64()?];
+        if is_whole {
+            // Editors take no number beyond the ends, and the least whole number often means "not at all".
+            slider[0] = param["range"][0].as_f64()?;
+        }
         Some(Kind::Number { default: default.as_f64()?, slider, is_whole })
     };
     match param["type"].as_str()? {
