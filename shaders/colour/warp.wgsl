@@ -19,6 +19,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
     }
+    covered_begin(source);
     let p = pixel(id);
     let x = fetch(field, 1u, p + vec2i(1, 0)).x - fetch(field, 1u, p - vec2i(1, 0)).x;
     let y = fetch(field, 1u, p + vec2i(0, 1)).x - fetch(field, 1u, p - vec2i(0, 1)).x;

@@ -4,6 +4,13 @@
 
 @group(0) @binding(15) var filtering: sampler;
 
+// What a texel is in coordinates of the sampler. To ask for the texture's size at every tap takes two divisions each time.
+var<private> texel_size: vec2f;
+
+fn covered_begin(image: texture_2d<f32>) {
+    texel_size = 1.0 / vec2f(textureDimensions(image));
+}
+
 fn multiplied_between(
     image: texture_2d<f32>,
     slot: u32,
@@ -18,7 +25,7 @@ fn multiplied_between(
         // Samplers clamp to the texture, which may be larger than the picture.
         at = min(at, vec2f(grid.inputs[slot].zw - 1 - grid.inputs[slot].xy));
     }
-    return textureSampleLevel(image, filtering, (at + 0.5) / vec2f(textureDimensions(image)), 0.0);
+    return textureSampleLevel(image, filtering, (at + 0.5) * texel_size, 0.0);
 }
 
 fn covered_between(
@@ -41,7 +48,7 @@ fn covered_between(
 
 fn sample_multiplied_among(image: texture_2d<f32>, s: Surroundings) -> vec4f {
     let at = vec2f(s.near) + s.f + 0.5;
-    return textureSampleLevel(image, filtering, at / vec2f(textureDimensions(image)), 0.0);
+    return textureSampleLevel(image, filtering, at * texel_size, 0.0);
 }
 
 fn sample_covered_among(image: texture_2d<f32>, s: Surroundings) -> vec4f {

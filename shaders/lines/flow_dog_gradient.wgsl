@@ -62,6 +62,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
     }
+    covered_begin(lightness);
     let p = pixel(id);
     let t = tensor_tangent(fetch(field, 1u, p));
     // The gradient is (t.y, -t.x); its sign means nothing.

@@ -52,6 +52,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
     }
+    covered_begin(response);
     let origin = centre(id);
     // A last bit must not decide whether a whole number of pixels is reached.
     let limit = floor(2.0 * params.sigma + 1e-3);

@@ -28,6 +28,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
     }
+    covered_begin(coarse);
     let original = fetch(source, 0u, pixel(id));
     let at = centre(id) * 0.5;
     let filtered = sample_covered(coarse, 1u, at);

@@ -6,6 +6,10 @@
 // Coverage up to which a pixel counts as empty.
 const LEAST_COVERAGE: f32 = 1e-6;
 
+// Comes before all interpolation: `image` is what is interpolated. Shaders interpolate one image.
+fn covered_begin(image: texture_2d<f32>) {
+}
+
 // A colour times its alpha.
 fn premultiply(v: vec4f) -> vec4f {
     return vec4f(v.rgb * v.a, v.a);

@@ -75,6 +75,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
     }
+    covered_begin(source);
     let start = centre(id);
     let tangent = tensor_tangent(fetch(tensors, INPUT_TENSORS, pixel(id)));
     let origin = fetch(source, 0u, pixel(id));

@@ -89,6 +89,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
     }
+    covered_begin(source);
     let origin = centre(id);
     let tensor = fetch(tensors, INPUT_TENSORS, pixel(id));
     var sigma = params.sigma;

@@ -77,6 +77,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
     }
+    covered_begin(source);
     let p = pixel(id);
     let tensor = fetch(tensors, 1u, p);
     let tangent = tensor_tangent(tensor);

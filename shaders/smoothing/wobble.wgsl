@@ -28,6 +28,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
     }
+    covered_begin(source);
     let q = (centre(id) + params.origin) * params.inverse_scale * params.frequency;
     let place = centre(id) + vec2f(offset(q, 3001u), offset(q, 5003u));
     let v = sample_covered(source, 0u, place);

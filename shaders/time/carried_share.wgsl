@@ -28,6 +28,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
     }
+    covered_begin(theirs);
     let step = fetch(motion, 1u, pixel(id)).xy;
     let known = is_known(step);
     let place = centre(id) + select(vec2f(0.0), step, known);

@@ -45,7 +45,7 @@ pub fn filtered_inputs(own: &str, shaders: &Path, imports: &[String]) -> Result<
             functions.lines().filter_map(function).filter(|name| plain.contains(&format!("\nfn {name}(")))
         {
             for call in own.split(&format!("{name}(")).skip(1) {
-                let argument = call.split(',').next().unwrap_or_default();
+                let argument = call.split([',', ')']).next().unwrap_or_default();
                 let slot = textures.iter().position(|texture| *texture == argument);
                 inputs.push(slot.ok_or_else(|| format!("`{name}` must be given a texture by its name"))?);
             }
