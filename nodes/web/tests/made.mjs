@@ -85,6 +85,21 @@ export function tetrahedron() {
   return { json, bin };
 }
 
+/** The same with an animation of five seconds, in which it stays where it is. */
+export function animated() {
+  const { json, bin } = tetrahedron();
+  const times = Buffer.from(Float32Array.from([0, 5, 0, 0, 0, 0, 0, 0]).buffer);
+  const at = json.accessors.length;
+  json.bufferViews.push({ buffer: 0, byteOffset: bin.length, byteLength: 8 }, { buffer: 0, byteOffset: bin.length + 8, byteLength: 24 });
+  json.accessors.push(
+    { bufferView: at, componentType: 5126, count: 2, type: "SCALAR", min: [0], max: [5] },
+    { bufferView: at + 1, componentType: 5126, count: 2, type: "VEC3" },
+  );
+  json.animations = [{ samplers: [{ input: at, output: at + 1 }], channels: [{ sampler: 0, target: { node: 0, path: "translation" } }] }];
+  json.buffers[0].byteLength = bin.length + times.length;
+  return { json, bin: Buffer.concat([bin, times]) };
+}
+
 /** A model in one file. */
 export function glb({ json, bin } = tetrahedron()) {
   const text = Buffer.from(JSON.stringify(json));

@@ -6,7 +6,7 @@ import { resolve } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { built, launch } from "./browser.mjs";
-import { glb, photo, sizeOf, tetrahedron } from "./made.mjs";
+import { animated, glb, photo, sizeOf, tetrahedron } from "./made.mjs";
 
 /** Milliseconds that a step may take: the device of these tests is a processor. */
 const PATIENCE = 120_000;
@@ -243,6 +243,39 @@ test("models are stylized and turned; a missing buffer is named", async () => {
   assert.match(await message(page, "file"), /thing\.gltf needs thing%20data\.bin.*Drop them together/);
   await drop(page, [document, { name: "thing data.bin", data: bin }]);
   await opened(page, "thing.gltf");
+  assert.equal(await page.locator(".note.error").count(), 0);
+  await page.close();
+});
+
+test("looks that go by frames do so while a model plays", async () => {
+  const page = await open();
+  await drop(page, [{ name: "still.glb", data: glb(animated()) }]);
+  await page.waitForFunction(() => document.querySelector("#info").textContent.startsWith("still.glb"));
+  const button = page.locator("#play");
+  // Pictures of the look at two times of the animation, which moves nothing.
+  const pictures = async (parameters) => {
+    const look = JSON.stringify({ style: "ink", parameters });
+    await page.evaluate((text) => { location.hash = `#look=${text}`; }, look);
+    await page.waitForFunction(() => document.querySelector("#look-name").textContent === "Ink");
+    const found = [];
+    for (let at = 0; at < 2; at += 1) {
+      if (await button.getAttribute("aria-pressed") === "false") {
+        await button.click();
+      }
+      await page.waitForTimeout(1500);
+      await button.click();
+      await page.waitForTimeout(500);
+      await settled(page);
+      found.push(await shot(page));
+    }
+    return found;
+  };
+  const [first, second] = await pictures({});
+  assert.deepEqual(first, second, "marks change that should last");
+  const [before, after] = await pictures({ hold: 1 });
+  assert.notDeepEqual(before, after, "marks last that should change");
+  const [thin, thick] = await pictures({ line_width: { 0: 1, 400: 20 } });
+  assert.notDeepEqual(thin, thick, "a value by frames stays");
   assert.equal(await page.locator(".note.error").count(), 0);
   await page.close();
 });

@@ -64,6 +64,11 @@ export function withValue(look, { name, standard }, value) {
   return { ...look, parameters };
 }
 
+/** Whether a look, whose graph this is, changes with the number of the frame. */
+export function isTimed({ parameters = {} }, { nodes }) {
+  return nodes.some(({ params }) => params?.hold > 0) || Object.values(parameters).some(isKeyed);
+}
+
 /** Whether two values of a parameter are the same. */
 export function isEqual(a, b) {
   if (isColor(a) || isColor(b)) {

@@ -17,6 +17,9 @@ const [SHOWN, SHOWN_WITHOUT, SAVED] = [2560, 720, 2560];
 /** Samples for each pixel of the colour; guides have one, since depths of different things have no mean. */
 const SAMPLES = 4;
 
+/** What the numbers of frames are counted by, in which marks last and values are given. */
+const FRAMES_PER_SECOND = 24;
+
 /** One renderer for each device. */
 const renderers = new WeakMap();
 
@@ -109,6 +112,11 @@ export class Model {
 
   get info() {
     return `${this.name}, ${this.faces.toLocaleString("en")} triangles`;
+  }
+
+  /** The number of the frame that is shown, as films count them. */
+  get number() {
+    return Math.floor((this.mixer?.time ?? 0) * FRAMES_PER_SECOND);
   }
 
   /** Whether it looks different in the next frame. */

@@ -36,6 +36,7 @@ export class Picture {
   kind = "picture";
   guides = [];
   isMoving = false;
+  number = 0;
 
   /** Makes one of a bitmap. */
   static async open(isophote, bitmap, name) {

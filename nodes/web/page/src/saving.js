@@ -34,7 +34,7 @@ export async function savePicture(isophote, look, subject, lookName) {
   const bar = progress(`Computing ${width} × ${height} pixels…`, () => abort.abort());
   say(`Saving ${width} by ${height} pixels`);
   try {
-    const options = { memory: MEMORY, signal: abort.signal, onProgress: (share) => bar.set(share) };
+    const options = { memory: MEMORY, frame: subject.number, signal: abort.signal, onProgress: (share) => bar.set(share) };
     const image = await isophote.apply(look, inputs, options);
     abort.signal.throwIfAborted();
     const blob = await png(image);

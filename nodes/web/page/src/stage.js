@@ -3,14 +3,15 @@
 
 import { nextFrame } from "./dom.js";
 import { precision } from "./engine.js";
+import { isTimed } from "./look.js";
 import { Viewport } from "./viewport.js";
 
 /**
  * Fires `busy` when something is to be computed, `shown` when a frame of the newest look is on the canvas, `rest` when nothing
  * is left to do, and `view` when another part is shown.
  *
- * A subject is what is stylized: `{width, height, guides, isMoving, inputs()}`, where `inputs` are textures of the size; see
- * `picture.js` and `model.js`.
+ * A subject is what is stylized: `{width, height, guides, isMoving, number, inputs()}`, where `inputs` are textures of the size
+ * and `number` is that of the frame; see `picture.js` and `model.js`.
  */
 export class Stage extends EventTarget {
   viewport = new Viewport();
@@ -24,6 +25,9 @@ export class Stage extends EventTarget {
   #subject = null;
   #stylizer = null;
   #look = null;
+  /** Whether the look of the stylizer changes with the number of the frame, and the number that it has. */
+  #isTimed = false;
+  #number = 0;
   /** What is shown: 8 bits, so that painting is cheap and what is computed may change meanwhile. */
   #shown = null;
   #before = null;
@@ -144,9 +148,13 @@ export class Stage extends EventTarget {
     const { device } = this.#isophote;
     const [subject, look, dirty] = [this.#subject, this.#look, this.#dirty];
     this.#dirty = { look: false, picture: false };
+    const { number } = subject;
     if (dirty.look || !this.#fits(subject)) {
-      await this.#prepare(subject, look);
+      await this.#prepare(subject, look, number);
+    } else if (this.#isTimed && number !== this.#number) {
+      await this.#stylizer.update(look, { frame: number });
     }
+    this.#number = number;
     const inputs = await subject.inputs();
     if (subject !== this.#subject) {
       return;
@@ -174,18 +182,20 @@ export class Stage extends EventTarget {
   }
 
   /** A stylizer for the look: the same one as long as pictures have the size and the guides. */
-  async #prepare(subject, look) {
+  async #prepare(subject, look, number) {
     const guides = subject.guides.join();
     if (this.#fits(subject) && this.#stylizer.guides === guides) {
-      await this.#stylizer.update(look);
+      await this.#stylizer.update(look, { frame: number });
+      this.#isTimed = isTimed(look, this.#isophote.graph(look));
       return;
     }
     const { width, height } = subject;
-    const options = { width, height, guides: subject.guides, precision: precision(this.#isophote) };
+    const options = { width, height, guides: subject.guides, frame: number, precision: precision(this.#isophote) };
     const made = await this.#isophote.stylizer(look, options);
     made.guides = guides;
     this.#stylizer?.destroy();
     this.#stylizer = made;
+    this.#isTimed = isTimed(look, this.#isophote.graph(look));
   }
 
   #target({ width, height }) {
