@@ -58,7 +58,7 @@
 #ifndef ISOPHOTE_H
 #define ISOPHOTE_H
 
-/* Generated from include/rust by `cargo xtask header`. Do not edit. */
+/* Generated from include/src by `cargo xtask header`. Do not edit. */
 
 #include <stddef.h>
 #include <stdint.h>

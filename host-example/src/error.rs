@@ -4,6 +4,11 @@
 use std::fmt::Display;
 use std::path::Path;
 
+use isophote_loader::abi::{
+    ISOPHOTE_ERROR_CANCELLED, ISOPHOTE_ERROR_DEVICE, ISOPHOTE_ERROR_INTERNAL, ISOPHOTE_ERROR_INVALID_HANDLE,
+    ISOPHOTE_ERROR_NO_DEVICE, ISOPHOTE_ERROR_OUT_OF_MEMORY,
+};
+
 /// Why a command could not be carried out.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -67,6 +72,46 @@ impl Error {
         match self {
             Self::Input { .. } => 2,
             Self::Failure { .. } => 1,
+        }
+    }
+}
+
+/// Errors of the library, which know no place.
+pub trait AtPlace {
+    /// As the host's error. Devices, memory and mistakes of the library are failures; everything else is the fault of the
+    /// input at `place`, which `fix` puts right.
+    fn at(self, place: impl Display, fix: impl Display) -> Error;
+}
+
+impl AtPlace for isophote_loader::Error {
+    fn at(self, place: impl Display, fix: impl Display) -> Error {
+        let (status, message) = match self {
+            Self::Call { status, message } => (status, message),
+            other => return other.into(),
+        };
+        match status {
+            ISOPHOTE_ERROR_NO_DEVICE => Error::failure(
+                message,
+                "use --backend cpu, or install a graphics driver; a software one will do (on Debian: apt install \
+                 mesa-vulkan-drivers libvulkan1)",
+            ),
+            ISOPHOTE_ERROR_DEVICE | ISOPHOTE_ERROR_OUT_OF_MEMORY => {
+                Error::failure(message, "use a smaller picture or --backend cpu")
+            }
+            ISOPHOTE_ERROR_CANCELLED => Error::failure(message, "start again"),
+            ISOPHOTE_ERROR_INVALID_HANDLE | ISOPHOTE_ERROR_INTERNAL => {
+                Error::failure(message, "this is a mistake in the program; please report it")
+            }
+            _ => Error::input(place, message, fix),
+        }
+    }
+}
+
+impl From<isophote_loader::Error> for Error {
+    fn from(error: isophote_loader::Error) -> Self {
+        match error {
+            isophote_loader::Error::Load { problem, fix } => Self::failure(problem, fix),
+            error => Self::failure(error, "this is a mistake in the program; please report it"),
         }
     }
 }

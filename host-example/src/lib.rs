@@ -1,5 +1,7 @@
 //! The sample host as a library: scenes, their rendering, and the verbs of the program `isophote`.
 
+#![forbid(unsafe_code)]
+
 pub mod apply;
 pub mod bench;
 pub mod cli;
@@ -9,7 +11,6 @@ pub mod files;
 pub mod frames;
 pub mod input;
 pub mod limits;
-pub mod loader;
 pub mod looks;
 pub mod output;
 pub mod pixels;

@@ -1,6 +1,10 @@
 //! Pixels in main memory as files hold them: 8 or 16-bit integers, half or single floats.
 
 use half::f16;
+use isophote_loader::{AsImage, AsTarget, Image, Target};
+
+/// Precision of samples.
+pub use isophote_loader::Sample as Precision;
 
 /// Most pixels of one picture, so that sizes in files and on the command line cannot ask for all memory.
 pub const MOST_PIXELS: u64 = 1 << 28;
@@ -16,19 +20,6 @@ pub enum Samples {
     F16(Vec<f16>),
     /// IEEE single.
     F32(Vec<f32>),
-}
-
-/// Precision of samples.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Precision {
-    /// 8-bit integers.
-    U8,
-    /// 16-bit integers.
-    U16,
-    /// Half floats.
-    F16,
-    /// Single floats.
-    F32,
 }
 
 /// An image: interleaved channels, rows from the top. Always holds as many samples as its size says.
@@ -139,14 +130,20 @@ impl Pixels {
     }
 }
 
-impl Precision {
-    /// Bytes a sample.
-    pub fn bytes(self) -> usize {
-        match self {
-            Self::U8 => 1,
-            Self::U16 | Self::F16 => 2,
-            Self::F32 => 4,
-        }
+/// Why an image of the library can always be made of [`Pixels`].
+const FITS: &str = "pixels hold as many samples as their size says";
+
+impl AsImage for Pixels {
+    fn image(&self) -> Image<'_> {
+        let size = (self.width, self.height);
+        Image::new(self.bytes(), size, self.channels, self.precision()).expect(FITS)
+    }
+}
+
+impl AsTarget for Pixels {
+    fn target(&mut self) -> Target<'_> {
+        let (size, channels, precision) = ((self.width, self.height), self.channels, self.precision());
+        Target::new(self.bytes_mut(), size, channels, precision).expect(FITS)
     }
 }
 

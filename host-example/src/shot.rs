@@ -3,7 +3,6 @@
 use std::f32::consts::TAU;
 
 use crate::error::Result;
-use crate::loader::Library;
 use crate::output::Picture;
 use crate::render::Renderer;
 use crate::render::background::Background;
@@ -17,6 +16,7 @@ use crate::scene::pose::Pose;
 use crate::stylize::Stylizer;
 use crate::stylize::kernels::Kernels;
 use crate::stylize::style::Style;
+use isophote_loader::Library;
 
 /// What is rendered of a scene.
 #[derive(Clone, Debug)]

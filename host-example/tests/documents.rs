@@ -16,8 +16,6 @@ use isophote_host::apply::read;
 use isophote_host::apply::reel::{Held, Window, guide_bit};
 use isophote_host::apply::space::Space;
 use isophote_host::apply::write::Format;
-use isophote_host::loader::contract::IsophoteRequest;
-use isophote_host::loader::{Control, Input, Library};
 use isophote_host::pixels::{Pixels, Precision, Samples};
 use isophote_host::render::gpu::Gpu;
 use isophote_host::render::readback::Readback;
@@ -28,6 +26,8 @@ use isophote_host::stylize::style::Style;
 use isophote_host::view::document::frame::Frame;
 use isophote_host::view::document::kind::Kind;
 use isophote_host::view::document::{Document, Options};
+use isophote_loader::abi::IsophoteRequest;
+use isophote_loader::{Control, Input, Library};
 
 use support::{assets, folder, has_ffmpeg, isophote, picture, succeeds};
 

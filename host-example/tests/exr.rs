@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use exr::prelude::*;
-use isophote_host::loader::{self, Control, Input, contract};
 use isophote_host::pixels::{Pixels, Precision, Samples};
+use isophote_loader::{Control, Input, Library, abi};
 
 use support::{IN_PIXELS, assets, fails, folder, isophote, listing, succeeds};
 
@@ -246,10 +246,10 @@ fn parts_under_other_compressions_pass_untouched() {
 
 /// What the library gives for a picture in linear light.
 fn by_the_library(color: &Pixels, guides: &[(&str, &Pixels)]) -> Pixels {
-    let library = loader::Library::from_file(support::library()).expect("the library");
+    let library = Library::from_file(support::library()).expect("the library");
     let mut graph = library.single("cartoon").expect("the node");
     let request = library.request((color.width(), color.height())).expect("a size");
-    let request = contract::IsophoteRequest { space: contract::ISOPHOTE_SPACE_LINEAR, ..request };
+    let request = abi::IsophoteRequest { space: abi::ISOPHOTE_SPACE_LINEAR, ..request };
     let mut inputs = vec![Input { name: "color", pixels: color }];
     inputs.extend(guides.iter().map(|(name, pixels)| Input { name, pixels }));
     let mut result = Pixels::zeroed(color.width(), color.height(), 4, Precision::F16);

@@ -4,7 +4,6 @@ mod support;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use isophote_host::loader::Library;
 use isophote_host::scene::Scene;
 use isophote_host::view::chain::{self, Chain, Watched};
 use isophote_host::view::look::Look;
@@ -13,6 +12,7 @@ use isophote_host::view::session::Session;
 use isophote_host::view::settings::Settings;
 use isophote_host::view::value::Value;
 use isophote_host::view::{command, ui};
+use isophote_loader::Library;
 
 fn library() -> Library {
     Library::from_file(support::library()).unwrap()

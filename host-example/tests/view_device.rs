@@ -9,7 +9,6 @@ use std::process::Command;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-use isophote_host::loader::Library;
 use isophote_host::render::gpu::Gpu;
 use isophote_host::scene::Scene;
 use isophote_host::view::app::{App, Event};
@@ -20,6 +19,7 @@ use isophote_host::view::scenery::{Scenery, Staging};
 use isophote_host::view::session::Session;
 use isophote_host::view::settings::Settings;
 use isophote_host::view::value::Value;
+use isophote_loader::Library;
 use winit::application::ApplicationHandler;
 use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};

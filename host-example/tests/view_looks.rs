@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use isophote_host::loader::Library;
 use isophote_host::stylize::preset::Preset;
 use isophote_host::view::browser::entry::{Content, Group};
 use isophote_host::view::browser::listing::{self, Listing, Question};
@@ -20,6 +19,7 @@ use isophote_host::view::session::{Session, Wish};
 use isophote_host::view::settings::Settings;
 use isophote_host::view::ui;
 use isophote_host::view::value::Value;
+use isophote_loader::Library;
 use tempfile::TempDir;
 use winit::keyboard::{Key, NamedKey};
 

@@ -7,7 +7,6 @@ use std::collections::HashMap;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use isophote_host::loader::Library;
 use isophote_host::output::{self, Layer, Picture, Precision};
 use isophote_host::scene::Scene;
 use isophote_host::view::document::{Document, Options};
@@ -18,6 +17,7 @@ use isophote_host::view::session::{Session, Wish};
 use isophote_host::view::settings::Settings;
 use isophote_host::view::ui;
 use isophote_host::view::value::Value;
+use isophote_loader::Library;
 
 /// A session of all styles with a scene.
 fn session() -> Session {

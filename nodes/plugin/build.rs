@@ -9,7 +9,7 @@
 //! be installed beside each other.
 
 /// Where the version of the C interface is declared.
-const CONSTANTS: &str = "../../include/rust/constants.rs";
+const CONSTANTS: &str = "../../include/src/constants.rs";
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

@@ -7,10 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-#[path = "../../include/rust/mod.rs"]
-pub mod contract;
-
-use contract::{ISOPHOTE_ABI_VERSION, IsophoteApi, IsophoteText};
+use isophote_abi::{ISOPHOTE_ABI_VERSION, IsophoteApi, IsophoteText};
 
 /// The dynamic library, built with the profile of the running test. `ISOPHOTE_LIBRARY` names another.
 ///

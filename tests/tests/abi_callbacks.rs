@@ -6,7 +6,8 @@
 mod c_images;
 
 use c_images::{Run, color, floats, picture, target};
-use isophote_tests::library::{Loaded, contract::*, text};
+use isophote_abi::*;
+use isophote_tests::library::{Loaded, text};
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 use std::sync::Mutex;

@@ -6,7 +6,8 @@
 mod c_images;
 
 use c_images::{HEIGHT, Run, WIDTH, color, floats, image, picture, target};
-use isophote_tests::library::{Loaded, contract::*};
+use isophote_abi::*;
+use isophote_tests::library::Loaded;
 use std::ptr::{null, null_mut};
 
 #[test]

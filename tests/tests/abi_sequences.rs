@@ -2,7 +2,8 @@
 
 #![allow(unsafe_code, reason = "calls through the C table")]
 
-use isophote_tests::library::{Loaded, contract::*, text};
+use isophote_abi::*;
+use isophote_tests::library::{Loaded, text};
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::ptr::{null, null_mut};

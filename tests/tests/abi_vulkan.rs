@@ -14,7 +14,7 @@ mod studio;
 
 use ash::vk::{self, Handle};
 use host::Host;
-use isophote_tests::library::contract::*;
+use isophote_abi::*;
 use std::ffi::c_void;
 use std::ptr::null_mut;
 use std::sync::atomic::{AtomicI32, Ordering};

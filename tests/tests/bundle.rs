@@ -1,9 +1,9 @@
 //! The OpenFX bundle as it is installed: made by `cargo xtask bundle`, found as hosts find it, and loaded.
 
+use isophote_abi::openfx::*;
 use isophote_tests::library;
 use isophote_tests::ofx::effect::Described;
 use isophote_tests::ofx::host::Host;
-use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::state::Behaviour;

@@ -42,7 +42,7 @@ fn sources(endings: &[&str]) -> Vec<PathBuf> {
         }
     }
     let mut found = Vec::new();
-    for room in ["nodes", "host-example", "tests", "xtask", "shaders"] {
+    for room in ["include", "nodes", "host-example", "tests", "xtask", "shaders"] {
         walk(&root().join(room), endings, &mut found);
     }
     found
@@ -309,7 +309,8 @@ fn unsafe_code_stays_in_its_rooms_and_each_block_has_a_reason() {
         let rooms = [
             "nodes/plugin",
             "nodes/python",
-            "host-example",
+            "nodes/loader",
+            "include",
             "tests/tests",
             "tests/src/library.rs",
             "tests/src/ofx",

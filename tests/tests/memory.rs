@@ -4,10 +4,11 @@
 #![cfg(target_os = "linux")]
 #![allow(unsafe_code, reason = "limiting the process, and calls through the C table")]
 
-use isophote_tests::library::{self, Loaded, contract::*, text};
+use isophote_abi::openfx::*;
+use isophote_abi::*;
+use isophote_tests::library::{self, Loaded, text};
 use isophote_tests::ofx::effect::{Described, Wanted};
 use isophote_tests::ofx::host::Host;
-use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::state::Behaviour;

@@ -6,10 +6,10 @@
 #[path = "openfx/allocations.rs"]
 mod allocations;
 
+use isophote_abi::openfx::*;
 use isophote_tests::library;
 use isophote_tests::ofx::effect::{Described, Wanted};
 use isophote_tests::ofx::host::Host;
-use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::state::Behaviour;

@@ -3,7 +3,7 @@
 use super::exr::Picture;
 use super::read::ImageState;
 use super::space::Space;
-use crate::loader::contract::{
+use isophote_loader::abi::{
     ISOPHOTE_ALPHA_PREMULTIPLIED, ISOPHOTE_ALPHA_STRAIGHT, ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR,
     ISOPHOTE_SPACE_SRGB, IsophoteRequest,
 };

@@ -2,9 +2,9 @@
 
 use clap::ValueEnum;
 
-use crate::error::Result;
-use crate::loader::contract::ISOPHOTE_ERROR_NO_DEVICE;
-use crate::loader::{Device, Library};
+use crate::error::{AtPlace, Result};
+use isophote_loader::abi::ISOPHOTE_ERROR_NO_DEVICE;
+use isophote_loader::{Device, Library};
 
 /// Where a graph runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -30,7 +30,7 @@ impl Backend {
             // A driver that computes on the CPU is slower there than the library itself.
             Self::Auto => match library.device(Some("gpu")) {
                 Ok(device) => Ok(Some(device)),
-                Err(refused) if refused.status == ISOPHOTE_ERROR_NO_DEVICE => Ok(None),
+                Err(refused) if refused.status() == Some(ISOPHOTE_ERROR_NO_DEVICE) => Ok(None),
                 Err(refused) => Err(refused.at(place, "use --backend cpu")),
             },
         }

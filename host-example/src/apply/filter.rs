@@ -15,14 +15,14 @@ use super::reel::{Window, guide_bit};
 use super::space::Space;
 use super::working::WorkingSpace;
 use super::write::Format;
-use crate::error::{Error, Result};
-use crate::loader::catalogue::Kind;
-use crate::loader::contract::{IsophoteHistory, IsophoteRequest};
-use crate::loader::plan::{Role, Texture};
-use crate::loader::{Answer, Control, Device, Input, Library, Sequence};
+use crate::error::{AtPlace, Error, Result};
 use crate::pixels::{Pixels, Precision};
 use crate::stylize::history::{is_stage, split};
 use crate::stylize::style::Style;
+use isophote_loader::abi::{IsophoteHistory, IsophoteRequest};
+use isophote_loader::catalogue::Kind;
+use isophote_loader::plan::{Role, Texture};
+use isophote_loader::{Control, Device, Input, Library, Sequence};
 
 /// What is done to a picture: a style, maybe where a mask is.
 #[derive(Debug)]
@@ -140,7 +140,7 @@ impl Layer {
         job: &Job<'_>,
         result: &mut Pixels,
         control: &mut Control<'_>,
-    ) -> Answer<u64> {
+    ) -> isophote_loader::Result<u64> {
         let Job { at, there, mut request, color, window } = *job;
         let Some(picture) = window.own.source.pictures.get(at) else { return Ok(0) };
         let style = &mut self.look.style;
@@ -166,12 +166,12 @@ impl Layer {
             self.sequences.push(Kept { size, sequence: library.sequence(memory, 0.0)? });
         }
         let input = self.input;
-        let footage = |name: &str, frame: i64| match (name, input) {
+        let mut image = |name: &str, frame: i64| match (name, input) {
             ("mask", Some(mask)) => window.mask(at, mask, frame),
             _ => window.image(at, name, frame, there),
         };
         let sequence = &mut self.sequences[at].sequence;
-        Ok(sequence.process(&mut style.graph, device, &request, &footage, result, control)?.replaced)
+        Ok(sequence.process(style.graph.handle(), device, &request, &mut image, result, control)?.replaced)
     }
 }
 
@@ -334,7 +334,7 @@ impl Planner {
         if let Some((_, bytes)) = self.last.filter(|(last, _)| *last == size && !is_animated) {
             return Ok(bytes);
         }
-        let refused = |e: crate::loader::Refusal| e.at(name, "choose another picture or style");
+        let refused = |e: isophote_loader::Error| e.at(name, "choose another picture or style");
         let pixels = u64::from(size.0) * u64::from(size.1);
         let guides = self.guides.iter().fold(0, |all, guide| all | guide_bit(guide.id()));
         // One look is made at a time; what it keeps of frames stays.
@@ -419,7 +419,12 @@ fn history(past: u32) -> IsophoteHistory {
 }
 
 /// Bytes of the stages that a frame reads of those before and after it, which are at most so many, and of its own.
-fn stages(library: &Library, style: &Style, request: &IsophoteRequest, frames: [u32; 2]) -> Answer<u64> {
+fn stages(
+    library: &Library,
+    style: &Style,
+    request: &IsophoteRequest,
+    frames: [u32; 2],
+) -> isophote_loader::Result<u64> {
     let [past, future] = frames;
     if past + future == 0 {
         return Ok(0);
@@ -439,7 +444,7 @@ fn stages(library: &Library, style: &Style, request: &IsophoteRequest, frames: [
 /// [`crate::error::Error::Failure`] when the library fails.
 pub fn usable_guides(library: &Library, style: &Style) -> Result<Vec<Guide>> {
     let mut guides = Vec::new();
-    let refused = |e: crate::loader::Refusal| e.at(&style.name, "choose another style");
+    let refused = |e: isophote_loader::Error| e.at(&style.name, "choose another style");
     // Stills read no motion.
     let is_steady = style.is_animated() || library.frames(&style.graph).map_err(refused)? != [0, 0];
     for node in 0..style.graph.count() {

@@ -2,12 +2,14 @@
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use isophote_loader::abi;
+
+use super::convert;
 use super::exr::{ExrFile, Picture};
 use super::memory::Share;
 use super::primaries::Change;
 use super::read::Source;
 use crate::pixels::Pixels;
-use crate::{apply::convert, loader::contract};
 
 /// A frame that was read.
 #[derive(Debug)]
@@ -85,13 +87,13 @@ impl Window<'_> {
 /// The bit of a guide in a request.
 pub fn guide_bit(input: &str) -> u32 {
     match input {
-        "normal" => contract::ISOPHOTE_GUIDE_NORMAL,
-        "depth" => contract::ISOPHOTE_GUIDE_DEPTH,
-        "object_id" => contract::ISOPHOTE_GUIDE_OBJECT_ID,
-        "mask" => contract::ISOPHOTE_GUIDE_MASK,
-        "motion" => contract::ISOPHOTE_GUIDE_MOTION,
-        "motion_forward" => contract::ISOPHOTE_GUIDE_MOTION_FORWARD,
-        "rest_position" => contract::ISOPHOTE_GUIDE_REST_POSITION,
+        "normal" => abi::ISOPHOTE_GUIDE_NORMAL,
+        "depth" => abi::ISOPHOTE_GUIDE_DEPTH,
+        "object_id" => abi::ISOPHOTE_GUIDE_OBJECT_ID,
+        "mask" => abi::ISOPHOTE_GUIDE_MASK,
+        "motion" => abi::ISOPHOTE_GUIDE_MOTION,
+        "motion_forward" => abi::ISOPHOTE_GUIDE_MOTION_FORWARD,
+        "rest_position" => abi::ISOPHOTE_GUIDE_REST_POSITION,
         _ => 0,
     }
 }

@@ -5,18 +5,18 @@ use std::cell::Cell;
 use super::entry::{Entry, PassEntry};
 use super::{Subject, median, motion};
 use crate::apply::memory;
-use crate::error::Result;
-use crate::loader::contract::{ISOPHOTE_GUIDE_MOTION, IsophoteRequest};
-use crate::loader::process::PassTime;
-use crate::loader::{Control, Input, Library, Refusal};
+use crate::error::{AtPlace, Result};
 use crate::pixels::{Pixels, Precision};
 use crate::stylize::style::Style;
+use isophote_loader::abi::{ISOPHOTE_GUIDE_MOTION, IsophoteRequest};
+use isophote_loader::process::PassTime;
+use isophote_loader::{Control, Input, Library};
 
 /// Measures one node; of one that is steady, frames in order of which those before are known.
 pub fn run(library: &Library, subject: &Subject, picture: &Pixels, runs: u32) -> Result<Entry> {
     let node = &subject.node;
     let size = (picture.width(), picture.height());
-    let refused = |e: Refusal| e.at(node, "leave it out with --node");
+    let refused = |e: isophote_loader::Error| e.at(node, "leave it out with --node");
     let mut style = Style::any(library, node, &subject.settings)?;
     let request = library.request(size).map_err(|e| e.at("--size", "choose another size"))?;
     let mut target = Pixels::zeroed(size.0, size.1, 4, Precision::F32);
@@ -27,7 +27,7 @@ pub fn run(library: &Library, subject: &Subject, picture: &Pixels, runs: u32) ->
         _ => Some(library.sequence(memory::usual().0, 0.0).map_err(refused)?),
     };
     let (motion, frame) = (motion(size), Cell::new(0));
-    let footage = |name: &str, number: i64| match name {
+    let mut image = |name: &str, number: i64| match name {
         _ if !(0..=frame.get()).contains(&number) => None,
         "color" => Some(picture),
         "motion" => Some(&motion),
@@ -42,7 +42,7 @@ pub fn run(library: &Library, subject: &Subject, picture: &Pixels, runs: u32) ->
                 let number = frame.get() + 1;
                 frame.set(number);
                 let request = IsophoteRequest { frame: number, guides: ISOPHOTE_GUIDE_MOTION, ..request };
-                sequence.process(&mut style.graph, None, &request, &footage, &mut target, &mut control)
+                sequence.process(style.graph.handle(), None, &request, &mut image, &mut target, &mut control)
             }
         };
         Ok((report.map_err(refused)?.seconds, times))

@@ -6,10 +6,7 @@ use std::time::Instant;
 use super::entry::{Entry, PassEntry};
 use super::timer::Timer;
 use super::{Subject, median, motion};
-use crate::error::Result;
-use crate::loader::contract::ISOPHOTE_GUIDE_MOTION;
-use crate::loader::plan::{Pass, Texture};
-use crate::loader::{Answer, Library, Plan, Refusal};
+use crate::error::{AtPlace, Result};
 use crate::pixels::Pixels;
 use crate::render::gpu::Gpu;
 use crate::stylize::history::Past;
@@ -17,6 +14,9 @@ use crate::stylize::kernels::Kernels;
 use crate::stylize::plan_runner::PlanRunner;
 use crate::stylize::precision::Precision;
 use crate::stylize::style::Style;
+use isophote_loader::abi::ISOPHOTE_GUIDE_MOTION;
+use isophote_loader::plan::{Pass, Texture};
+use isophote_loader::{Library, Plan};
 
 /// A device to measure on.
 pub struct Bench {
@@ -50,7 +50,7 @@ impl Bench {
         picture: &Pixels,
         runs: u32,
     ) -> Result<Entry> {
-        let refused = |e: Refusal| e.at(&subject.node, "leave it out with --node");
+        let refused = |e: isophote_loader::Error| e.at(&subject.node, "leave it out with --node");
         let (plan, mut runner) = self.prepare(library, subject, picture)?;
         let totals = (0..runs).map(|_| self.once(&mut runner)).collect::<Result<Vec<f64>>>()?;
         let mut passes = passes(&plan).map_err(refused)?;
@@ -186,7 +186,7 @@ impl Bench {
 }
 
 /// The passes of a plan, not measured yet.
-fn passes(plan: &Plan) -> Answer<Vec<PassEntry>> {
+fn passes(plan: &Plan) -> isophote_loader::Result<Vec<PassEntry>> {
     let textures = plan.textures()?;
     let texture = |at: &u32| textures.get(*at as usize);
     let entry = |pass: Pass<'_>| PassEntry {

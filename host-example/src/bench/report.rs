@@ -7,8 +7,8 @@ use super::entry::Entry;
 use super::peak::Peak;
 use super::peers;
 use crate::error::{Error, Result};
-use crate::loader::Library;
 use crate::output;
+use isophote_loader::Library;
 
 /// What was measured on.
 #[derive(Debug)]

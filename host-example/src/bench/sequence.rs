@@ -6,11 +6,11 @@ use crate::apply::backend::Backend;
 use crate::apply::filter::{Filter, Look, Planner};
 use crate::apply::memory::{self, Bytes};
 use crate::error::{Error, Result};
-use crate::loader::Library;
 use crate::output;
 use crate::pixels::Pixels;
 use crate::stylize::lengths::Lengths;
 use crate::stylize::style::Style;
+use isophote_loader::Library;
 
 /// Measures every subject on so many frames that show `picture`, and prints what came out.
 ///

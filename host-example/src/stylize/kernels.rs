@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::num::NonZeroU64;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::error::{Error, Result};
-use crate::loader::plan::{Format, Pass, Texture};
-use crate::loader::{Plan, Refusal};
+use crate::error::{AtPlace, Error, Result};
+use isophote_loader::Plan;
+use isophote_loader::plan::{Format, Pass, Texture};
 
 /// WGSL rounds the size of a uniform block up to its alignment, which is at most this.
 const BLOCK_ALIGNMENT: u64 = 16;
@@ -196,6 +196,6 @@ pub fn checked<T>(device: &wgpu::Device, make: impl FnOnce() -> Result<T>) -> Re
 }
 
 /// What the library has against a plan, as an error of the host.
-pub(super) fn refused(refusal: Refusal) -> Error {
-    refusal.at("the plan", "choose another style")
+pub(super) fn refused(error: isophote_loader::Error) -> Error {
+    error.at("the plan", "choose another style")
 }

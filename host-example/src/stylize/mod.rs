@@ -20,15 +20,15 @@ use self::history::Past;
 use self::kernels::Kernels;
 use self::plan_runner::{Counts, PlanRunner};
 use self::style::{Setting, Style};
-use crate::error::Result;
-use crate::loader::catalogue::Kind;
-use crate::loader::contract::{
+use crate::error::{AtPlace, Result};
+use crate::render::targets::{Target, Targets};
+use isophote_loader::abi::{
     ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
     ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_LINEAR, IsophoteHistory, IsophoteRequest,
 };
-use crate::loader::plan::{Change, Role};
-use crate::loader::{Library, Plan, Refusal};
-use crate::render::targets::{Target, Targets};
+use isophote_loader::catalogue::Kind;
+use isophote_loader::plan::{Change, Role};
+use isophote_loader::{Library, Plan};
 
 /// A style for frames of one size, ready to be recorded.
 #[derive(Debug)]
@@ -150,7 +150,7 @@ impl Stylizer {
         if !is_edited {
             return Ok(false);
         }
-        let refused = |e: Refusal| e.at(&self.style.name, "choose another value");
+        let refused = |e: isophote_loader::Error| e.at(&self.style.name, "choose another value");
         if self.plan.update(&self.style.graph, &self.request).map_err(refused)? == Change::Uniforms {
             self.runner.repack(&self.plan)?;
             return Ok(false);
@@ -309,7 +309,7 @@ impl Style {
     /// # Errors
     /// As [`Style::plan`].
     pub fn past(&self, library: &Library, request: &IsophoteRequest) -> Result<Past> {
-        let refused = |e: Refusal| e.at(&self.name, "choose another style");
+        let refused = |e: isophote_loader::Error| e.at(&self.name, "choose another style");
         let [frames, _] = library.frames(&self.graph).map_err(refused)?;
         if frames == 0 {
             return Ok(Past::default());

@@ -24,8 +24,8 @@ use std::sync::Arc;
 use super::history::{self, Past, Rings};
 use super::kernels::{Kernel, Kernels, block_size, checked, refused, texture_format};
 use crate::error::{Error, Result};
-use crate::loader::Plan;
-use crate::loader::plan::{Format, Role, Texture};
+use isophote_loader::Plan;
+use isophote_loader::plan::{Format, Role, Texture};
 
 /// What a runner has done so far. A warm frame changes neither.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use clap::ValueEnum;
 
 use super::style::Style;
-use crate::error::Result;
-use crate::loader::contract::{
+use crate::error::{AtPlace, Result};
+use isophote_loader::abi::{
     ISOPHOTE_PRECISION_EXACT, ISOPHOTE_PRECISION_FAST, ISOPHOTE_PRECISION_HALF, IsophotePrecision,
 };
 

@@ -30,7 +30,7 @@ use serde_json::{Map, Value};
 use super::lengths::Lengths;
 use super::title::{self, Title};
 use crate::error::{Error, Result};
-use crate::loader::catalogue::{Param, ParamKind};
+use isophote_loader::catalogue::{Param, ParamKind};
 
 /// Keys of the file.
 const KEYS: [&str; 3] = ["style", "lengths", "parameters"];

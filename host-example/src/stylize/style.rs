@@ -9,11 +9,11 @@ use serde_json::{Map, Value};
 use super::lengths::Lengths;
 use super::preset::{self, Animated, Preset, Track};
 use super::source;
-use crate::error::{Error, Result};
-use crate::loader::catalogue::{Kind, Node, Param, Port};
-use crate::loader::contract::IsophoteRequest;
-use crate::loader::{Answer, Graph, Library, Refusal};
+use crate::error::{AtPlace, Error, Result};
 use crate::{frames, looks, output};
+use isophote_loader::abi::IsophoteRequest;
+use isophote_loader::catalogue::{Kind, Node, Param, Port};
+use isophote_loader::{Graph, Library};
 
 /// One `--set`: `id=value`, or `node.id=value` for one node of a graph.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -146,7 +146,7 @@ impl Style {
     ///
     /// # Errors
     /// As [`Library::request`].
-    pub fn request(&self, library: &Library, size: (u32, u32)) -> Answer<IsophoteRequest> {
+    pub fn request(&self, library: &Library, size: (u32, u32)) -> isophote_loader::Result<IsophoteRequest> {
         let reference_height = self.lengths.reference_height();
         Ok(IsophoteRequest { reference_height, ..library.request(size)? })
     }
@@ -255,7 +255,7 @@ impl Style {
     pub fn steady(&mut self, steadiness: f32) -> Result<()> {
         const PARAM: &str = "steadiness";
         let place = format!("--steadiness {steadiness}");
-        let fail = |e: Refusal| e.at(&place, "give a number from 0 to 1");
+        let fail = |e: isophote_loader::Error| e.at(&place, "give a number from 0 to 1");
         let mut found = false;
         for node in 0..self.graph.count() {
             let spec = self.graph.spec(node).map_err(fail)?;
@@ -303,7 +303,7 @@ impl Style {
     /// # Errors
     /// [`Error::Input`] when the library has no such node.
     pub fn estimate_motion(&mut self) -> Result<()> {
-        let fail = |e: Refusal| e.at("--motion estimate", "name files of motion vectors");
+        let fail = |e: isophote_loader::Error| e.at("--motion estimate", "name files of motion vectors");
         let nodes = self.graph.count();
         for (port, direction) in [("motion", "backward"), ("motion_forward", "forward")] {
             let mut flow = None;
@@ -330,7 +330,7 @@ impl Style {
 
     /// [`Style::set`], where `place` says in messages who wants it.
     fn put(&self, setting: &Setting, place: &str) -> Result<(u32, Node)> {
-        let fail = |e: Refusal| e.at(place, "see the graph's nodes");
+        let fail = |e: isophote_loader::Error| e.at(place, "see the graph's nodes");
         let graph = &self.graph;
         let mut named = Vec::new();
         for node in 0..graph.count() {
@@ -440,7 +440,7 @@ fn inside(library: &Library, path: &Path, preset: &Preset) -> Result<Opened> {
 
 /// Feeds what a single node needs and no picture gives, such as a tensor, from the first node of the catalogue
 /// that makes it of pictures alone.
-fn fed(library: &Library, mut graph: Graph) -> Answer<Graph> {
+fn fed(library: &Library, mut graph: Graph) -> isophote_loader::Result<Graph> {
     let spec = graph.spec(0)?;
     for port in spec.inputs.iter().filter(|p| !p.optional && !is_picture(p)) {
         let nodes = library.catalogue()?.nodes;

@@ -23,10 +23,10 @@ use crate::error::{Error, Result};
 use crate::files;
 use crate::frames::{FrameList, Pattern};
 use crate::limits::{self, Threads};
-use crate::loader::Library;
 use crate::stop::Stop;
 use crate::stylize::style::{Setting, Style};
 use crate::video;
+use isophote_loader::Library;
 
 /// The word for motion that is estimated.
 const ESTIMATE: &str = "estimate";

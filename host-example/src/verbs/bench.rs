@@ -13,10 +13,10 @@ use super::shared::{PrecisionArgs, parse_size};
 use crate::bench::compare::Saved;
 use crate::bench::report::{Machine, Report, Shown};
 use crate::bench::{Subject, card, cpu, gpu, peak, picture, sequence};
-use crate::error::{Error, Result};
-use crate::loader::Library;
+use crate::error::{AtPlace, Error, Result};
 use crate::output;
 use crate::render::gpu::Gpu;
+use isophote_loader::Library;
 
 /// Sizes that are measured when none is given.
 const SIZES: [(u32, u32); 2] = [(1280, 720), (1920, 1080)];

@@ -2,9 +2,9 @@
 
 use clap::Args;
 
-use crate::error::{Error, Result};
-use crate::loader::Library;
-use crate::loader::catalogue::{Catalogue, Node, Param, ParamKind, Port};
+use crate::error::{AtPlace, Error, Result};
+use isophote_loader::Library;
+use isophote_loader::catalogue::{Catalogue, Node, Param, ParamKind, Port};
 
 /// Columns of running text.
 const WIDTH: usize = 90;

@@ -6,15 +6,15 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use serde_json::Value;
 
-use crate::error::{Error, Result};
-use crate::loader::Library;
-use crate::loader::catalogue::ParamKind;
+use crate::error::{AtPlace, Error, Result};
 use crate::looks::{self, Look};
 use crate::stylize::preset::{self, Preset, Track};
 use crate::stylize::source;
 use crate::stylize::style::{Setting, Style};
 use crate::stylize::title::{self, Title};
 use crate::{files, output};
+use isophote_loader::Library;
+use isophote_loader::catalogue::ParamKind;
 
 const AFTER_HELP: &str = "A parameter in the file may have keyframes instead of a value, such as \
     \"sigma_d\": {\"1001\": 2, \"1050\": 6}; with \"between\": \"step\" among them each value holds until the \

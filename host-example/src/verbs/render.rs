@@ -13,7 +13,6 @@ use crate::error::{Error, Result};
 use crate::files;
 use crate::frames::{FrameList, Pattern};
 use crate::limits;
-use crate::loader::Library;
 use crate::output::{self, Layer, Picture, Precision};
 use crate::render::targets::{Target, Targets};
 use crate::scene::Scene;
@@ -21,6 +20,7 @@ use crate::shot::{Options, Shot};
 use crate::stop::Stop;
 use crate::stylize::style::{Setting, Style};
 use crate::video::{self, Film};
+use isophote_loader::Library;
 
 /// Options of `render`.
 #[derive(Args, Debug)]

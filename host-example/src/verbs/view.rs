@@ -6,8 +6,7 @@ use clap::Args;
 
 use super::shared::{LengthArgs, PrecisionArgs, ReadingArgs, parse_size};
 use super::staging::StagingArgs;
-use crate::error::Result;
-use crate::loader::Library;
+use crate::error::{AtPlace, Result};
 use crate::stylize::style::{Setting, Style};
 use crate::view;
 use crate::view::document::kind::Kind;
@@ -17,6 +16,7 @@ use crate::view::reel::Reel;
 use crate::view::scenery::{Lighting, Scenery, Staging};
 use crate::view::session::Session;
 use crate::view::settings::Settings;
+use isophote_loader::Library;
 
 /// The look of a window that was never open.
 const FIRST: &str = "cartoon";

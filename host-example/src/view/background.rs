@@ -26,11 +26,11 @@ use super::watch::Watch;
 use super::worker::{Wake, Worker};
 use crate::apply::exr::Selection;
 use crate::error::{Error, Result};
-use crate::loader::Library;
-use crate::loader::contract::IsophoteRequest;
 use crate::render::background::Background as Surround;
 use crate::scene::environment::Environment;
 use crate::scene::{Scene, camera, floor};
+use isophote_loader::Library;
+use isophote_loader::abi::IsophoteRequest;
 
 /// What is to be opened.
 enum Job {

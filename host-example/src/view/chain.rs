@@ -6,10 +6,10 @@
 
 use serde_json::{Map, Value as Json, json};
 
-use crate::error::{Error, Result};
-use crate::loader::Library;
-use crate::loader::catalogue::{Kind, Node};
+use crate::error::{AtPlace, Error, Result};
 use crate::stylize::style::Style;
+use isophote_loader::Library;
+use isophote_loader::catalogue::{Kind, Node};
 
 /// The input that follows the list.
 const MAIN: &str = "color";

@@ -5,10 +5,10 @@ use std::collections::HashSet;
 use super::look::Look;
 use super::value::Value;
 use crate::error::Result;
-use crate::loader::Library;
-use crate::loader::Plan;
-use crate::loader::contract::IsophoteRequest;
 use crate::stylize::frame_request;
+use isophote_loader::Library;
+use isophote_loader::Plan;
+use isophote_loader::abi::IsophoteRequest;
 
 /// Side of the picture that plans are compared for.
 const SIDE: u32 = 512;

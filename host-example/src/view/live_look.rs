@@ -5,15 +5,15 @@ use std::sync::Arc;
 use super::look::{Knob, Look};
 use super::worker::{Wake, Worker};
 use crate::error::{Error, Result};
-use crate::loader::Library;
-use crate::loader::catalogue::Kind;
-use crate::loader::contract::{IsophoteRequest, IsophoteSpace};
 use crate::stylize::Stylizer;
 use crate::stylize::kernels::Kernels;
 use crate::stylize::plan_runner::Counts;
 use crate::stylize::precision::Precision;
 use crate::stylize::preset::Track;
 use crate::stylize::style::Setting;
+use isophote_loader::Library;
+use isophote_loader::abi::{IsophoteRequest, IsophoteSpace};
+use isophote_loader::catalogue::Kind;
 
 /// What is to be built.
 struct Job {

@@ -7,14 +7,14 @@ use serde_json::Value as Json;
 
 use super::chain::{Chain, Watched};
 use super::value::Value;
-use crate::error::{Error, Result};
+use crate::error::{AtPlace, Error, Result};
 use crate::files;
-use crate::loader::catalogue::Param;
-use crate::loader::{Library, Refusal};
 use crate::stylize::preset::{self, Preset, Track};
 use crate::stylize::source;
 use crate::stylize::style::{Setting, Style};
 use crate::stylize::title::Title;
+use isophote_loader::Library;
+use isophote_loader::catalogue::Param;
 
 /// The style that leaves pictures as they are.
 pub const PLAIN: &str = "none";
@@ -109,7 +109,7 @@ impl Look {
     pub fn knobs(&self, library: &Library) -> Result<Vec<Knob>> {
         let bare = Self { preset: Preset { params: Vec::new(), ..self.preset.clone() }, ..self.clone() };
         let Some(style) = bare.style(library)? else { return Ok(Vec::new()) };
-        let failed = |e: Refusal| e.at(&self.name, "choose another look");
+        let failed = |e: isophote_loader::Error| e.at(&self.name, "choose another look");
         let is_single = library.find_node(&self.preset.style).is_ok();
         let own = style.graph.to_json().map_err(failed)?;
         let own: Json = serde_json::from_str(&own).unwrap_or_default();
@@ -261,7 +261,10 @@ impl Look {
         }
         let bare = Self { preset: Preset { params: Vec::new(), ..self.preset.clone() }, ..self.clone() };
         let Some(style) = bare.style(library)? else { return Ok(None) };
-        let json = style.graph.to_json().map_err(|e: Refusal| e.at(&self.name, "choose another look"))?;
+        let json = style
+            .graph
+            .to_json()
+            .map_err(|e: isophote_loader::Error| e.at(&self.name, "choose another look"))?;
         Ok(Chain::read(library, &json))
     }
 

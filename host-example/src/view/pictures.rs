@@ -6,14 +6,14 @@ use super::canvas::Numbers;
 use super::document::frame::Frame;
 use crate::apply::exr::Guide;
 use crate::error::{Error, Result};
-use crate::loader::contract::{
+use crate::render::gpu::Gpu;
+use crate::stylize::Stylizer;
+use crate::stylize::kernels::checked;
+use isophote_loader::abi::{
     ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_MOTION_FORWARD, ISOPHOTE_GUIDE_NORMAL,
     ISOPHOTE_GUIDE_OBJECT_ID, ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR,
     IsophoteRequest, IsophoteSpace,
 };
-use crate::render::gpu::Gpu;
-use crate::stylize::Stylizer;
-use crate::stylize::kernels::checked;
 
 /// Bytes that are uploaded at once, so that no copy is larger than the devices' buffers.
 const STRIP: usize = 32 << 20;

@@ -28,9 +28,9 @@ use super::settings::Settings;
 use super::viewport::{Compare, Overlay, Viewport};
 use crate::apply::exr::{Guide, Layer};
 use crate::error::Result;
-use crate::loader::Library;
-use crate::loader::catalogue::Node;
 use crate::stylize::precision::Precision;
+use isophote_loader::Library;
+use isophote_loader::catalogue::Node;
 
 /// What only the window itself can do, asked for by its controls.
 #[derive(Clone, Debug, PartialEq)]

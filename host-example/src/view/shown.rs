@@ -6,7 +6,7 @@ use super::pictures::numbers;
 use super::session::Which;
 use super::source::Source;
 use super::viewport::Overlay;
-use crate::loader::catalogue::Kind;
+use isophote_loader::catalogue::Kind;
 
 /// One of the pictures that can be shown; the original where there is nothing else yet.
 pub fn picture<'s>(

@@ -6,10 +6,6 @@ use super::canvas::Numbers;
 use super::pictures::PictureSource;
 use super::scenery::{Scenery, is_same};
 use crate::error::Result;
-use crate::loader::contract::{
-    ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
-    ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_LINEAR, IsophoteRequest,
-};
 use crate::render::Renderer;
 use crate::render::background::Background;
 use crate::render::gpu::Gpu;
@@ -19,6 +15,10 @@ use crate::scene::Scene;
 use crate::scene::camera::View;
 use crate::scene::pose::Pose;
 use crate::stylize::Stylizer;
+use isophote_loader::abi::{
+    ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
+    ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_LINEAR, IsophoteRequest,
+};
 
 /// What is uploaded of a scene: it stands still meanwhile.
 pub struct Stand {

@@ -7,10 +7,10 @@ use super::pictures::PictureSource;
 use super::session::Session;
 use super::source::{SceneSource, Source, Stand};
 use super::worker::{Wake, Worker};
-use crate::error::Result;
-use crate::loader::contract::IsophoteRequest;
+use crate::error::{AtPlace, Result};
 use crate::render::gpu::Gpu;
 use crate::scene::Scene;
+use isophote_loader::abi::IsophoteRequest;
 
 /// What is to be uploaded.
 enum Job {

@@ -23,7 +23,6 @@ use super::sources::Sources;
 use super::viewport::Overlay;
 use super::worker::{Wake, Worker};
 use crate::error::{Error, Result};
-use crate::loader::contract::IsophoteRequest;
 use crate::render::gpu::Gpu;
 use crate::render::layouts;
 use crate::render::look::Look as Light;
@@ -31,6 +30,7 @@ use crate::render::timestamps::Timestamps;
 use crate::scene::camera::View;
 use crate::stylize::kernels::Kernels;
 use crate::stylize::plan_runner::Counts;
+use isophote_loader::abi::IsophoteRequest;
 
 /// All of one device. Fields are dropped in order: what uses the device before it.
 pub struct Stage {

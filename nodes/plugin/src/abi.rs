@@ -7,8 +7,6 @@
 
 pub mod args;
 pub mod catalogue;
-#[path = "../../../include/rust/mod.rs"]
-pub mod contract;
 pub mod device;
 pub mod entry;
 pub mod failure;
@@ -29,19 +27,11 @@ pub mod threads;
 pub mod vulkan;
 pub mod warm;
 
-use contract::{ISOPHOTE_ABI_VERSION, IsophoteApi, IsophoteStatus};
+use isophote_abi::{ISOPHOTE_ABI_VERSION, IsophoteApi, IsophoteStatus};
 use std::ffi::{CStr, c_char, c_void};
 
-/// The table of version 1, which may be read from any thread.
-#[derive(Debug)]
-#[repr(transparent)]
-pub struct Table(IsophoteApi);
-
-// SAFETY: the table is never written, and what it points to is constant.
-unsafe impl Sync for Table {}
-
 /// The functions of ABI version 1.
-pub static API: Table = Table(IsophoteApi {
+pub static API: IsophoteApi = IsophoteApi {
     abi_version: ISOPHOTE_ABI_VERSION,
     struct_size: size_of::<IsophoteApi>() as u32,
     version: concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast(),
@@ -87,7 +77,7 @@ pub static API: Table = Table(IsophoteApi {
     device_error: device::error,
     device_name: device::name,
     extension,
-});
+};
 
 unsafe extern "C" fn status_name(status: IsophoteStatus) -> *const c_char {
     const NAMES: [&CStr; 17] = [

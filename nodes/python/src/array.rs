@@ -3,9 +3,8 @@
 //! The package prepares arrays so that they can be taken as they lie in memory; here that is checked, since everything after
 //! it trusts the numbers. They come from NumPy's own description of its arrays, the array interface.
 
-use crate::loader::contract::{
-    ISOPHOTE_SAMPLE_F16, ISOPHOTE_SAMPLE_F32, ISOPHOTE_SAMPLE_U8, ISOPHOTE_SAMPLE_U16, IsophoteSample,
-};
+use isophote_loader::abi::{IsophoteImage, IsophoteTarget};
+use isophote_loader::{AsImage, AsTarget, Image, Sample, Target};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -19,7 +18,7 @@ pub struct Pixels {
     /// Bytes from one row to the one below it.
     pub row_stride: isize,
     /// How a sample is stored.
-    pub sample: IsophoteSample,
+    pub sample: Sample,
     /// Samples a pixel.
     pub channels: u32,
     /// Columns.
@@ -58,7 +57,7 @@ impl Pixels {
             return Err(PyValueError::new_err(format!("{what} is read-only")));
         }
         let kind: String = item(&interface, "typestr")?.extract()?;
-        let (sample, size) = sample(&kind).ok_or_else(|| {
+        let sample = sample(&kind).ok_or_else(|| {
             PyTypeError::new_err(format!(
                 "{what} has samples of type '{kind}' in memory, which none are read as"
             ))
@@ -69,6 +68,7 @@ impl Pixels {
                 "{what} has the shape {shape:?}, not rows, columns, channels"
             )));
         };
+        let size = sample.bytes();
         let pixel = channels.saturating_mul(size);
         let strides: Option<Vec<isize>> = item(&interface, "strides")?.extract()?;
         let strides =
@@ -119,16 +119,48 @@ fn item<'py>(interface: &Bound<'py, PyDict>, key: &str) -> PyResult<Bound<'py, P
     }
 }
 
-/// A format of samples and its size, by NumPy's name of it.
-fn sample(kind: &str) -> Option<(IsophoteSample, usize)> {
+/// A type of samples, by NumPy's name of it.
+fn sample(kind: &str) -> Option<Sample> {
     let native = if cfg!(target_endian = "little") { '<' } else { '>' };
     let (order, kind) = kind.split_at_checked(1)?;
     let is_native = order == "|" || order.starts_with(native);
     match kind {
-        "u1" => Some((ISOPHOTE_SAMPLE_U8, 1)),
-        "u2" if is_native => Some((ISOPHOTE_SAMPLE_U16, 2)),
-        "f2" if is_native => Some((ISOPHOTE_SAMPLE_F16, 2)),
-        "f4" if is_native => Some((ISOPHOTE_SAMPLE_F32, 4)),
+        "u1" => Some(Sample::U8),
+        "u2" if is_native => Some(Sample::U16),
+        "f2" if is_native => Some(Sample::F16),
+        "f4" if is_native => Some(Sample::F32),
         _ => None,
+    }
+}
+
+impl AsImage for Pixels {
+    fn image(&self) -> Image<'_> {
+        let IsophoteTarget { data, row_stride, sample, channels, width, height, x, y } = self.described();
+        let data = data.cast_const();
+        // SAFETY: the memory is that of an array that `self` keeps alive, with the strides and sizes that NumPy vouches for.
+        // Whoever changes it meanwhile gets pixels of before or after: samples are copied, and any bits are a sample.
+        unsafe { Image::from_raw(IsophoteImage { data, row_stride, sample, channels, width, height, x, y }) }
+    }
+}
+
+impl AsTarget for Pixels {
+    fn target(&mut self) -> Target<'_> {
+        // SAFETY: as for images; NumPy said that the memory may be written when `self` was made to be.
+        unsafe { Target::from_raw(self.described()) }
+    }
+}
+
+impl Pixels {
+    fn described(&self) -> IsophoteTarget {
+        IsophoteTarget {
+            data: self.data.cast(),
+            row_stride: self.row_stride,
+            sample: self.sample.number(),
+            channels: self.channels,
+            width: self.width,
+            height: self.height,
+            x: 0,
+            y: 0,
+        }
     }
 }

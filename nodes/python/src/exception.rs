@@ -1,16 +1,21 @@
 //! The exceptions that Python sees.
 
-use crate::loader::Refusal;
-use crate::loader::contract::ISOPHOTE_ERROR_INVALID_ARGUMENT;
-use pyo3::exceptions::PyRuntimeError;
+use isophote_loader::Error;
+use isophote_loader::abi::{ISOPHOTE_ERROR_INVALID_ARGUMENT, IsophoteStatus};
+use pyo3::exceptions::{PyImportError, PyRuntimeError};
 use pyo3::prelude::*;
 
-/// The exception for what the library refuses: a class of `isophote.errors`, with the library's own sentence.
-pub fn raised(py: Python<'_>, refusal: &Refusal) -> PyErr {
-    let made = py
-        .import("isophote.errors")
-        .and_then(|errors| errors.call_method1("of_status", (refusal.status, refusal.message.as_str())));
-    match made {
+/// The exception for an error of the library: a class of `isophote.errors`, with the library's own sentence.
+pub fn raised(py: Python<'_>, error: &Error) -> PyErr {
+    match error {
+        Error::Call { status, message } => of_status(py, *status, message),
+        error => PyImportError::new_err(error.to_string()),
+    }
+}
+
+fn of_status(py: Python<'_>, status: IsophoteStatus, message: &str) -> PyErr {
+    let errors = py.import("isophote.errors");
+    match errors.and_then(|errors| errors.call_method1("of_status", (status, message))) {
         Ok(exception) => PyErr::from_value(exception),
         Err(failed) => failed,
     }
@@ -18,7 +23,7 @@ pub fn raised(py: Python<'_>, refusal: &Refusal) -> PyErr {
 
 /// The exception for a value that cannot be, as the library's own for such values.
 pub fn invalid(message: String) -> PyErr {
-    Python::attach(|py| raised(py, &Refusal { status: ISOPHOTE_ERROR_INVALID_ARGUMENT, message }))
+    Python::attach(|py| of_status(py, ISOPHOTE_ERROR_INVALID_ARGUMENT, &message))
 }
 
 /// The exception for wrong use of this module.

@@ -1,17 +1,15 @@
 //! `isophote._native`: the dynamic library's table as Python objects.
 //!
 //! The package beside this file (`isophote/`) is what people use. It prepares arrays, styles and settings; here
-//! they meet the library, which comes in the same wheel and is loaded as any other host does it, with the sample host's own
-//! [`loader`]. So there is one implementation of everything that images go through, and results are those of the C face.
+//! they meet the library, which comes in the same wheel and is loaded as any other host in Rust does it, by
+//! `isophote-loader`. So there is one implementation of everything that images go through, and results are those of the C face.
 //!
 //! Work is done without the interpreter's lock. An object that another thread works with is waited for without it, too.
 
 #![allow(unsafe_code, reason = "arrays of NumPy and the functions of the library's table meet here")]
 
 pub mod array;
-pub mod error;
 pub mod exception;
-pub mod loader;
 pub mod motion;
 pub mod objects;
 pub mod opened;
@@ -54,7 +52,7 @@ pub mod native {
     /// All nodes, as JSON.
     #[pyfunction]
     fn catalogue(py: Python<'_>) -> PyResult<String> {
-        let catalogue = library()?.catalogue().map_err(|refusal| raised(py, &refusal))?;
+        let catalogue = library()?.catalogue().map_err(|error| raised(py, &error))?;
         serde_json::to_string(&catalogue).map_err(|e| usage(&format!("the catalogue: {e}")))
     }
 
@@ -62,6 +60,6 @@ pub mod native {
     #[pyfunction]
     fn trim(py: Python<'_>) -> PyResult<()> {
         let library = library()?;
-        py.detach(|| library.trim()).map_err(|refusal| raised(py, &refusal))
+        py.detach(|| library.trim()).map_err(|error| raised(py, &error))
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::array::{Pixels, Use};
 use crate::exception::invalid;
-use crate::loader::contract::ISOPHOTE_SAMPLE_F32;
+use isophote_loader::Sample;
 use isophote_motion::{Convention, Way};
 use pyo3::prelude::*;
 
@@ -39,7 +39,7 @@ pub fn motion(
         return Err(invalid("the passes of motion vectors have too few channels".into()));
     };
     let shape = |pixels: &Pixels| (pixels.width, pixels.height, pixels.sample);
-    if shape(pass) != shape(&target) || target.sample != ISOPHOTE_SAMPLE_F32 || target.channels != 2 {
+    if shape(pass) != shape(&target) || target.sample != Sample::F32 || target.channels != 2 {
         return Err(invalid("motion vectors are arrays of float32 of one size".into()));
     }
     let size = [target.width as f32, target.height as f32];

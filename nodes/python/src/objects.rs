@@ -2,11 +2,11 @@
 
 use crate::array::{Pixels, Use};
 use crate::exception::{invalid, raised, usage};
-use crate::loader::contract::{self as c, IsophoteRequest};
-use crate::loader::{self, Answer, Call, DeviceHandle, Report};
 use crate::opened::library;
 use crate::owned::Owned;
 use crate::watch::Watch;
+use isophote_loader::abi::{self as c, IsophoteRequest};
+use isophote_loader::{self as loader, Control, Input, Report};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -64,7 +64,7 @@ impl Request {
         for guide in &guides {
             bits |= word("a guide", guide, &GUIDES)?;
         }
-        let whole = library()?.request(size).map_err(|refusal| raised(py, &refusal))?;
+        let whole = library()?.request(size).map_err(|error| raised(py, &error))?;
         Ok(Self(IsophoteRequest {
             scale,
             space: word("the colour space", color_space, &SPACES)?,
@@ -91,7 +91,7 @@ impl Device {
     #[pyo3(signature = (adapter=None))]
     fn new(py: Python<'_>, adapter: Option<&str>) -> PyResult<Self> {
         let library = library()?;
-        let device = py.detach(|| library.device(adapter)).map_err(|refusal| raised(py, &refusal))?;
+        let device = py.detach(|| library.device(adapter)).map_err(|error| raised(py, &error))?;
         Ok(Self(device))
     }
 
@@ -158,7 +158,7 @@ impl Graph {
     fn nodes(&self, py: Python<'_>) -> PyResult<Vec<(String, String)>> {
         let nodes = self.0.with(py, |graph| {
             let node = |index| Ok((graph.name(index)?, graph.spec(index)?.id.to_owned()));
-            (0..graph.count()).map(node).collect::<Answer<Vec<_>>>()
+            (0..graph.count()).map(node).collect::<loader::Result<Vec<_>>>()
         })?;
         answer(py, nodes)
     }
@@ -177,7 +177,8 @@ impl Graph {
     /// Frames before and after its own that a frame depends on.
     fn frames(&self, py: Python<'_>) -> PyResult<(u32, u32)> {
         let library = library()?;
-        answer(py, self.0.with(py, |graph| library.frames(graph))?)
+        let [past, future] = answer(py, self.0.with(py, |graph| library.frames(graph))?)?;
+        Ok((past, future))
     }
 
     /// The graph as JSON.
@@ -203,10 +204,15 @@ impl Graph {
             let pixels = Pixels::of(&array, &format!("input image '{name}'"), Use::Read)?;
             images.push((name, pixels));
         }
-        let target = Pixels::of(target, "the target image", Use::Write)?;
+        let mut target = Pixels::of(target, "the target image", Use::Write)?;
         let watch = Watch::new(progress);
-        let call = Call { device: number(device), request: &request.0, threads, watch: &watch };
-        let report = self.0.with(py, |graph| graph.process(&call, &images, &target))?;
+        let device = device.map(|device| &device.0);
+        let report = self.0.with(py, |graph| {
+            let inputs: Vec<Input<'_>> = images.iter().map(|(name, pixels)| Input { name, pixels }).collect();
+            watched(&watch, threads, |control| {
+                graph.process(device, &request.0, &inputs, &mut target, control)
+            })
+        })?;
         outcome(py, &watch, report)
     }
 }
@@ -242,11 +248,11 @@ impl Sequence {
         threads: u32,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<(u64, f64)> {
-        let target = Pixels::of(target, "the target image", Use::Write)?;
+        let mut target = Pixels::of(target, "the target image", Use::Write)?;
         let watch = Watch::new(progress);
-        let call = Call { device: number(device), request: &request.0, threads, watch: &watch };
-        let graph = graph.0.with(py, |graph| graph.number())?;
-        let footage = |name: &str, frame: i64| {
+        let device = device.map(|device| &device.0);
+        let graph = graph.0.with(py, |graph| graph.handle())?;
+        let mut image = |name: &str, frame: i64| {
             let asked = Python::attach(|py| {
                 let array = source.bind(py).call1((name, frame))?;
                 if array.is_none() {
@@ -260,21 +266,30 @@ impl Sequence {
                 None
             })
         };
-        let report = self.0.with(py, |sequence| sequence.process(graph, &call, &footage, &target))?;
+        let report = self.0.with(py, |sequence| {
+            watched(&watch, threads, |control| {
+                sequence.process(graph, device, &request.0, &mut image, &mut target, control)
+            })
+        })?;
         outcome(py, &watch, report)
     }
 }
 
-fn number(device: Option<&Device>) -> DeviceHandle {
-    device.map_or_else(DeviceHandle::default, |device| device.0.number())
+/// Calls `work` with a control that `watch` looks at.
+fn watched<T>(watch: &Watch, threads: u32, work: impl FnOnce(&mut Control<'_>) -> T) -> T {
+    let mut progress = |done: f32| watch.look(done);
+    let cancelled = || watch.is_stopped();
+    let mut control =
+        Control { threads, progress: Some(&mut progress), cancelled: Some(&cancelled), ..Control::default() };
+    work(&mut control)
 }
 
-fn answer<T>(py: Python<'_>, answer: Answer<T>) -> PyResult<T> {
-    answer.map_err(|refusal| raised(py, &refusal))
+fn answer<T>(py: Python<'_>, result: loader::Result<T>) -> PyResult<T> {
+    result.map_err(|error| raised(py, &error))
 }
 
 /// What a call came to. What Python raised meanwhile is why the library stopped, or went on without an image.
-fn outcome(py: Python<'_>, watch: &Watch, report: Answer<Report>) -> PyResult<(u64, f64)> {
+fn outcome(py: Python<'_>, watch: &Watch, report: loader::Result<Report>) -> PyResult<(u64, f64)> {
     if let Some(raised) = watch.raised() {
         return Err(raised);
     }

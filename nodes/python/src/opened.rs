@@ -1,7 +1,7 @@
 //! The library, once it is loaded.
 
 use crate::exception::usage;
-use crate::loader::Library;
+use isophote_loader::Library;
 use pyo3::exceptions::PyImportError;
 use pyo3::prelude::*;
 use std::path::Path;

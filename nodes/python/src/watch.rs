@@ -1,7 +1,6 @@
 //! Watching a call: Ctrl-C, and who wants to know how far it is.
 
 use pyo3::prelude::*;
-use std::ffi::c_void;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -40,7 +39,13 @@ impl Watch {
         self.raised.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
-    fn look(&self, done: f32) {
+    /// Whether the call shall end.
+    pub fn is_stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+
+    /// Tells how much is done, and looks whether Python wants the call to end.
+    pub fn look(&self, done: f32) {
         let mut looked = self.looked.lock().unwrap_or_else(PoisonError::into_inner);
         if looked.elapsed() < PAUSE && done < 1.0 {
             return;
@@ -55,22 +60,4 @@ impl Watch {
             self.stop(raised);
         }
     }
-}
-
-/// The library's question whether to stop, on any thread.
-///
-/// # Safety
-/// `user` is the watch of the running call.
-pub unsafe extern "C" fn cancelled(user: *mut c_void) -> u32 {
-    // SAFETY: as the caller promised; a watch may be used on any thread.
-    u32::from(unsafe { &*user.cast::<Watch>() }.stopped.load(Ordering::Relaxed))
-}
-
-/// How far the library is, on the thread that called it.
-///
-/// # Safety
-/// As [`cancelled`].
-pub unsafe extern "C" fn progress(user: *mut c_void, done: f32) {
-    // SAFETY: as the caller promised.
-    unsafe { &*user.cast::<Watch>() }.look(done);
 }

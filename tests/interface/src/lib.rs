@@ -1,4 +1,2 @@
-//! The OpenFX interface that the plugin declares, for the test that compares it.
-
-#[path = "../../../nodes/plugin/src/ofx/interface.rs"]
-pub mod interface;
+//! Nothing but a place for the test that compares the declared OpenFX interface with a crate made from the standard's
+//! headers.

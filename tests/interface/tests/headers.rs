@@ -1,6 +1,6 @@
 //! The declared interface against the `openfx` crate, which is made from the standard's headers.
 
-use isophote_interface::interface as ours;
+use isophote_abi::openfx as ours;
 use openfx::sys::generic::core as theirs_core;
 use openfx::sys::generic::property as theirs_property;
 use openfx::sys::image_effect_v1 as theirs;

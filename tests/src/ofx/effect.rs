@@ -2,12 +2,12 @@
 
 use super::handles::handle_of;
 use super::host::Host;
-use super::interface::*;
 use super::objects::{Clip, Effect, MAGIC, Param};
 use super::picture::{Layout, Picture};
 use super::plugin::Plugin;
 use super::properties::{Set, Value};
 use super::state::{self, lock};
+use isophote_abi::openfx::*;
 use std::ffi::{CStr, CString};
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;

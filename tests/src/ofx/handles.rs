@@ -1,6 +1,6 @@
 //! Addresses and texts as they pass between a host and its plugins.
 
-use super::interface::Handle;
+use isophote_abi::openfx::Handle;
 use std::collections::HashMap;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::ptr::null_mut;

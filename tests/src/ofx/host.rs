@@ -1,9 +1,9 @@
 //! A host, as plugins are given it.
 
-use super::interface::*;
 use super::properties::{Set, Value};
 use super::state::{Behaviour, Inner};
 use super::suites::{self, Suites};
+use isophote_abi::openfx::*;
 use std::sync::Arc;
 
 /// A host. A plugin knows one at a time: a test has a copy of the library to itself

@@ -6,9 +6,6 @@
 
 #![allow(unsafe_code, reason = "a host calls foreign code and is called by it")]
 
-#[path = "../../../nodes/plugin/src/ofx/interface.rs"]
-pub mod interface;
-
 pub mod effect;
 mod handles;
 pub mod host;

@@ -1,10 +1,10 @@
 //! Descriptors and instances of the test host, with their parameters and clips.
 
 use super::handles::handle_of;
-use super::interface::{Handle, kOfxImageEffectPropFrameRange, kOfxImageEffectPropTemporalClipAccess};
 use super::picture::Picture;
 use super::properties::{Set, Value};
 use super::state::{self, Inner, lock};
+use isophote_abi::openfx::{Handle, kOfxImageEffectPropFrameRange, kOfxImageEffectPropTemporalClipAccess};
 use std::ffi::CString;
 use std::sync::{Arc, Mutex};
 

@@ -1,7 +1,7 @@
 //! Pictures as a host keeps them: rows upwards or downwards, padded, anywhere in the plane.
 
-use super::interface::*;
 use super::properties::{Set, Value};
+use isophote_abi::openfx::*;
 use isophote_engine::pixels::Sample;
 use std::ffi::CStr;
 

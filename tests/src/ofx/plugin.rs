@@ -1,9 +1,9 @@
 //! The plugin's binary: loaded, lent to one test at a time, and called.
 
 use super::host::Host;
-use super::interface::*;
 use super::properties::Set;
 use super::{objects, state};
+use isophote_abi::openfx::*;
 use std::ffi::{CStr, c_int};
 use std::ops::Deref;
 use std::path::Path;

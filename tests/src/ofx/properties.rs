@@ -1,9 +1,9 @@
 //! Property sets of the test host.
 
 use super::handles::{Named, handle_of, owned};
-use super::interface::*;
 use super::shapes::{REQUIRED, shape};
 use super::state::{Inner, fault, lock};
+use isophote_abi::openfx::*;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::sync::{Arc, Mutex, MutexGuard};
 

@@ -1,6 +1,6 @@
 //! Types and lengths of the standard's properties, and which of them a host must have.
 
-use super::interface::*;
+use isophote_abi::openfx::*;
 use std::ffi::CStr;
 
 /// More values than anyone sets.

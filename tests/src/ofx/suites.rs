@@ -1,11 +1,11 @@
 //! The functions of the test host, and the library of variadic ones that is compiled from C.
 
 use super::handles::{handle_of, nothing, owned};
-use super::interface::*;
 use super::objects::{Clip, Effect, MAGIC, Param};
 use super::properties::{self, Set, Value};
 use super::state::{self, Behaviour, Suite, fault, lock};
 use super::threads;
+use isophote_abi::openfx::*;
 use std::ffi::{c_char, c_int, c_uint, c_void};
 use std::process::Command;
 use std::sync::OnceLock;

@@ -1,7 +1,7 @@
 //! The threads of the test host.
 
-use super::interface::*;
 use super::state::{self, fault, lock};
+use isophote_abi::openfx::*;
 use std::cell::Cell;
 use std::ffi::{c_int, c_uint, c_void};
 use std::sync::atomic::Ordering;

@@ -4,7 +4,7 @@ use super::faults;
 use super::host::Host;
 use super::studio::{SIZE, Studio, create, images, load, with_message};
 use ash::vk;
-use isophote_tests::library::contract::*;
+use isophote_abi::*;
 use std::ffi::{CStr, c_char};
 use std::ptr::{null, null_mut};
 

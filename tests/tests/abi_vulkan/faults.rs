@@ -1,7 +1,7 @@
 //! Vulkan functions between the library and the driver: counted, and made to fail. Each thread has faults of its own.
 
 use ash::vk;
-use isophote_tests::library::contract::IsophoteVulkanLoader;
+use isophote_abi::IsophoteVulkanLoader;
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::ffi::{CStr, c_char, c_void};

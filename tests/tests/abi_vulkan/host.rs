@@ -3,7 +3,7 @@
 use super::faults;
 use ash::khr;
 use ash::vk::{self, Handle};
-use isophote_tests::library::contract::*;
+use isophote_abi::*;
 use std::ffi::{CStr, c_char, c_void};
 use std::mem::transmute;
 use std::ptr::{null, null_mut};

@@ -2,7 +2,8 @@
 
 use super::host::{Host, Picture};
 use ash::vk::{self, Handle};
-use isophote_tests::library::{Loaded, contract::*, text};
+use isophote_abi::*;
+use isophote_tests::library::{Loaded, text};
 use std::ffi::{CStr, c_void};
 use std::ptr::{null, null_mut};
 

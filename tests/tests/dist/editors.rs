@@ -1,9 +1,9 @@
 //! Panels for editors that are built on MLT: every effect has one, and it sets what the plugin has, as MLT names it.
 
 use super::{Unpacked, files};
+use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::Described;
 use isophote_tests::ofx::host::Host;
-use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::properties::Set;
 use isophote_tests::ofx::state::Behaviour;

@@ -3,9 +3,9 @@
 
 use crate::reference::*;
 use crate::scale::{SIDE, photo};
+use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::{Described, Instance, Wanted};
 use isophote_tests::ofx::host::Host;
-use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::state::Behaviour;

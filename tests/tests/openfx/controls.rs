@@ -1,9 +1,9 @@
 //! What instances say of themselves as their values change: tiles, and controls that have no effect.
 
 use crate::reference::*;
+use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::{Described, Instance};
 use isophote_tests::ofx::host::Host;
-use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::properties::Value;

@@ -2,9 +2,9 @@
 
 use crate::reference::{Expected, expected, identifier};
 use isophote::spec::Param;
+use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::Described;
 use isophote_tests::ofx::host::Host;
-use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::objects::Effect;
 use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::properties::Value;

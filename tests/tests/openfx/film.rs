@@ -3,9 +3,9 @@
 use crate::reference::*;
 use isophote::graph::GraphInput;
 use isophote::{Graph, Request, Value};
+use isophote_abi::openfx::*;
 use isophote_engine::Image;
 use isophote_tests::ofx::effect::{Instance, Wanted};
-use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::sequences::Player;
 

@@ -3,8 +3,9 @@
 use isophote::graph::GraphInput;
 use isophote::spec::{ImageKind, NodeSpec};
 use isophote::{ColourSpace, Graph};
+use isophote_abi::*;
 use isophote_engine::pixels::Sample;
-use isophote_tests::library::{Loaded, contract::*, text};
+use isophote_tests::library::{Loaded, text};
 use isophote_tests::ofx::effect::Instance;
 use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::{Binary, Plugin};

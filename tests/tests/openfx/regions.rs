@@ -2,10 +2,10 @@
 
 use crate::reference::*;
 use isophote::{Planned, Request};
+use isophote_abi::openfx::*;
 use isophote_engine::Rect;
 use isophote_tests::ofx::effect::{Described, Wanted};
 use isophote_tests::ofx::host::Host;
-use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::properties::Value;

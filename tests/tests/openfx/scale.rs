@@ -1,9 +1,9 @@
 //! Proxies: every effect at half size against the full-size result made smaller.
 
 use crate::reference::*;
+use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::{Described, Wanted};
 use isophote_tests::ofx::host::Host;
-use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::state::Behaviour;

@@ -2,9 +2,9 @@
 
 use crate::film::{self, RANGE, SIZE, STEP, connect, connect_motion, connect_vectors, render, vectors};
 use crate::reference::*;
+use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::{Described, Instance, Wanted};
 use isophote_tests::ofx::host::Host;
-use isophote_tests::ofx::interface::*;
 use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::state::Behaviour;

@@ -3,7 +3,8 @@
 #![allow(dead_code, reason = "no test file needs all of it")]
 #![allow(unsafe_code, reason = "calls through the C table")]
 
-use isophote_tests::library::{Loaded, contract::*, text};
+use isophote_abi::*;
+use isophote_tests::library::{Loaded, text};
 use std::ffi::{CString, c_void};
 use std::ptr::{null, null_mut};
 

@@ -11,12 +11,12 @@ use std::process::ExitCode;
 
 /// The files that declare the contract, in the order of the header.
 const SOURCES: [&str; 7] = [
-    "include/rust/constants.rs",
-    "include/rust/types.rs",
-    "include/rust/table.rs",
-    "include/rust/sequences.rs",
-    "include/rust/precision.rs",
-    "include/rust/vulkan.rs",
+    "include/src/constants.rs",
+    "include/src/types.rs",
+    "include/src/table.rs",
+    "include/src/sequences.rs",
+    "include/src/precision.rs",
+    "include/src/vulkan.rs",
     "nodes/plugin/src/abi/entry.rs",
 ];
 
@@ -112,7 +112,7 @@ const CLOSING: &str = "\
 /// The one function that is declared and not in the table.
 const ENTRY: &str = "const struct IsophoteApi *isophote_api(uint32_t abi_version);";
 
-const WARNING: &str = "/* Generated from include/rust by `cargo xtask header`. Do not edit. */";
+const WARNING: &str = "/* Generated from include/src by `cargo xtask header`. Do not edit. */";
 
 /// Why the header was not written, or is not true.
 #[derive(Debug, thiserror::Error)]
@@ -126,7 +126,7 @@ enum Error {
     #[error("the entry point is not declared as expected")]
     Entry,
     #[error(
-        "include/isophote.h is not what include/rust declares, from line {0} on: run `cargo xtask header`"
+        "include/isophote.h is not what include/src declares, from line {0} on: run `cargo xtask header`"
     )]
     Stale(usize),
 }

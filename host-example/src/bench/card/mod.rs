@@ -15,13 +15,13 @@ use super::{Subject, median, picture};
 use crate::apply::backend::Backend;
 use crate::apply::filter::{Filter, Look, Planner};
 use crate::apply::memory;
-use crate::error::{Error, Result};
-use crate::loader::Library;
+use crate::error::{AtPlace, Error, Result};
 use crate::output;
 use crate::render::gpu::Gpu;
 use crate::stylize::lengths::Lengths;
 use crate::stylize::precision::Precision;
 use crate::stylize::style::Style;
+use isophote_loader::Library;
 
 /// The style of the loop and of the sequences.
 const STYLE: &str = "cartoon";

@@ -3,12 +3,12 @@
 use serde::Serialize;
 
 use crate::bench::Subject;
-use crate::error::Result;
-use crate::loader::device::Device;
-use crate::loader::{Control, Input, Library, Refusal};
+use crate::error::{AtPlace, Result};
 use crate::pixels::{Pixels, Precision as Samples};
 use crate::stylize::precision::Precision;
 use crate::stylize::style::Style;
+use isophote_loader::device::Device;
+use isophote_loader::{Control, Input, Library};
 
 /// A value that differs by more than this, of itself where it is larger than 1, is another one to the eye.
 const STEP: f32 = 3.5 / 255.0;
@@ -41,7 +41,7 @@ pub struct Twin {
 /// # Errors
 /// [`crate::error::Error::Failure`] when the device fails.
 pub fn compare(library: &Library, device: &Device, subject: &Subject, picture: &Pixels) -> Result<Vec<Twin>> {
-    let refused = |e: Refusal| e.at(&subject.node, "leave it out with --node");
+    let refused = |e: isophote_loader::Error| e.at(&subject.node, "leave it out with --node");
     let node = library.find_node(&subject.node).map_err(refused)?;
     if node.inputs.iter().any(|port| !port.optional && port.id != "color") {
         return Ok(Vec::new());

@@ -7,10 +7,10 @@ use std::sync::Arc;
 
 use super::entry::{Content, Group};
 use crate::error::Error;
-use crate::loader::Library;
 use crate::looks;
 use crate::stylize::title::Title;
 use crate::view::look::{Look, PLAIN};
+use isophote_loader::Library;
 
 /// Most folders within folders.
 const DEEPEST: usize = 4;

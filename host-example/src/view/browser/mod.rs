@@ -12,7 +12,7 @@ use self::entry::{Entry, Group};
 use self::filter::Filter;
 use self::listing::{Found, Listing};
 use self::titling::Titling;
-use crate::loader::Library;
+use isophote_loader::Library;
 
 /// Most looks that are compared at once.
 pub const MOST_COMPARED: usize = 6;

@@ -8,8 +8,8 @@ use crate::apply::space::Space;
 use crate::apply::working::WorkingSpace;
 use crate::error::{Error, Result};
 use crate::limits;
-use crate::loader::contract::{ISOPHOTE_ALPHA_EMISSIVE, IsophoteRequest};
 use crate::pixels::Pixels;
+use isophote_loader::abi::{ISOPHOTE_ALPHA_EMISSIVE, IsophoteRequest};
 
 /// What an infinity becomes when the library reads it.
 const LARGEST_HALF: f32 = 65504.0;

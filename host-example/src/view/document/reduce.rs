@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::frame::{Frame, GuideImage};
-use crate::loader::process::Part;
+use isophote_loader::process::Part;
 
 /// The pixels that one of the smaller frame covers along an axis: the first, and the share of each.
 struct Span {

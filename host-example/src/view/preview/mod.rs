@@ -13,7 +13,7 @@ use self::picture::Picture;
 use self::queue::{Done, Task};
 use self::render::Order;
 use crate::error::Result;
-use crate::loader::process::Part;
+use isophote_loader::process::Part;
 
 /// Most bytes of previews in memory, but for those that are shown.
 const MOST_BYTES: usize = 96 << 20;

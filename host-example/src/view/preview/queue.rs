@@ -12,8 +12,8 @@ use egui::ColorImage;
 use super::picture::Picture;
 use super::render::{Order, Renderer};
 use crate::error::{Error, Result};
-use crate::loader::Library;
 use crate::view::worker::Wake;
+use isophote_loader::Library;
 
 /// Most threads of the library for one preview; small pictures have no work for more.
 const MOST_THREADS: usize = 8;

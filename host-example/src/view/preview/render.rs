@@ -8,17 +8,17 @@ use egui::ColorImage;
 use super::picture::{self, Meaning, Picture};
 use crate::apply::filter;
 use crate::apply::space::Space;
-use crate::error::{Error, Result};
+use crate::error::{AtPlace, Error, Result};
 use crate::limits;
-use crate::loader::catalogue::Kind;
-use crate::loader::contract::{ISOPHOTE_ERROR_CANCELLED, IsophoteRequest};
-use crate::loader::process::Part;
-use crate::loader::{Control, Input, Library, Refusal};
 use crate::pixels::{Pixels, Precision, Samples};
 use crate::stylize::style::Style;
 use crate::view::document::frame::Frame;
 use crate::view::document::reduce;
 use crate::view::look::Look;
+use isophote_loader::abi::{ISOPHOTE_ERROR_CANCELLED, IsophoteRequest};
+use isophote_loader::catalogue::Kind;
+use isophote_loader::process::Part;
+use isophote_loader::{Control, Input, Library};
 
 /// Bytes a pixel that filtering takes beside the picture, for nearly all looks.
 const WORKING: u64 = 300;
@@ -116,7 +116,7 @@ impl Renderer {
     ) -> Result<Option<Pixels>> {
         style.at_frame(picture.frame.number.unwrap_or_default())?;
         let request = self.request(picture, size, &style)?;
-        let refused = |e: Refusal| e.at(&style.name, "choose another look");
+        let refused = |e: isophote_loader::Error| e.at(&style.name, "choose another look");
         let read = style.graph.support(&request, part).map_err(refused)?;
         let guides = filter::usable_guides(&self.library, &style)?;
         let mut control = Control { threads: self.threads, cancelled: Some(cancelled), ..Control::default() };
@@ -132,7 +132,7 @@ impl Renderer {
         let mut target = Pixels::zeroed(right.abs_diff(left), bottom.abs_diff(top), 4, Precision::F32);
         match style.graph.process_part(&request, &inputs, read[0], part, &mut target, &mut control) {
             Ok(_) => Ok(Some(target)),
-            Err(refusal) if refusal.status == ISOPHOTE_ERROR_CANCELLED => Ok(None),
+            Err(refusal) if refusal.status() == Some(ISOPHOTE_ERROR_CANCELLED) => Ok(None),
             Err(refusal) => Err(refusal.at(&style.name, "choose another look")),
         }
     }

@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use super::Session;
 use crate::error::Result;
-use crate::loader::Library;
 use crate::stylize::lengths::Lengths;
 use crate::stylize::style::Setting;
 use crate::view::chain::Chain;
 use crate::view::look::{Knob, Look};
 use crate::view::value::Value;
+use isophote_loader::Library;
 
 impl Session {
     /// The look was saved.

@@ -3,10 +3,10 @@
 use egui::{Align, Button, Color32, DragValue, Layout, Response, RichText, Sense, Slider, Ui, vec2};
 
 use super::theme;
-use crate::loader::catalogue::{Choice, ParamKind};
 use crate::view::look::Knob;
 use crate::view::session::Session;
 use crate::view::value::Value;
+use isophote_loader::catalogue::{Choice, ParamKind};
 
 /// Width of the label in points.
 const LABEL: f32 = 118.0;

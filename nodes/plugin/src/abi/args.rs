@@ -1,7 +1,7 @@
 //! Arguments: text, structs and places to write, behind pointers that may be null or unaligned.
 
-use super::contract::{ISOPHOTE_ERROR_TRUNCATED, IsophoteText};
 use super::failure::{Failure, Outcome};
+use isophote_abi::{ISOPHOTE_ERROR_TRUNCATED, IsophoteText};
 use std::ffi::{CStr, c_char};
 
 /// Text from the host.

@@ -1,13 +1,13 @@
 //! The catalogue: the nodes' declarations as plain data, made once and kept for the process's life.
 
 use super::args;
-use super::contract::*;
 use super::failure::{Failure, Outcome};
 use super::guard;
 use isophote::Value;
 use isophote::registry;
 use isophote::spec::{ImageKind, NodeSpec, Param, Port, Unit};
 use isophote::value::{Choice, decimal};
+use isophote_abi::*;
 use std::collections::HashMap;
 use std::ffi::{CString, c_char};
 use std::ptr::null;

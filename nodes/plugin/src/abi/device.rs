@@ -1,11 +1,11 @@
 //! Graphics devices of the library's own, for hosts that have none.
 
 use super::args;
-use super::contract::*;
 use super::guard;
 use super::handles::Object;
 use super::objects::{self, DeviceObject};
 use isophote::engine::gpu::{Device, Options};
+use isophote_abi::*;
 use std::ffi::c_char;
 
 pub(super) unsafe extern "C" fn create(

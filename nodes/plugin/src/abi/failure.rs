@@ -1,7 +1,7 @@
 //! What a call comes to: every error of the library as a status with a message.
 
-use super::contract::*;
 use isophote::engine;
+use isophote_abi::*;
 use std::any::Any;
 
 /// Why a call failed: the status and the line that a person reads.

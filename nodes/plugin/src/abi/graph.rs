@@ -4,12 +4,12 @@ pub mod params;
 
 use super::args;
 use super::catalogue;
-use super::contract::*;
 use super::failure::{Failure, Outcome};
 use super::guard;
 use super::objects::GraphObject;
 use isophote::graph::GraphInput;
 use isophote::{Graph, NodeId};
+use isophote_abi::*;
 use std::ffi::c_char;
 
 fn node(graph: &Graph, index: u32) -> Outcome<NodeId> {

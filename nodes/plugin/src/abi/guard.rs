@@ -1,9 +1,9 @@
 //! The one gate of every foreign call: errors and panics become statuses with a message.
 
 use super::args;
-use super::contract::*;
 use super::failure::{Failure, Outcome};
 use super::handles::{Handle, Object};
+use isophote_abi::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 

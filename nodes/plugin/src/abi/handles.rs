@@ -4,11 +4,11 @@
 //! bits). A slot's generation grows with every object that leaves it, so that no handle is ever
 //! given out twice.
 
-use super::contract::{
+use super::failure::{Failure, Outcome};
+use isophote_abi::{
     ISOPHOTE_ERROR_INVALID_HANDLE, ISOPHOTE_ERROR_OUT_OF_MEMORY, IsophoteDevice, IsophoteGraph, IsophotePlan,
     IsophoteSequence, IsophoteVulkan, IsophoteVulkanEffect,
 };
-use super::failure::{Failure, Outcome};
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 /// A handle as hosts hold it, of a type of its own.

@@ -3,13 +3,13 @@
 //! No slice ever covers more than a copy of one row, since rows may run upwards, overlap those of
 //! another image, or lie at any address.
 
-use super::contract::*;
 use super::failure::{Failure, Outcome};
 use isophote::engine::pixels::{Sample, read_row, read_vectors, write_row};
 use isophote::engine::{Image, Rect};
 use isophote::graph::GraphInput;
 use isophote::kernels::shared::motion::UNKNOWN;
 use isophote::spec::ImageKind;
+use isophote_abi::*;
 
 /// An image of the host's whose shape was checked.
 #[derive(Clone, Copy, Debug)]

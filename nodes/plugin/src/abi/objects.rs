@@ -1,12 +1,12 @@
 //! The objects that hosts hold handles of, but for plans: graphs and devices.
 
-use super::contract::{IsophoteDevice, IsophoteGraph};
 use super::failure::Outcome;
 use super::guard::lock;
 use super::handles::{Object, Slots};
 use super::warm::Warm;
 use isophote::engine::gpu::Device;
 use isophote::{Graph, Request};
+use isophote_abi::{IsophoteDevice, IsophoteGraph};
 use std::sync::{Arc, Mutex, MutexGuard};
 
 /// A graph of a host's.

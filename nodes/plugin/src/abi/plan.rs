@@ -1,7 +1,6 @@
 //! The plan as data: what a host needs to run a graph on its own graphics device.
 
 use super::args;
-use super::contract::*;
 use super::failure::{Failure, Outcome};
 use super::guard::{self, lock};
 use super::handles::{Object, Slots};
@@ -12,6 +11,7 @@ use isophote::engine::program::{Dispatch, Format, Program, Role, Texture};
 use isophote::engine::{Class, Rect};
 use isophote::request::Change;
 use isophote::{Graph, Lowered, Request};
+use isophote_abi::*;
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
 use std::ptr::null;

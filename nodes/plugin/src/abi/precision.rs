@@ -1,10 +1,10 @@
 //! The extension for precision: 16-bit floats and samplers, for graphics devices.
 
-use super::contract::*;
 use super::failure::Failure;
 use super::guard;
 use super::objects::GraphObject;
 use isophote::engine::program::Precision;
+use isophote_abi::*;
 use std::ffi::CStr;
 
 /// Name of the extension.

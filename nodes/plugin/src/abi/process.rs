@@ -1,7 +1,6 @@
 //! Computing images in memory, on the CPU or on a device of the library's own.
 
 use super::args;
-use super::contract::*;
 use super::failure::{Failure, Outcome};
 use super::graph;
 use super::guard;
@@ -17,6 +16,7 @@ use isophote::engine::{Image, Rect, Support};
 use isophote::graph::GraphInput;
 use isophote::kernels::shared::host_colour::has_light;
 use isophote::request::Guides;
+use isophote_abi::*;
 use std::ffi::c_char;
 use std::ptr::null_mut;
 use std::time::Instant;

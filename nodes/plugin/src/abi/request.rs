@@ -1,13 +1,13 @@
 //! What a host asks for: the picture, its spaces, and the region of it.
 
 use super::args;
-use super::contract::*;
 use super::failure::{Failure, Outcome};
 use super::guard;
 use isophote::engine::Rect;
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
 use isophote::{ColourSpace, Request};
+use isophote_abi::*;
 
 /// The library's request from the host's.
 ///

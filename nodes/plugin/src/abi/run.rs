@@ -1,6 +1,5 @@
 //! A run of a plan for a host: its threads, its callbacks, the CPU or a device.
 
-use super::contract::*;
 use super::failure::{Failure, Outcome};
 use super::guard::lock;
 use super::handles::Object;
@@ -10,6 +9,7 @@ use isophote::engine::cpu::{Control, CpuExecutor, PassTime};
 use isophote::engine::gpu::Executor;
 use isophote::engine::program::Precision;
 use isophote::engine::{Image, ImageId, Plan, Rect, memory};
+use isophote_abi::*;
 use std::ffi::{CString, c_void};
 use std::sync::Arc;
 

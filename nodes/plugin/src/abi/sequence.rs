@@ -1,7 +1,6 @@
 //! The extension for sequences: frames in any order, their images pulled from the host as they are needed.
 
 use super::args;
-use super::contract::*;
 use super::failure::{Failure, Outcome};
 use super::guard::{self, lock};
 use super::handles::{Object, Slots};
@@ -21,6 +20,7 @@ use isophote::kernels::shared::host_colour::has_light;
 use isophote::picture::MAX_MOTION;
 use isophote::sequence::Sequence;
 use isophote::{Graph, Planned, Request};
+use isophote_abi::*;
 use std::ffi::{CStr, CString};
 use std::sync::Mutex;
 use std::time::Instant;

@@ -4,10 +4,10 @@
 //! keep what it was given for as long as it likes.
 
 use super::catalogue::lasting;
-use super::contract::*;
 use super::failure::{Failure, Outcome};
 use super::guard::lock;
 use isophote::engine::program::Shader;
+use isophote_abi::*;
 use naga::back::pipeline_constants::process_overrides;
 use naga::back::{glsl, hlsl, msl, spv};
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};

@@ -4,10 +4,10 @@
 //! Batches are therefore named by numbers, not by pointers, every job is done once, and a batch ends
 //! only when nothing of it runs any more.
 
-use super::contract::*;
 use super::failure::{Failure, Outcome};
 use super::guard::lock;
 use isophote::engine::cpu::{CallingThread, Pool, Threads};
+use isophote_abi::*;
 use std::any::Any;
 use std::collections::HashMap;
 use std::ffi::c_void;

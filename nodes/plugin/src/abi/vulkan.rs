@@ -13,7 +13,6 @@ mod passes;
 mod record;
 
 use super::args;
-use super::contract::*;
 use super::failure::{Failure, Outcome};
 use super::guard::{self, lock};
 use super::handles::{Object, Slots};
@@ -24,6 +23,7 @@ use ash::vk::{self, Handle};
 use context::Context;
 use device::Device;
 use effect::Effect;
+use isophote_abi::*;
 use std::ffi::{CStr, c_void};
 use std::sync::{Arc, Mutex, Weak};
 

@@ -1,11 +1,11 @@
 //! What one call on a graph leaves for the next.
 
-use super::contract::ISOPHOTE_ERROR_INTERNAL;
 use super::failure::{Failure, Outcome};
 use isophote::engine::cpu::CpuExecutor;
 use isophote::engine::gpu::{Device, Executor};
 use isophote::engine::{Image, Plan};
 use isophote::{Graph, Planned, Request};
+use isophote_abi::ISOPHOTE_ERROR_INTERNAL;
 use std::sync::Arc;
 
 /// The plan, and executors with their memory.

@@ -2,8 +2,8 @@
 
 use super::host::Host;
 use super::image::Clip;
-use super::interface::Handle;
 use isophote::graph::GraphInput;
+use isophote_abi::openfx::Handle;
 use std::ffi::CStr;
 
 /// The picture.

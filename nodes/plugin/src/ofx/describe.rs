@@ -3,10 +3,10 @@
 use super::clips::{MASK, OUTPUT, SOURCE, guide_clip, guide_label};
 use super::effects::{Control, Effect, SPACES, Target, WORKING_SPACE};
 use super::host::{Host, Outcome, Properties};
-use super::interface::*;
 use isophote::Value;
 use isophote::spec::{ImageKind, Param, Unit};
 use isophote::value::decimal;
+use isophote_abi::openfx::*;
 use std::ffi::{CStr, c_int};
 use std::ptr::null_mut;
 

@@ -2,9 +2,9 @@
 //! rows of the picture downwards from the top.
 
 use super::host::Host;
-use super::interface::*;
 use isophote::engine::Rect;
 use isophote::engine::image::MAX_SIDE;
+use isophote_abi::openfx::*;
 
 /// A rectangle of the host's pixels, y up.
 pub type Bounds = [i32; 4];

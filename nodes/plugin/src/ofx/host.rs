@@ -3,9 +3,9 @@
 //! Hosts leave functions out, refuse properties and free strings early. Everything here answers with
 //! `None` then, or does nothing.
 
-use super::interface::*;
 use super::quirks::Quirks;
 use crate::abi::guard::lock;
+use isophote_abi::openfx::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::ptr::{null, null_mut};

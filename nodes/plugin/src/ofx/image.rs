@@ -2,11 +2,11 @@
 
 use super::frame::{Bounds, Frame};
 use super::host::{Host, Outcome, Properties};
-use super::interface::*;
-use crate::abi::contract::*;
 use crate::abi::images::Checked;
 use isophote::engine::{Image, Rect};
 use isophote::graph::GraphInput;
+use isophote_abi::openfx::*;
+use isophote_abi::*;
 use std::ffi::CStr;
 use std::ptr::null_mut;
 

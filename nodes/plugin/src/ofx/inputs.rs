@@ -8,7 +8,6 @@ use super::effects::Effect;
 use super::frame::{Frame, is_endless};
 use super::host::{Host, Outcome, Properties};
 use super::image::{Alpha, Beyond, Clip, Fetched};
-use super::interface::*;
 use super::prepared::Prepared;
 use super::stop::Stop;
 use isophote::Error;
@@ -16,6 +15,7 @@ use isophote::engine::cpu::Threads;
 use isophote::engine::{Image, Rect};
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
+use isophote_abi::openfx::*;
 use isophote_motion::{Convention, Way};
 use std::ffi::CStr;
 

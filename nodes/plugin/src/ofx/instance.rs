@@ -5,13 +5,13 @@ use super::effects::Effect;
 use super::frame::{Frame, bounded, is_endless};
 use super::host::{Host, Outcome, Properties};
 use super::image::Clip;
-use super::interface::*;
 use super::known::{Known, clip_of};
 use super::prepared::Prepared;
 use super::settings::Settings;
 use isophote::ColourSpace;
 use isophote::engine::Rect;
 use isophote::graph::GraphInput;
+use isophote_abi::openfx::*;
 use std::collections::BTreeMap;
 use std::ffi::{CStr, CString};
 

@@ -5,13 +5,13 @@ use super::clips::{MOTION, MOTION_FORWARD, SOURCE, guide_clip, is_connected};
 use super::effects::{Effect, is_local};
 use super::host::{Host, Outcome};
 use super::image::Clip;
-use super::interface::*;
 use super::motion::{MotionFrom, estimate};
 use super::settings::Settings;
 use isophote::Graph;
 use isophote::frames::Frames;
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
+use isophote_abi::openfx::*;
 use isophote_motion::Way;
 
 /// What is known of a frame.

@@ -4,12 +4,12 @@ use super::effects::Effect;
 use super::host::{Host, Outcome};
 use super::image::Clip;
 use super::instance::Moment;
-use super::interface::*;
 use super::known::{Known, clip_of};
 use super::settings::Settings;
 use isophote::engine::Rect;
 use isophote::graph::GraphInput;
 use isophote::{Planned, Request};
+use isophote_abi::openfx::*;
 use std::collections::BTreeMap;
 use std::ffi::{CStr, CString};
 

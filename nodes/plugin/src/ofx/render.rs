@@ -8,7 +8,6 @@ use super::host::{Host, Outcome};
 use super::image::{Alpha, Clip, Fetched};
 use super::inputs::{Field, Gathered, Inputs, Named, fetch, fetch_guides};
 use super::instance::{self, Moment};
-use super::interface::*;
 use super::known::Known;
 use super::memory::LEAST_ROWS;
 use super::prepared::Prepared;
@@ -21,6 +20,7 @@ use isophote::graph::GraphInput;
 use isophote::kernels::shared::host_colour::has_light;
 use isophote::kernels::shared::host_colour::scalar::beyond_coverage;
 use isophote::{ColourSpace, Error, Planned};
+use isophote_abi::openfx::*;
 use std::sync::Mutex;
 
 /// Everything that one render action was given.

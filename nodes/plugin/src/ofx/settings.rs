@@ -3,10 +3,10 @@
 
 use super::effects::{AS_IS, Control, Effect, Form, SPACES, Target};
 use super::host::{Host, Outcome};
-use super::interface::*;
 use super::motion::MotionFrom;
 use isophote::spec::{Param, Unit};
 use isophote::{ColourSpace, Graph, NodeId, Value};
+use isophote_abi::openfx::*;
 use isophote_motion::Convention;
 use std::ffi::{CStr, c_int};
 use std::ptr::null_mut;

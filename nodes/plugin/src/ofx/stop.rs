@@ -1,8 +1,8 @@
 //! Why a frame was not finished.
 
-use super::interface::OfxStatus;
 use isophote::Error;
 use isophote::engine::Error as EngineError;
+use isophote_abi::openfx::OfxStatus;
 
 /// Why a frame was not finished.
 pub enum Stop {

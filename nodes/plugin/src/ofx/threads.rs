@@ -4,11 +4,11 @@
 //! leaves out, runs twice, runs late or refuses is made good by the batches of [`crate::abi::threads`].
 
 use super::host::Host;
-use super::interface::*;
-use crate::abi::contract::IsophoteJob;
 use crate::abi::guard::lock;
 use crate::abi::threads::{self, HostThreads, User};
 use isophote::engine::cpu::{CallingThread, Pool, Threads};
+use isophote_abi::IsophoteJob;
+use isophote_abi::openfx::*;
 use std::collections::HashMap;
 use std::ffi::{c_uint, c_void};
 use std::ptr::without_provenance_mut;

@@ -3,10 +3,10 @@
 use super::{node, on_graph};
 use crate::abi::args;
 use crate::abi::catalogue::{self, param_type};
-use crate::abi::contract::*;
 use crate::abi::failure::{Failure, Outcome};
 use isophote::Value;
 use isophote::spec::Param;
+use isophote_abi::*;
 use std::ffi::c_char;
 use std::ptr::null;
 

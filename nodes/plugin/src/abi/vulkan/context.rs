@@ -2,10 +2,10 @@
 
 use super::device::Device;
 use super::objects::Kernel;
-use crate::abi::contract::ISOPHOTE_ERROR_INVALID_HANDLE;
 use crate::abi::failure::{Failure, Outcome};
 use crate::abi::guard::lock;
 use isophote::engine::program::Shader;
+use isophote_abi::ISOPHOTE_ERROR_INVALID_HANDLE;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError, RwLock, RwLockReadGuard};
 

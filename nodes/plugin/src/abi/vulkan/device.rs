@@ -1,11 +1,11 @@
 //! A host's Vulkan device: its functions, what it must have, and how far it has come.
 
 use crate::abi::args;
-use crate::abi::contract::*;
 use crate::abi::failure::{Failure, Outcome};
 use crate::abi::threads::User;
 use ash::vk::{self, Handle};
 use isophote::engine::program::Format;
+use isophote_abi::*;
 use std::collections::BTreeSet;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::ptr::null;

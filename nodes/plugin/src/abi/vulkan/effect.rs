@@ -5,12 +5,12 @@ use super::images::Given;
 use super::objects::Commands;
 use super::passes::{Passes, Port};
 use super::record::Recorder;
-use crate::abi::contract::*;
 use crate::abi::failure::{Failure, Outcome};
 use ash::vk;
 use isophote::engine::Rect;
 use isophote::request::Change;
 use isophote::{Graph, Lowered, Request};
+use isophote_abi::*;
 use std::sync::Arc;
 
 /// A graph with all that it needs on the device.

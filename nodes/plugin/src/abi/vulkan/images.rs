@@ -1,12 +1,12 @@
 //! Images of a host's: read from its list and checked.
 
 use crate::abi::args;
-use crate::abi::contract::*;
 use crate::abi::failure::{Failure, Outcome};
 use crate::abi::graph;
 use ash::vk::{self, Handle};
 use isophote::graph::GraphInput;
 use isophote::spec::ImageKind;
+use isophote_abi::*;
 use std::ffi::CStr;
 
 /// The name of what leaves a graph.

@@ -2,11 +2,11 @@
 //! commands that use it have been executed.
 
 use super::device::{Device, format_of, refused};
-use crate::abi::contract::ISOPHOTE_ERROR_OUT_OF_MEMORY;
 use crate::abi::failure::{Failure, Outcome};
 use crate::abi::shader;
 use ash::vk;
 use isophote::engine::program::{Format, SAMPLER_BINDING, Shader};
+use isophote_abi::ISOPHOTE_ERROR_OUT_OF_MEMORY;
 use std::sync::Arc;
 
 /// An image with one level and layer, its memory and a view of it.

@@ -4,10 +4,10 @@ use super::context::Context;
 use super::device::{Device, format_of, refused};
 use super::images::Given;
 use super::objects::{Kernel, Texture, Uniforms};
-use crate::abi::contract::*;
 use crate::abi::failure::{Failure, Outcome};
 use ash::vk;
 use isophote::engine::program::{Format, Grid, Program, Role};
+use isophote_abi::*;
 use std::sync::Arc;
 
 /// An image of the program.

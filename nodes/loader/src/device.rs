@@ -1,9 +1,9 @@
 //! Graphics devices of the library's own, for verbs that have none themselves.
 
-use super::contract::{IsophoteApi, IsophoteDevice, IsophoteStatus};
+use super::error::{Result, check};
 use super::library::Library;
-use super::refusal::{Answer, check};
 use super::text;
+use isophote_abi::{IsophoteApi, IsophoteDevice, IsophoteStatus};
 
 /// A graphics device of the library's own. Graphs on several threads may share it.
 #[derive(Debug)]
@@ -17,8 +17,8 @@ impl Library {
     /// name; the best there is without.
     ///
     /// # Errors
-    /// [`super::Refusal`] when there is none.
-    pub fn device(&self, adapter: Option<&str>) -> Answer<Device> {
+    /// [`Error`](crate::Error) when there is none.
+    pub fn device(&self, adapter: Option<&str>) -> Result<Device> {
         let adapter = adapter.map(text::argument).transpose()?;
         let mut handle = Default::default();
         let (status, message) = text::message(|error| {
@@ -35,8 +35,8 @@ impl Device {
     /// Name of the adapter.
     ///
     /// # Errors
-    /// [`super::Refusal`] when the device is gone.
-    pub fn name(&self) -> Answer<String> {
+    /// [`Error`](crate::Error) when the device is gone.
+    pub fn name(&self) -> Result<String> {
         let null = std::ptr::null_mut();
         // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
         let (status, name) = text::whole(|out| unsafe { (self.api.device_name)(self.handle, out, null) });
@@ -44,7 +44,7 @@ impl Device {
         Ok(name)
     }
 
-    pub(super) fn check(&self, status: IsophoteStatus) -> Answer<()> {
+    pub(super) fn check(&self, status: IsophoteStatus) -> Result<()> {
         check(status, || {
             // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
             text::message(|out| unsafe { (self.api.device_error)(self.handle, out) }).1

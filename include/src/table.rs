@@ -276,3 +276,10 @@ pub struct IsophoteApi {
     /// valid for the life of the process. Null for names that this library does not know, an empty one and null.
     pub extension: unsafe extern "C" fn(id: *const c_char) -> *const c_void,
 }
+
+// SAFETY: a table and the texts that it points to are constant, and its functions say themselves who may call them.
+#[allow(unsafe_code, reason = "the table holds pointers to text, which nobody writes")]
+unsafe impl Sync for IsophoteApi {}
+// SAFETY: as above.
+#[allow(unsafe_code, reason = "as above")]
+unsafe impl Send for IsophoteApi {}

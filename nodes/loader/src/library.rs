@@ -2,14 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::contract::{IsophoteApi, IsophoteRequest, IsophoteStatus};
-use super::refusal::{Answer, check};
+use super::error::{Result, check};
 use super::{open, text};
-use crate::error::Result;
-
-// SAFETY: the table and its texts are constant for as long as the library is open, which is never closed; its
-// functions may be called on any thread, with a handle on one at a time, which the types that own handles see to.
-unsafe impl Sync for IsophoteApi {}
+use isophote_abi::{IsophoteApi, IsophoteRequest, IsophoteStatus};
 
 /// The library, open until the process ends.
 #[derive(Clone, Debug)]
@@ -24,7 +19,7 @@ impl Library {
     /// looks.
     ///
     /// # Errors
-    /// [`crate::error::Error::Failure`] when it is missing, is not a dynamic library, is not Isophote, or is of another ABI
+    /// [`Error::Load`](crate::Error::Load) when it is missing, is not a dynamic library, is not Isophote, or is of another ABI
     /// version.
     pub fn open() -> Result<Self> {
         let (api, path) = open::find()?;
@@ -50,11 +45,21 @@ impl Library {
         unsafe { text::constant(self.api.version) }
     }
 
+    /// Ends worker threads that are idle and gives back memory kept for later calls.
+    ///
+    /// # Errors
+    /// [`Error`](crate::Error) when the library fails.
+    pub fn trim(&self) -> Result<()> {
+        // SAFETY: takes nothing, and may be called at any time.
+        let status = unsafe { (self.api.trim)() };
+        check(status, || status_name(self.api, status).to_owned())
+    }
+
     /// A request for a whole picture: full scale, sRGB, premultiplied alpha, no guides.
     ///
     /// # Errors
-    /// [`Refusal`](super::refusal::Refusal) for impossible sizes.
-    pub fn request(&self, size: (u32, u32)) -> Answer<IsophoteRequest> {
+    /// [`Error`](crate::Error) for impossible sizes.
+    pub fn request(&self, size: (u32, u32)) -> Result<IsophoteRequest> {
         let mut request = IsophoteRequest {
             width: 0,
             height: 0,

@@ -3,13 +3,13 @@
 use std::cell::Cell;
 use std::marker::PhantomData;
 
-use super::contract::{
+use super::error::{Error, Result, check};
+use super::graph::Graph;
+use super::text;
+use isophote_abi::{
     self as c, IsophoteApi, IsophotePass, IsophotePlan, IsophoteRequest, IsophoteStatus, IsophoteText,
     IsophoteTexture,
 };
-use super::graph::Graph;
-use super::refusal::{Answer, Refusal, check};
-use super::text;
 
 /// The passes that compute what a graph gives, for one request. One thread at a time may use it.
 #[derive(Debug)]
@@ -110,8 +110,8 @@ impl Graph {
     /// Plans the whole picture of `request`.
     ///
     /// # Errors
-    /// [`Refusal`] when an input that is needed is open, or the size is impossible.
-    pub fn plan(&self, request: &IsophoteRequest) -> Answer<Plan> {
+    /// [`Error`] when an input that is needed is open, or the size is impossible.
+    pub fn plan(&self, request: &IsophoteRequest) -> Result<Plan> {
         Plan::made(self.api, |error, plan| {
             // SAFETY: the handle is the graph's; the request is read and the others written during the call.
             unsafe { (self.api.plan_create)(self.handle, request, std::ptr::null(), error, plan) }
@@ -124,7 +124,7 @@ impl Plan {
     pub(super) fn made(
         api: &'static IsophoteApi,
         create: impl FnOnce(*mut IsophoteText, *mut IsophotePlan) -> IsophoteStatus,
-    ) -> Answer<Self> {
+    ) -> Result<Self> {
         let mut handle = Default::default();
         let (status, message) = text::message(|error| create(error, &raw mut handle));
         check(status, || message)?;
@@ -134,8 +134,8 @@ impl Plan {
     /// Takes over the parameters that `graph` has now, and what `request` of the same size asks for.
     ///
     /// # Errors
-    /// [`Refusal`] as [`Graph::plan`]; the plan is then as before.
-    pub fn update(&mut self, graph: &Graph, request: &IsophoteRequest) -> Answer<Change> {
+    /// [`Error`] as [`Graph::plan`]; the plan is then as before.
+    pub fn update(&mut self, graph: &Graph, request: &IsophoteRequest) -> Result<Change> {
         let mut change = 0;
         // SAFETY: both handles are their objects'; the request may be read and `change` written during the call.
         let status = unsafe { (self.api.plan_update)(self.handle, graph.handle, request, &raw mut change) };
@@ -146,8 +146,8 @@ impl Plan {
     /// All textures; passes name them by their index.
     ///
     /// # Errors
-    /// [`Refusal`] when the library fails or a texture is not of a form that the contract names.
-    pub fn textures(&self) -> Answer<Vec<Texture<'_>>> {
+    /// [`Error`] when the library fails or a texture is not of a form that the contract names.
+    pub fn textures(&self) -> Result<Vec<Texture<'_>>> {
         let (mut textures, mut count) = (std::ptr::null(), 0);
         // SAFETY: the handle is this object's; the other two may be written during the call.
         let status = unsafe { (self.api.plan_textures)(self.handle, &raw mut textures, &raw mut count) };
@@ -161,8 +161,8 @@ impl Plan {
     /// All passes in the order of execution. Nothing is allocated.
     ///
     /// # Errors
-    /// [`Refusal`] when the library fails.
-    pub fn passes(&self) -> Answer<impl ExactSizeIterator<Item = Pass<'_>>> {
+    /// [`Error`] when the library fails.
+    pub fn passes(&self) -> Result<impl ExactSizeIterator<Item = Pass<'_>>> {
         let (mut passes, mut count) = (std::ptr::null(), 0);
         // SAFETY: the handle is this object's; the other two may be written during the call.
         let status = unsafe { (self.api.plan_passes)(self.handle, &raw mut passes, &raw mut count) };
@@ -176,8 +176,8 @@ impl Plan {
     /// The shader of a pass.
     ///
     /// # Errors
-    /// [`Refusal`] when there is no such pass or the library fails.
-    pub fn wgsl(&self, pass: u32) -> Answer<Wgsl> {
+    /// [`Error`] when there is no such pass or the library fails.
+    pub fn wgsl(&self, pass: u32) -> Result<Wgsl> {
         let mut shader = std::ptr::null();
         // SAFETY: the handle is this object's; `shader` may be written during the call.
         let status =
@@ -192,7 +192,7 @@ impl Plan {
         Ok(Wgsl { source, entry_point, sampler: sampler.map(|bound| bound.binding) })
     }
 
-    fn check(&self, status: IsophoteStatus) -> Answer<()> {
+    fn check(&self, status: IsophoteStatus) -> Result<()> {
         check(status, || {
             // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
             text::message(|out| unsafe { (self.api.plan_error)(self.handle, out) }).1
@@ -210,7 +210,7 @@ impl Drop for Plan {
 
 /// # Safety
 /// The texture's name is null or text that ends with a zero and stays for `'a`.
-unsafe fn texture<'a>(texture: &IsophoteTexture) -> Answer<Texture<'a>> {
+unsafe fn texture<'a>(texture: &IsophoteTexture) -> Result<Texture<'a>> {
     Ok(Texture {
         // SAFETY: as the caller promised.
         name: unsafe { text::kept(texture.name) },
@@ -248,8 +248,8 @@ unsafe fn pass<'a>(pass: &IsophotePass) -> Pass<'a> {
 }
 
 /// A plan that the library should not have given.
-fn malformed(message: String) -> Refusal {
-    Refusal {
+fn malformed(message: String) -> Error {
+    Error::Call {
         status: c::ISOPHOTE_ERROR_INTERNAL,
         message: format!("the library's plan cannot be run: {message}"),
     }

@@ -2,10 +2,10 @@
 
 use std::ffi::{CStr, CString, c_char};
 
-use super::contract::{
+use super::error::{Error, Result};
+use isophote_abi::{
     ISOPHOTE_ERROR_INVALID_ARGUMENT, ISOPHOTE_ERROR_TRUNCATED, ISOPHOTE_OK, IsophoteStatus, IsophoteText,
 };
-use super::refusal::{Answer, Refusal};
 
 /// Room for a message; longer ones are cut.
 const ROOM: usize = 2048;
@@ -62,9 +62,9 @@ pub fn whole(mut write: impl FnMut(*mut IsophoteText) -> IsophoteStatus) -> (Iso
 /// Text as an argument.
 ///
 /// # Errors
-/// [`Refusal`] when the text holds a zero, which would end it early.
-pub fn argument(text: &str) -> Answer<CString> {
-    CString::new(text).map_err(|_| Refusal {
+/// [`Error`] when the text holds a zero, which would end it early.
+pub fn argument(text: &str) -> Result<CString> {
+    CString::new(text).map_err(|_| Error::Call {
         status: ISOPHOTE_ERROR_INVALID_ARGUMENT,
         message: format!("'{}' holds a zero character", text.replace('\0', "\\0")),
     })

@@ -4,18 +4,18 @@ use std::cell::Cell;
 use std::ffi::{CStr, c_char, c_void};
 use std::marker::PhantomData;
 
-use super::contract::{
-    self as c, IsophoteDevice, IsophoteFrames, IsophoteHistory, IsophoteImage, IsophoteReport,
-    IsophoteRequest, IsophoteSequence, IsophoteSequenceApi,
-};
 use super::device::Device;
-use super::graph::Graph;
+use super::error::{Error, Result, check};
+use super::graph::{Graph, GraphHandle};
+use super::image::{AsImage, AsTarget};
 use super::library::Library;
 use super::plan::Plan;
 use super::process::{self, Control, Report};
-use super::refusal::{Answer, Refusal, check};
 use super::text;
-use crate::pixels::Pixels;
+use isophote_abi::{
+    self as c, IsophoteDevice, IsophoteFrames, IsophoteHistory, IsophoteImage, IsophoteReport,
+    IsophoteRequest, IsophoteSequence, IsophoteSequenceApi, IsophoteStatus,
+};
 
 /// Name of the extension.
 const EXTENSION: &CStr = c"isophote.sequence/1";
@@ -28,14 +28,19 @@ pub struct Sequence {
     one_thread: PhantomData<Cell<()>>,
 }
 
-/// Gives the image that an input, such as `color` or `motion`, shows in a frame; none where there is none.
-pub type Footage<'a> = &'a dyn Fn(&str, i64) -> Option<&'a Pixels>;
+/// Images of frames during one call.
+struct Frames<'a, P> {
+    /// Gives the image that an input shows in a frame.
+    image: &'a mut dyn FnMut(&str, i64) -> Option<P>,
+    /// Images that the library has not released. They are boxed, since their own place must stay, too.
+    lent: Vec<Box<P>>,
+}
 
 impl Library {
-    fn sequences(&self) -> Answer<&'static IsophoteSequenceApi> {
+    fn sequences(&self) -> Result<&'static IsophoteSequenceApi> {
         // SAFETY: the name ends with a zero.
         let table = unsafe { (self.api.extension)(EXTENSION.as_ptr()) }.cast::<IsophoteSequenceApi>();
-        let missing = || Refusal {
+        let missing = || Error::Call {
             status: c::ISOPHOTE_ERROR_UNSUPPORTED,
             message: "this library knows nothing of sequences".into(),
         };
@@ -52,8 +57,8 @@ impl Library {
     /// A sequence of which stages are kept in at most `memory` bytes.
     ///
     /// # Errors
-    /// [`Refusal`] when the library has no sequences, or `max_motion`, in pixels, is out of range; 0 is the library's own.
-    pub fn sequence(&self, memory: u64, max_motion: f32) -> Answer<Sequence> {
+    /// [`Error`] when the library has no sequences, or `max_motion`, in pixels, is out of range; 0 is the library's own.
+    pub fn sequence(&self, memory: u64, max_motion: f32) -> Result<Sequence> {
         let table = self.sequences()?;
         let mut handle = Default::default();
         let (status, message) = text::message(|error| {
@@ -67,8 +72,8 @@ impl Library {
     /// Frames before and after its own that a frame of `graph` depends on.
     ///
     /// # Errors
-    /// [`Refusal`] when the graph has no output.
-    pub fn frames(&self, graph: &Graph) -> Answer<[u32; 2]> {
+    /// [`Error`] when the graph has no output.
+    pub fn frames(&self, graph: &Graph) -> Result<[u32; 2]> {
         let table = self.sequences()?;
         let [mut past, mut future] = [0; 2];
         // SAFETY: the handle is the graph's; both places may be written.
@@ -80,13 +85,13 @@ impl Library {
     /// Plans the whole picture of `request` where so many frames before it are known.
     ///
     /// # Errors
-    /// [`Refusal`] when an input that is needed is open, or the size is impossible.
+    /// [`Error`] when an input that is needed is open, or the size is impossible.
     pub fn plan_in_order(
         &self,
         graph: &Graph,
         request: &IsophoteRequest,
         history: &IsophoteHistory,
-    ) -> Answer<Plan> {
+    ) -> Result<Plan> {
         let table = self.sequences()?;
         Plan::made(self.api, |error, plan| {
             // SAFETY: the handle is the graph's; request and history are read and the others written during the call.
@@ -96,34 +101,38 @@ impl Library {
 }
 
 impl Sequence {
-    /// Computes a frame into `target`, on `device` or else on the CPU.
+    /// Computes a frame of a graph into `target`, on `device` or else on the CPU. `image` gives the image that an input,
+    /// such as `color` or `motion`, shows in a frame, and nothing where there is none; it is called on this thread and
+    /// must not use the sequence.
     ///
     /// # Errors
-    /// [`Refusal`] when an image is missing or has another size than the request, and when the device fails; `target` is
+    /// [`Error`] when an image is missing or has another size than the request, and when the device fails; `target` is
     /// then as before.
-    pub fn process(
+    pub fn process<P: AsImage>(
         &mut self,
-        graph: &mut Graph,
+        graph: GraphHandle,
         device: Option<&Device>,
         request: &IsophoteRequest,
-        footage: Footage<'_>,
-        target: &mut Pixels,
+        image: &mut dyn FnMut(&str, i64) -> Option<P>,
+        target: &mut dyn AsTarget,
         control: &mut Control<'_>,
-    ) -> Answer<Report> {
+    ) -> Result<Report> {
+        let mut source = Frames { image, lent: Vec::new() };
         let frames = IsophoteFrames {
-            user: (&raw const footage).cast_mut().cast(),
-            input: Some(input),
-            release: None,
+            user: (&raw mut source).cast(),
+            input: Some(input::<P>),
+            release: Some(release::<P>),
         };
-        let target = process::target(target);
+        let target = target.target().raw;
         let control = process::control(control);
         let mut report = IsophoteReport::default();
-        // SAFETY: the handles are their objects'. The function gets `footage`, borrowed for the whole call, whose images are
-        // borrowed for longer; target and control are as for `Graph::process`.
+        // SAFETY: the sequence's handle is this object's, and a graph's is refused where it is wrong. The functions get
+        // `source`, which lives as long as the call and keeps images until they are released; target and control are as for
+        // `Graph::process`.
         let status = unsafe {
             (self.table.process)(
                 self.handle,
-                graph.handle,
+                graph.0,
                 device.map_or_else(IsophoteDevice::default, |d| d.handle),
                 request,
                 &raw const frames,
@@ -133,11 +142,25 @@ impl Sequence {
                 &raw mut report,
             )
         };
+        self.check(status)?;
+        Ok(report.into())
+    }
+
+    /// Gives back the memory of all stages.
+    ///
+    /// # Errors
+    /// [`Error`] when the library fails.
+    pub fn forget(&mut self) -> Result<()> {
+        // SAFETY: the handle is this object's.
+        let status = unsafe { (self.table.forget)(self.handle) };
+        self.check(status)
+    }
+
+    fn check(&self, status: IsophoteStatus) -> Result<()> {
         check(status, || {
             // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
             text::message(|out| unsafe { (self.table.error)(self.handle, out) }).1
-        })?;
-        Ok(Report { replaced: report.replaced, seconds: report.seconds })
+        })
     }
 }
 
@@ -150,22 +173,33 @@ impl Drop for Sequence {
 }
 
 /// Called on the thread that called `process`, while it does not return.
-unsafe extern "C" fn input(
+unsafe extern "C" fn input<P: AsImage>(
     user: *mut c_void,
     name: *const c_char,
     frame: i64,
     out: *mut IsophoteImage,
 ) -> i32 {
-    // SAFETY: `user` is the footage of the running call, `name` ends with a zero and lives during this call, and `out` may
-    // be written.
-    unsafe {
-        let footage = *user.cast::<Footage<'_>>();
-        match footage(text::kept(name), frame) {
-            Some(pixels) => {
-                out.write(process::image(pixels));
-                1
-            }
-            None => 0,
-        }
+    // SAFETY: `user` is the source of the running call, which this thread alone touches; `name` ends with a zero and lives
+    // during this call.
+    let (source, name) = unsafe { (&mut *user.cast::<Frames<'_, P>>(), text::kept(name)) };
+    let Some(pixels) = (source.image)(name, frame) else { return 0 };
+    let pixels = Box::new(pixels);
+    // SAFETY: `out` may be written.
+    unsafe { out.write(pixels.image().raw) };
+    source.lent.push(pixels);
+    1
+}
+
+/// Called on the same thread when an image was copied.
+unsafe extern "C" fn release<P: AsImage>(
+    user: *mut c_void,
+    _: *const c_char,
+    _: i64,
+    image: *const IsophoteImage,
+) {
+    // SAFETY: as in `input`; the library hands back the image that it was given.
+    let (source, data) = unsafe { (&mut *user.cast::<Frames<'_, P>>(), (*image).data) };
+    if let Some(at) = source.lent.iter().position(|lent| lent.image().raw.data == data) {
+        source.lent.swap_remove(at);
     }
 }

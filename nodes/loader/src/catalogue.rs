@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::contract::{self as c, IsophoteNode, IsophoteParam, IsophotePort};
+use super::error::{Result, check};
 use super::library::{Library, status_name};
-use super::refusal::{Answer, check};
 use super::text;
+use isophote_abi::{self as c, IsophoteNode, IsophoteParam, IsophotePort};
 
 /// All nodes of the library.
 #[derive(Clone, Debug, Serialize)]
@@ -191,8 +191,8 @@ impl Library {
     /// All nodes.
     ///
     /// # Errors
-    /// [`super::Refusal`] when the library fails.
-    pub fn catalogue(&self) -> Answer<Catalogue> {
+    /// [`Error`](crate::Error) when the library fails.
+    pub fn catalogue(&self) -> Result<Catalogue> {
         let mut catalogue = c::IsophoteCatalogue { nodes: std::ptr::null(), node_count: 0 };
         // SAFETY: `catalogue` may be written during the call.
         let status = unsafe { (self.api.catalogue)(&raw mut catalogue) };
@@ -206,8 +206,8 @@ impl Library {
     /// The node of an id.
     ///
     /// # Errors
-    /// [`super::Refusal`] when there is none, naming the nearest.
-    pub fn find_node(&self, id: &str) -> Answer<Node> {
+    /// [`Error`](crate::Error) when there is none, naming the nearest.
+    pub fn find_node(&self, id: &str) -> Result<Node> {
         let id = text::argument(id)?;
         let mut found = std::ptr::null();
         let (status, message) = text::message(|error| {

@@ -1,13 +1,14 @@
 //! The contract of Isophote's dynamic library, declared once.
 //!
-//! `include/isophote.h` is generated from these files (`cargo xtask header`); a host in Rust takes
-//! them as they are, `#[path = ".../include/rust/mod.rs"] mod isophote;`. They hold declarations only
-//! and depend on nothing but `core`.
+//! `include/isophote.h` is generated from these files (`cargo xtask header`). They hold declarations only and depend on
+//! nothing but `core`. A host in Rust has safe types over them in `isophote-loader`. [`openfx`] declares the part of the
+//! OpenFX standard that the library speaks.
 //!
 //! Everything is plain data of fixed layout. What comes from outside is never a Rust enum, reference
 //! or `bool`, so that a wrong value is an error and not undefined behaviour.
 
 pub mod constants;
+pub mod openfx;
 pub mod precision;
 pub mod sequences;
 pub mod table;

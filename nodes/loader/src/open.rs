@@ -6,8 +6,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::contract::{ISOPHOTE_ABI_VERSION, IsophoteApi, IsophoteEntry};
-use crate::error::{Error, Result};
+use super::error::{Error, Result};
+use isophote_abi::{ISOPHOTE_ABI_VERSION, IsophoteApi, IsophoteEntry};
 
 /// Environment variable that names the library's file.
 const VARIABLE: &str = "ISOPHOTE_LIBRARY";
@@ -16,14 +16,19 @@ const VARIABLE: &str = "ISOPHOTE_LIBRARY";
 const FIX: &str = "copy the archive's folder lib beside its folder bin (in the sources: cargo build --workspace), or set \
                    ISOPHOTE_LIBRARY to the library's file";
 
+/// An error of loading, which most users mend in one way.
+fn failure(problem: String) -> Error {
+    Error::Load { problem, fix: FIX }
+}
+
 /// The table of the library, and the file it came from.
 pub fn find() -> Result<(&'static IsophoteApi, PathBuf)> {
     if let Some(path) = env::var_os(VARIABLE).filter(|v| !v.is_empty()).map(PathBuf::from) {
         if !path.is_file() {
-            return Err(Error::failure(
-                format!("the library '{}' named by {VARIABLE} does not exist", path.display()),
-                FIX,
-            ));
+            return Err(failure(format!(
+                "the library '{}' named by {VARIABLE} does not exist",
+                path.display()
+            )));
         }
         return Ok((open(&path)?, path));
     }
@@ -35,13 +40,10 @@ pub fn find() -> Result<(&'static IsophoteApi, PathBuf)> {
     }
     let library = load(name.as_ref()).map_err(|_| {
         let places = beside.map_or_else(String::new, |f| format!("in '{}', ", f.display()));
-        Error::failure(
-            format!(
-                "the library {} was not found {places}in ../lib or among the system's",
-                Path::new(&name).display()
-            ),
-            FIX,
-        )
+        failure(format!(
+            "the library {} was not found {places}in ../lib or among the system's",
+            Path::new(&name).display()
+        ))
     })?;
     let path = PathBuf::from(name);
     Ok((table(library, &path)?, path))
@@ -52,16 +54,13 @@ pub fn open(path: &Path) -> Result<&'static IsophoteApi> {
     // A bare name would be looked for among the system's libraries instead.
     let absolute = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     if is_cut(&absolute) {
-        return Err(Error::failure(
-            format!("'{}' cannot be loaded as a dynamic library: it is cut short", path.display()),
-            FIX,
-        ));
+        return Err(failure(format!(
+            "'{}' cannot be loaded as a dynamic library: it is cut short",
+            path.display()
+        )));
     }
     let library = load(absolute.as_os_str()).map_err(|e| {
-        Error::failure(
-            format!("'{}' cannot be loaded as a dynamic library: {}", path.display(), reason(&e)),
-            FIX,
-        )
+        failure(format!("'{}' cannot be loaded as a dynamic library: {}", path.display(), reason(&e)))
     })?;
     table(library, path)
 }
@@ -98,21 +97,16 @@ fn table(library: libloading::Library, path: &Path) -> Result<&'static IsophoteA
     // SAFETY: the contract gives the symbol this type; no other library has a reason to bear it.
     let entry = unsafe { library.get::<IsophoteEntry>(b"isophote_api\0") };
     let Some(entry) = entry.ok().and_then(|symbol| *symbol) else {
-        return Err(Error::failure(
-            format!(
-                "'{}' is a dynamic library, but not Isophote: it has no function isophote_api",
-                path.display()
-            ),
-            FIX,
-        ));
+        return Err(failure(format!(
+            "'{}' is a dynamic library, but not Isophote: it has no function isophote_api",
+            path.display()
+        )));
     };
     // SAFETY: the symbol is the library's entry, which takes any number.
     let api = unsafe { entry(ISOPHOTE_ABI_VERSION) };
-    let other = |found: String| {
-        Error::failure(
-            format!("'{}' {found}; this program needs version {ISOPHOTE_ABI_VERSION}", path.display()),
-            "use the library and the program of one release",
-        )
+    let other = |found: String| Error::Load {
+        problem: format!("'{}' {found}; this program needs version {ISOPHOTE_ABI_VERSION}", path.display()),
+        fix: "use the library and the program of one release",
     };
     if api.is_null() {
         return Err(other(format!("has no ABI version {ISOPHOTE_ABI_VERSION}")));

@@ -2,23 +2,23 @@
 
 use std::ffi::c_void;
 
-use super::contract::{
-    self as c, IsophoteControl, IsophoteDevice, IsophoteImage, IsophoteInput, IsophotePassTime, IsophoteRect,
-    IsophoteReport, IsophoteRequest, IsophoteSample, IsophoteSupport, IsophoteTarget,
-};
 use super::device::Device;
+use super::error::Result;
 use super::graph::Graph;
-use super::refusal::Answer;
+use super::image::{AsImage, AsTarget};
 use super::text;
-use crate::pixels::{Pixels, Precision};
+use isophote_abi::{
+    IsophoteControl, IsophoteDevice, IsophoteImage, IsophoteInput, IsophotePassTime, IsophoteRect,
+    IsophoteReport, IsophoteRequest, IsophoteSupport, IsophoteTarget,
+};
 
 /// An image that enters a graph: the whole picture.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct Input<'a> {
     /// `color`, `normal`, `depth` and so on.
     pub name: &'a str,
     /// The pixels.
-    pub pixels: &'a Pixels,
+    pub pixels: &'a dyn AsImage,
 }
 
 /// How the work is done and watched.
@@ -65,16 +65,16 @@ impl Graph {
     /// Computes the whole picture into `target`, on `device` or else on the CPU.
     ///
     /// # Errors
-    /// [`super::Refusal`] when an image is missing or has another size than the request, and when the device
+    /// [`Error`](crate::Error) when an image is missing or has another size than the request, and when the device
     /// fails; `target` is then as before.
     pub fn process(
         &mut self,
         device: Option<&Device>,
         request: &IsophoteRequest,
         inputs: &[Input<'_>],
-        target: &mut Pixels,
+        target: &mut dyn AsTarget,
         control: &mut Control<'_>,
-    ) -> Answer<Report> {
+    ) -> Result<Report> {
         let handle = device.map_or_else(IsophoteDevice::default, |d| d.handle);
         self.run(handle, request, (inputs, [0; 2]), None, target, control)
     }
@@ -90,17 +90,17 @@ impl Graph {
         inputs: &[Input<'_>],
         origin: [i32; 2],
         part: Part,
-        target: &mut Pixels,
+        target: &mut dyn AsTarget,
         control: &mut Control<'_>,
-    ) -> Answer<Report> {
+    ) -> Result<Report> {
         self.run(IsophoteDevice::default(), request, (inputs, origin), Some(part), target, control)
     }
 
     /// The part of its inputs that a part of the result reads, cut at the picture's border.
     ///
     /// # Errors
-    /// [`super::Refusal`] when the request cannot be planned.
-    pub fn support(&self, request: &IsophoteRequest, part: Part) -> Answer<Part> {
+    /// [`Error`](crate::Error) when the request cannot be planned.
+    pub fn support(&self, request: &IsophoteRequest, part: Part) -> Result<Part> {
         let region = rect(part);
         let mut support = IsophoteSupport::default();
         // SAFETY: the handle is this object's; request and region are read and `support` is written during the call.
@@ -124,9 +124,9 @@ impl Graph {
         request: &IsophoteRequest,
         (inputs, [x, y]): (&[Input<'_>], [i32; 2]),
         part: Option<Part>,
-        target: &mut Pixels,
+        target: &mut dyn AsTarget,
         control: &mut Control<'_>,
-    ) -> Answer<Report> {
+    ) -> Result<Report> {
         let mut names = Vec::with_capacity(inputs.len());
         for input in inputs {
             names.push(text::argument(input.name)?);
@@ -135,17 +135,17 @@ impl Graph {
             .iter()
             .zip(inputs)
             .map(|(name, input)| {
-                let image = IsophoteImage { x, y, ..image(input.pixels) };
+                let image = IsophoteImage { x, y, ..input.pixels.image().raw };
                 IsophoteInput { name: name.as_ptr(), image }
             })
             .collect();
         let region = part.map(rect);
         let [left, top] = part.map_or([0; 2], |[first, _]| first);
-        let target = IsophoteTarget { x: left, y: top, ..self::target(target) };
+        let target = IsophoteTarget { x: left, y: top, ..target.target().raw };
         let control = self::control(control);
         let mut report = IsophoteReport::default();
         // SAFETY: the handles are their objects'. Images and target describe memory that is borrowed for the
-        // whole call, with strides and sizes that `Pixels` vouches for; the region, if there is one, lives as long. The
+        // whole call, with strides and sizes that `Image` and `Target` vouch for; the region, if there is one, lives as long. The
         // callbacks get the caller's control, borrowed for the call too.
         let status = unsafe {
             (self.api.process)(
@@ -161,7 +161,13 @@ impl Graph {
             )
         };
         self.check(status)?;
-        Ok(Report { replaced: report.replaced, seconds: report.seconds })
+        Ok(report.into())
+    }
+}
+
+impl From<IsophoteReport> for Report {
+    fn from(report: IsophoteReport) -> Self {
+        Self { replaced: report.replaced, seconds: report.seconds }
     }
 }
 
@@ -217,43 +223,4 @@ unsafe extern "C" fn measured(user: *mut c_void, pass: *const IsophotePassTime) 
 
 fn rect([[x0, y0], [x1, y1]]: Part) -> IsophoteRect {
     IsophoteRect { x0, y0, x1, y1 }
-}
-
-fn sample(precision: Precision) -> IsophoteSample {
-    match precision {
-        Precision::U8 => c::ISOPHOTE_SAMPLE_U8,
-        Precision::U16 => c::ISOPHOTE_SAMPLE_U16,
-        Precision::F16 => c::ISOPHOTE_SAMPLE_F16,
-        Precision::F32 => c::ISOPHOTE_SAMPLE_F32,
-    }
-}
-
-fn row_stride(pixels: &Pixels) -> isize {
-    (pixels.width() as usize * pixels.channels() as usize * pixels.precision().bytes()) as isize
-}
-
-pub(super) fn image(pixels: &Pixels) -> IsophoteImage {
-    IsophoteImage {
-        data: pixels.bytes().as_ptr().cast(),
-        row_stride: row_stride(pixels),
-        sample: sample(pixels.precision()),
-        channels: pixels.channels(),
-        width: pixels.width(),
-        height: pixels.height(),
-        x: 0,
-        y: 0,
-    }
-}
-
-pub(super) fn target(pixels: &mut Pixels) -> IsophoteTarget {
-    IsophoteTarget {
-        row_stride: row_stride(pixels),
-        sample: sample(pixels.precision()),
-        channels: pixels.channels(),
-        width: pixels.width(),
-        height: pixels.height(),
-        x: 0,
-        y: 0,
-        data: pixels.bytes_mut().as_mut_ptr().cast(),
-    }
 }

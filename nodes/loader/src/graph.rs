@@ -5,13 +5,13 @@ use std::ffi::CStr;
 use std::marker::PhantomData;
 
 use super::catalogue::{self, Kind, Node};
-use super::contract::{
+use super::error::{Error, Result, check};
+use super::library::Library;
+use super::text;
+use isophote_abi::{
     ISOPHOTE_ERROR_UNSUPPORTED, IsophoteApi, IsophoteGraph, IsophotePrecision, IsophotePrecisionApi,
     IsophoteStatus, IsophoteText,
 };
-use super::library::Library;
-use super::refusal::{Answer, Refusal, check};
-use super::text;
 
 /// Name of the extension for precision.
 const PRECISION: &CStr = c"isophote.precision/1";
@@ -26,12 +26,16 @@ pub struct Graph {
     one_thread: PhantomData<Cell<()>>,
 }
 
+/// The number of a graph, which other threads may hold. The library refuses it once the graph is gone.
+#[derive(Clone, Copy, Debug)]
+pub struct GraphHandle(pub(super) IsophoteGraph);
+
 impl Library {
     /// A graph of one node whose inputs are the pictures of the same name.
     ///
     /// # Errors
-    /// [`super::Refusal`] when there is no such node, naming the nearest.
-    pub fn single(&self, node: &str) -> Answer<Graph> {
+    /// [`Error`](crate::Error) when there is no such node, naming the nearest.
+    pub fn single(&self, node: &str) -> Result<Graph> {
         let node = text::argument(node)?;
         self.graph(|error, graph| {
             // SAFETY: the id ends with a zero; the other two may be written during the call.
@@ -42,8 +46,8 @@ impl Library {
     /// The graph that a JSON text describes.
     ///
     /// # Errors
-    /// [`super::Refusal`] saying what is wrong with it and where.
-    pub fn graph_from_json(&self, json: &str) -> Answer<Graph> {
+    /// [`Error`](crate::Error) saying what is wrong with it and where.
+    pub fn graph_from_json(&self, json: &str) -> Result<Graph> {
         let json = text::argument(json)?;
         self.graph(|error, graph| {
             // SAFETY: the text ends with a zero; the other two may be written during the call.
@@ -54,7 +58,7 @@ impl Library {
     fn graph(
         &self,
         create: impl FnOnce(*mut IsophoteText, *mut IsophoteGraph) -> IsophoteStatus,
-    ) -> Answer<Graph> {
+    ) -> Result<Graph> {
         let mut handle = Default::default();
         let (status, message) = text::message(|error| create(error, &raw mut handle));
         check(status, || message)?;
@@ -66,8 +70,8 @@ impl Graph {
     /// Adds a node under a name of its own, and returns its index.
     ///
     /// # Errors
-    /// [`super::Refusal`] when there is no such node, or the name is taken.
-    pub fn add(&mut self, name: &str, node: &str) -> Answer<u32> {
+    /// [`Error`](crate::Error) when there is no such node, or the name is taken.
+    pub fn add(&mut self, name: &str, node: &str) -> Result<u32> {
         let (name, node) = (text::argument(name)?, text::argument(node)?);
         let mut index = 0;
         // SAFETY: the handle is this object's, both texts end with a zero, `index` may be written.
@@ -80,8 +84,8 @@ impl Graph {
     /// Connects the output of node `from` to an input of node `to`.
     ///
     /// # Errors
-    /// [`super::Refusal`] when there is no such node or input, or the two do not fit.
-    pub fn connect(&mut self, from: u32, to: u32, port: &str) -> Answer<()> {
+    /// [`Error`](crate::Error) when there is no such node or input, or the two do not fit.
+    pub fn connect(&mut self, from: u32, to: u32, port: &str) -> Result<()> {
         let port = text::argument(port)?;
         // SAFETY: the handle is this object's, and the text ends with a zero.
         let status = unsafe { (self.api.graph_connect)(self.handle, from, to, port.as_ptr()) };
@@ -91,13 +95,18 @@ impl Graph {
     /// Connects a picture that enters the graph to the input of node `to` that bears its name.
     ///
     /// # Errors
-    /// [`super::Refusal`] when there is no such picture, node or input.
-    pub fn connect_input(&mut self, input: &str, to: u32) -> Answer<()> {
+    /// [`Error`](crate::Error) when there is no such picture, node or input.
+    pub fn connect_input(&mut self, input: &str, to: u32) -> Result<()> {
         let input = text::argument(input)?;
         // SAFETY: the handle is this object's, and the text ends with a zero.
         let status =
             unsafe { (self.api.graph_connect_input)(self.handle, input.as_ptr(), to, input.as_ptr()) };
         self.check(status)
+    }
+
+    /// Its number.
+    pub const fn handle(&self) -> GraphHandle {
+        GraphHandle(self.handle)
     }
 
     /// Number of nodes, whose indices count from 0.
@@ -111,8 +120,8 @@ impl Graph {
     /// Name of a node within the graph.
     ///
     /// # Errors
-    /// [`super::Refusal`] when there is no such index.
-    pub fn name(&self, node: u32) -> Answer<String> {
+    /// [`Error`](crate::Error) when there is no such index.
+    pub fn name(&self, node: u32) -> Result<String> {
         // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
         let (status, name) = text::whole(|out| unsafe { (self.api.graph_name)(self.handle, node, out) });
         self.check(status)?;
@@ -122,8 +131,8 @@ impl Graph {
     /// What a node says about itself.
     ///
     /// # Errors
-    /// [`super::Refusal`] when there is no such index.
-    pub fn spec(&self, node: u32) -> Answer<Node> {
+    /// [`Error`](crate::Error) when there is no such index.
+    pub fn spec(&self, node: u32) -> Result<Node> {
         let mut spec = std::ptr::null();
         // SAFETY: the handle is this object's; `spec` may be written during the call.
         let status = unsafe { (self.api.graph_spec)(self.handle, node, &raw mut spec) };
@@ -135,12 +144,12 @@ impl Graph {
     /// Sets how precisely graphics devices compute it.
     ///
     /// # Errors
-    /// [`super::Refusal`] when the library computes exactly alone.
-    pub fn set_precision(&self, precision: IsophotePrecision) -> Answer<()> {
+    /// [`Error`](crate::Error) when the library computes exactly alone.
+    pub fn set_precision(&self, precision: IsophotePrecision) -> Result<()> {
         // SAFETY: the name ends with a zero.
         let table = unsafe { (self.api.extension)(PRECISION.as_ptr()) }.cast::<IsophotePrecisionApi>();
         // SAFETY: an extension's struct is constant as long as the library is loaded, which is until the process ends.
-        let table = unsafe { table.as_ref() }.ok_or_else(|| Refusal {
+        let table = unsafe { table.as_ref() }.ok_or_else(|| Error::Call {
             status: ISOPHOTE_ERROR_UNSUPPORTED,
             message: "this library computes exactly alone".into(),
         })?;
@@ -151,8 +160,8 @@ impl Graph {
     /// Sets a parameter from text as a person writes it: `2.5`, `true`, `scharr3`, `#12407b`.
     ///
     /// # Errors
-    /// [`super::Refusal`] when there is no such parameter, or it cannot have this value.
-    pub fn set(&self, node: u32, param: &str, value: &str) -> Answer<()> {
+    /// [`Error`](crate::Error) when there is no such parameter, or it cannot have this value.
+    pub fn set(&self, node: u32, param: &str, value: &str) -> Result<()> {
         let (param, value) = (text::argument(param)?, text::argument(value)?);
         // SAFETY: the handle is this object's; both texts end with a zero.
         let status = unsafe { (self.api.graph_set_text)(self.handle, node, param.as_ptr(), value.as_ptr()) };
@@ -162,8 +171,8 @@ impl Graph {
     /// What leaves the graph.
     ///
     /// # Errors
-    /// [`super::Refusal`] when it has no output.
-    pub fn output_kind(&self) -> Answer<Kind> {
+    /// [`Error`](crate::Error) when it has no output.
+    pub fn output_kind(&self) -> Result<Kind> {
         let mut kind = 0;
         // SAFETY: the handle is this object's; `kind` may be written during the call.
         let status = unsafe { (self.api.graph_output_kind)(self.handle, &raw mut kind) };
@@ -174,15 +183,15 @@ impl Graph {
     /// The graph as JSON.
     ///
     /// # Errors
-    /// [`super::Refusal`] when the library fails.
-    pub fn to_json(&self) -> Answer<String> {
+    /// [`Error`](crate::Error) when the library fails.
+    pub fn to_json(&self) -> Result<String> {
         // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
         let (status, json) = text::whole(|out| unsafe { (self.api.graph_to_json)(self.handle, out) });
         self.check(status)?;
         Ok(json)
     }
 
-    pub(super) fn check(&self, status: IsophoteStatus) -> Answer<()> {
+    pub(super) fn check(&self, status: IsophoteStatus) -> Result<()> {
         check(status, || {
             // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
             text::message(|out| unsafe { (self.api.graph_error)(self.handle, out) }).1

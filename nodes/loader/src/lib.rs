@@ -1,0 +1,44 @@
+//! Safe types over the table of Isophote's dynamic library: finding it, opening it, and calling it.
+//!
+//! This is all that a host in Rust needs of Isophote. Handles become types that destroy what they hold, statuses become
+//! [`Error`]s, pointers become slices and text, and images are whatever implements [`AsImage`]. The declarations are those
+//! of `isophote-abi`.
+//!
+//! ```no_run
+//! # fn main() -> isophote_loader::Result<()> {
+//! let library = isophote_loader::Library::open()?;
+//! let graph = library.single("cartoon")?;
+//! graph.set(0, "detail", "0.4")?;
+//! let plan = graph.plan(&library.request((1920, 1080))?)?;
+//! for pass in plan.passes()? {
+//!     println!("{} in {:?} workgroups", pass.kernel, pass.workgroups);
+//! }
+//! # Ok(())
+//! # }
+//! ```
+
+#![allow(unsafe_code, reason = "foreign functions are called here")]
+
+pub mod catalogue;
+pub mod device;
+mod error;
+pub mod graph;
+mod image;
+mod library;
+mod open;
+pub mod plan;
+pub mod process;
+pub mod sequence;
+mod text;
+
+pub use catalogue::Catalogue;
+pub use device::Device;
+pub use error::{Error, Result};
+pub use graph::{Graph, GraphHandle};
+pub use image::{AsImage, AsTarget, Image, Sample, Target};
+/// The declarations of the library's table.
+pub use isophote_abi as abi;
+pub use library::Library;
+pub use plan::Plan;
+pub use process::{Control, Input, Report};
+pub use sequence::Sequence;
