@@ -11,26 +11,8 @@ use crate::stylize::preset::Preset;
 /// What the names of looks start with; no node has such an id.
 const PREFIX: &str = "look:";
 
-macro_rules! embedded {
-    ($($id:ident)*) => {
-        [$((stringify!($id), include_str!(concat!("../looks/", stringify!($id), ".json")))),*]
-    };
-}
-
-/// Ids and files, in the order in which they are listed.
-const FILES: &[(&str, &str)] = &embedded![
-    saturday_comic clear_line noir_panel cut_paper evening_cel faded_annual
-    soft_gouache palette_knife wild_colour candlelight
-    impasto old_varnish swirling_sky dry_brush grisaille
-    wet_in_wet botanical_plate rough_paper grey_wash pale_memory
-    combed travel_poster enamel silver_print sun_bleached
-    midnight_blueprint drafting_film chalkboard kraft_plan amber_terminal
-    graphite_study red_chalk blue_pencil coloured_pencils
-    copperplate fineliner brush_and_ink sepia_pen
-    willow_charcoal toned_paper stormy_blue
-    woodcut_broadside linocut vermilion_block
-    soft_pastel oil_crayons fresco
-];
+/// Ids and files, in the order in which they are listed: that of `looks/order.txt`, whose lines group looks of one kind.
+const FILES: &[(&str, &str)] = &include!(concat!(env!("OUT_DIR"), "/looks.rs"));
 
 /// A look.
 #[derive(Clone, Debug, PartialEq)]
@@ -119,6 +101,7 @@ mod tests {
         let entries = std::fs::read_dir(folder).expect("the folder is there");
         let mut files: Vec<String> =
             entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+        files.retain(|file| file != "order.txt");
         files.sort();
         let mut known: Vec<String> = FILES.iter().map(|(id, _)| format!("{id}.json")).collect();
         known.sort();

@@ -279,9 +279,10 @@ fn put_beside_the_package(profile: &str) -> Result<()> {
         std::fs::remove_dir_all(&looks).context(|| format!("cannot replace {}", looks.display()))?;
     }
     std::fs::create_dir_all(&looks).context(|| format!("cannot create {}", looks.display()))?;
-    for look in files(&root().join("host-example/looks"), "json")? {
+    for (_, look) in crate::tools::looks()? {
         copy(&look, &looks)?;
     }
+    copy(&root().join("host-example/looks/order.txt"), &looks)?;
     Ok(())
 }
 

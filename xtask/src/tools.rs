@@ -123,3 +123,14 @@ pub fn run(command: &mut Command) -> Result<()> {
         Err(error) => Err(Failure(format!("`{line}` cannot be started: {error}"))),
     }
 }
+
+/// The files of the looks that ship, each with its id, in their order.
+///
+/// # Errors
+/// When the list cannot be read.
+pub fn looks() -> Result<Vec<(String, PathBuf)>> {
+    let folder = root().join("host-example/looks");
+    let order = folder.join("order.txt");
+    let text = std::fs::read_to_string(&order).context(|| format!("cannot read {}", order.display()))?;
+    Ok(text.split_whitespace().map(|id| (id.to_owned(), folder.join(format!("{id}.json")))).collect())
+}

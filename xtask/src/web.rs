@@ -216,14 +216,10 @@ fn stage(planner: &Path, package: &Path) -> Result<()> {
 
 /// The looks as a module.
 fn looks() -> Result<String> {
-    let folder = root().join("host-example/looks");
-    let entries = fs::read_dir(&folder).context(|| format!("cannot read {}", folder.display()))?;
-    let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
-    files.sort();
-    let mut module = String::from("/** The looks that ship, by id. */\nexport const looks = {\n");
-    for file in files {
+    let mut module =
+        String::from("/** The looks that ship, by id, in their order. */\nexport const looks = {\n");
+    for (id, file) in crate::tools::looks()? {
         let text = fs::read_to_string(&file).context(|| format!("cannot read {}", file.display()))?;
-        let id = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let look: String = text.lines().map(str::trim).collect();
         module.push_str(&format!("  {id}: {look},\n"));
     }

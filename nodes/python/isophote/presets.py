@@ -179,15 +179,15 @@ def as_text(value: Any, place: str) -> str:
 
 
 def looks() -> dict[str, Preset]:
-    """The looks that ship with the library, by their ids; `look:ID` takes the place of a style anywhere."""
+    """The looks that ship with the library, by their ids and in their order; `look:ID` takes the place of a style anywhere."""
     return dict(_looks())
 
 
 @functools.cache
 def _looks() -> dict[str, Preset]:
-    files = (file for file in resources.files(__package__).joinpath("looks").iterdir())
-    found = {file.name[: -len(".json")]: file for file in files if file.name.endswith(".json")}
-    return {id: Preset.from_dict(json.loads(found[id].read_text("utf-8")), LOOK + id) for id in sorted(found)}
+    folder = resources.files(__package__).joinpath("looks")
+    texts = {id: folder.joinpath(f"{id}.json").read_text("utf-8") for id in folder.joinpath("order.txt").read_text().split()}
+    return {id: Preset.from_dict(json.loads(text), LOOK + id) for id, text in texts.items()}
 
 
 def look(id: str) -> Preset:

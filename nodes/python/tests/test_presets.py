@@ -63,6 +63,7 @@ def test_all_looks_are_there_and_open() -> None:
     files = {file.stem for file in (ROOT / "host-example/looks").glob("*.json")}
     looks = isophote.looks()
     assert set(looks) == files and len(files) > 40
+    assert list(looks) == (ROOT / "host-example/looks/order.txt").read_text().split()
     for id, look in looks.items():
         assert look.name and look.about and look.tags
         assert isophote.Style(f"look:{id}").output_kind == "color"

@@ -221,4 +221,7 @@ test("what is wrong with a look is said", async () => {
 test("all looks that ship are accepted", async () => {
   const count = await page.evaluate(() => Object.values(window.looks).map((look) => window.iso.graph(look)).length);
   assert.ok(count > 40, `${count} looks`);
+  const file = new URL("../../../host-example/looks/order.txt", import.meta.url);
+  const order = (await readFile(file, "utf8")).trim().split(/\s+/);
+  assert.deepEqual(await page.evaluate(() => Object.keys(window.looks)), order);
 });

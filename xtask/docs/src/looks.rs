@@ -17,27 +17,26 @@ pub struct Look {
     style: String,
 }
 
-/// All looks, those of one style together.
+/// All looks, in their order.
 ///
 /// # Errors
 /// A file that cannot be read, or lacks its name, its description or its style.
 pub fn all(root: &Path) -> Result<Vec<Look>> {
     let folder = root.join("host-example/looks");
-    let mut looks = Vec::new();
-    for entry in std::fs::read_dir(&folder).map_err(Error::at(&folder))? {
-        let path = entry.map_err(Error::at(&folder))?.path();
+    let order = folder.join("order.txt");
+    let order = std::fs::read_to_string(&order).map_err(Error::at(&order))?;
+    let read = |id: &str| {
+        let path = folder.join(format!("{id}.json"));
         let text = std::fs::read_to_string(&path).map_err(Error::at(&path))?;
-        looks.push(look(&path, &text).ok_or_else(|| Error::page(path.display(), "is no look with a name"))?);
-    }
-    looks.sort_by(|a, b| (&a.style, &a.name).cmp(&(&b.style, &b.name)));
-    Ok(looks)
+        look(id, &text).ok_or_else(|| Error::page(path.display(), "is no look with a name"))
+    };
+    order.split_whitespace().map(read).collect()
 }
 
-fn look(path: &Path, text: &str) -> Option<Look> {
+fn look(id: &str, text: &str) -> Option<Look> {
     let value: Value = serde_json::from_str(text).ok()?;
     let text = |key: &str| value[key].as_str().map(str::to_owned);
-    let id = path.file_stem()?.to_str()?.to_owned();
-    Some(Look { id, name: text("name")?, about: text("about")?, style: text("style")? })
+    Some(Look { id: id.to_owned(), name: text("name")?, about: text("about")?, style: text("style")? })
 }
 
 /// The grid.
