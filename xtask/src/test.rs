@@ -65,12 +65,15 @@ pub fn run(options: &Options) -> Result<()> {
         None => run_all(programs)?,
     };
     if is_everything {
-        let [documents, interface] = [documents(), interface()];
+        heading("examples of the documents");
+        let documents = documents();
         failed.extend(documents.is_err().then(|| "the examples of the documents".to_owned()));
         for suite in &SUITES {
             failed.extend((suite.run)(None).err().map(|failure| format!("{}: {failure}", suite.name)));
         }
-        failed.extend(interface.is_err().then(|| "the OpenFX interface".to_owned()));
+        heading("OpenFX interface");
+        failed.extend(interface().err().map(|_| "the OpenFX interface".to_owned()));
+        heading("end");
     }
     if failed.is_empty() { Ok(()) } else { Err(Failure(format!("these tests fail: {}", failed.join(", ")))) }
 }
@@ -257,12 +260,15 @@ const ALONE: [&str; 1] = ["openfx_faults"];
 /// device, or for its last test, the other computes.
 const LANES: usize = 2;
 
+/// Number of the slowest programs that are named at the end.
+const SLOWEST: usize = 20;
+
 /// Runs all programs. Returns those that fail.
 fn run_all(mut programs: Vec<Program>) -> Result<Vec<String>> {
     programs.sort_by_key(|p| LONG.iter().position(|long| *long == p.name).unwrap_or(LONG.len()));
     let (alone, together): (Vec<Program>, Vec<Program>) =
         programs.into_iter().partition(|p| ALONE.contains(&p.name.as_str()));
-    let failed = Mutex::new(Vec::new());
+    let (failed, times) = (Mutex::new(Vec::new()), Mutex::new(Vec::new()));
     for (programs, lanes) in [(together, LANES), (alone, 1)] {
         let waiting = Mutex::new(programs.into_iter());
         std::thread::scope(|scope| {
@@ -271,9 +277,11 @@ fn run_all(mut programs: Vec<Program>) -> Result<Vec<String>> {
                     while let Some(program) = lock(&waiting).next() {
                         let started = Instant::now();
                         let output = program.command().output();
+                        let seconds = started.elapsed().as_secs_f64();
+                        lock(&times).push((seconds, program.name.clone()));
                         // Locked, so that what two programs print stays apart.
                         let mut failed = lock(&failed);
-                        if !show(&program, &output, started.elapsed().as_secs_f64()) {
+                        if !show(&program, &output, seconds) {
                             failed.push(program.name);
                         }
                     }
@@ -281,7 +289,17 @@ fn run_all(mut programs: Vec<Program>) -> Result<Vec<String>> {
             }
         });
     }
+    show_slowest(times.into_inner().unwrap_or_default());
     Ok(failed.into_inner().unwrap_or_default())
+}
+
+/// Prints the programs that took longest. Those of generated trials name their slowest trials themselves.
+fn show_slowest(mut times: Vec<(f64, String)>) {
+    times.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+    println!("\n-- the slowest programs");
+    for (seconds, name) in times.iter().take(SLOWEST) {
+        println!("{seconds:7.1} s  {name}");
+    }
 }
 
 /// Prints what a program printed; whether its tests hold.

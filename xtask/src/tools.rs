@@ -3,6 +3,8 @@
 use crate::error::{Failure, Result};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::OnceLock;
+use std::time::Instant;
 
 /// The root of the repository.
 pub fn root() -> PathBuf {
@@ -10,9 +12,11 @@ pub fn root() -> PathBuf {
     here.parent().unwrap_or(here).to_owned()
 }
 
-/// Says what comes next.
+/// Says what comes next, and how long the chore has run since its first heading.
 pub fn heading(what: &str) {
-    println!("\n== {what}");
+    static STARTED: OnceLock<Instant> = OnceLock::new();
+    let seconds = STARTED.get_or_init(Instant::now).elapsed().as_secs();
+    println!("\n== {what} ({}:{:02})", seconds / 60, seconds % 60);
 }
 
 /// A cargo command at the root of the repository. Warnings of documents are errors, and tests that
