@@ -1,6 +1,6 @@
 //! Running cargo and the host from a chore.
 
-use crate::error::{Failure, Result};
+use crate::error::{Context, Failure, Result};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;

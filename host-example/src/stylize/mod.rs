@@ -12,7 +12,9 @@ pub mod precision;
 pub mod preset;
 pub mod source;
 pub mod style;
+pub mod textures;
 pub mod title;
+pub mod uniforms;
 
 use std::sync::Arc;
 

@@ -1,7 +1,8 @@
 //! A plan of the library on the host's own device, with nothing but wgpu: **the example to copy**.
 //!
 //! The library says what is to be computed, as data: textures, compute passes, uniform bytes and shaders. The
-//! rest is up to the host, and all of it is here and in [`kernels`](super::kernels):
+//! rest is up to the host, and all of it is here and in [`kernels`](super::kernels), [`textures`](super::textures) and
+//! [`uniforms`](super::uniforms):
 //!
 //! 1. [`Kernels`] compiles the shader of a kernel when a plan first names it.
 //! 2. [`PlanRunner::new`] makes the plan's textures and one buffer for all uniform blocks.
@@ -17,15 +18,16 @@
 //! so a sampler, in plans that are fast rather than exact. wgpu puts the
 //! barriers between passes; `tests/c/vulkan.c` does the same work by hand.
 
-use std::num::NonZeroU64;
 use std::ops::AddAssign;
 use std::sync::Arc;
 
 use super::history::{self, Past, Rings};
-use super::kernels::{Kernel, Kernels, block_size, checked, refused, texture_format};
+use super::kernels::{Kernel, Kernels, checked, refused};
+use super::textures::{self, COPIED, Slot};
+use super::uniforms::{Block, Layout, Uniforms};
 use crate::error::{Error, Result};
 use isophote_loader::Plan;
-use isophote_loader::plan::{Format, Role, Texture};
+use isophote_loader::plan::Role;
 
 /// What a runner has done so far. A warm frame changes neither.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,22 +55,8 @@ pub struct PlanRunner {
     passes: Vec<ReadyPass>,
     past: Past,
     rings: Rings,
-    uniforms: wgpu::Buffer,
-    /// What lies in `uniforms`.
-    bytes: Vec<u8>,
+    uniforms: Uniforms,
     counts: Counts,
-}
-
-/// A texture of the plan, by its index there.
-#[derive(Debug)]
-struct Slot {
-    name: String,
-    role: Role,
-    format: Format,
-    size: [u32; 2],
-    /// The runner's own, or what the host has bound, none for inputs until then; one for all frames, or as many as take
-    /// turns.
-    views: Vec<wgpu::TextureView>,
 }
 
 #[derive(Debug)]
@@ -81,13 +69,6 @@ struct ReadyPass {
     workgroups: [u32; 3],
     /// None until all textures are there; one for all frames, or as many as take turns.
     groups: Vec<wgpu::BindGroup>,
-}
-
-/// Where the bytes of a uniform block lie in the buffer.
-#[derive(Clone, Copy, Debug)]
-struct Block {
-    at: u64,
-    bound: u64,
 }
 
 impl PlanRunner {
@@ -117,40 +98,14 @@ impl PlanRunner {
         kernels: &Arc<Kernels>,
         plan: &Plan,
         past: Past,
-        (mut old, mut rings): (Vec<Slot>, Rings),
+        (old, mut rings): (Vec<Slot>, Rings),
         mut counts: Counts,
     ) -> Result<Self> {
+        let device = kernels.device();
         let wanted = plan.textures().map_err(refused)?;
-        let is_own = |slot: &Slot| slot.role != Role::Input && !history::is_stage(&slot.name);
-        old.retain(|slot| is_own(slot) && wanted.iter().any(|t| slot.is_like(t)));
-        let is_written = |name: &str| wanted.iter().any(|t| t.name == name && t.role == Role::Output);
-        rings.retain(|name| is_written(name) || past.inputs().any(|input| input == name));
-        let mut textures = Vec::with_capacity(wanted.len());
-        for texture in &wanted {
-            let Texture { name, role, format, size } = *texture;
-            let make = || create_texture(kernels.device(), texture_format(format), size, WRITTEN);
-            let found = old.iter().position(|slot| slot.is_like(texture));
-            let views = match (role, found) {
-                (Role::Input, _) => Vec::new(),
-                (Role::Output, _) if history::is_stage(name) => {
-                    counts.objects += rings.hold(name, texture_format(format), size, None, make)?;
-                    rings.views(name, 0).unwrap_or_default()
-                }
-                (_, Some(at)) => old.swap_remove(at).views,
-                (_, None) => {
-                    counts.objects += 1;
-                    vec![make()?]
-                }
-            };
-            textures.push(Slot { name: name.to_owned(), role, format, size, views });
-        }
-        let alignment = u64::from(kernels.device().limits().min_uniform_buffer_offset_alignment);
-        let mut end = 0;
-        let mut place = |block: &[u8]| {
-            let block = Block { at: end, bound: block_size(block) };
-            end += block.bound.next_multiple_of(alignment);
-            block
-        };
+        let (textures, made) = textures::slots(device, &wanted, &past, old, &mut rings)?;
+        counts.objects += made;
+        let mut layout = Layout::new(device);
         let mut passes = Vec::new();
         for (index, pass) in (0..).zip(plan.passes().map_err(refused)?) {
             let named: Vec<u32> = pass.inputs.iter().chain(pass.outputs).copied().collect();
@@ -161,25 +116,17 @@ impl PlanRunner {
             counts.objects += u64::from(is_new);
             passes.push(ReadyPass {
                 kernel,
-                grid: place(pass.grid),
-                params: Some(pass.params).filter(|p| !p.is_empty()).map(&mut place),
+                grid: layout.place(pass.grid),
+                params: Some(pass.params).filter(|p| !p.is_empty()).map(|params| layout.place(params)),
                 textures: named,
                 workgroups: pass.workgroups,
                 groups: Vec::new(),
             });
         }
-        let uniforms = checked(kernels.device(), || {
-            Ok(kernels.device().create_buffer(&wgpu::BufferDescriptor {
-                label: Some("uniforms of a plan"),
-                size: end,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }))
-        })?;
+        let uniforms = Uniforms::new(device, &layout)?;
         counts.objects += 1;
-        let bytes = vec![0; end as usize];
         let kernels = Arc::clone(kernels);
-        let mut runner = Self { kernels, textures, passes, past, rings, uniforms, bytes, counts };
+        let mut runner = Self { kernels, textures, passes, past, rings, uniforms, counts };
         runner.repack(plan)?;
         Ok(runner)
     }
@@ -190,20 +137,15 @@ impl PlanRunner {
     /// # Errors
     /// [`Error::Failure`] when the library fails.
     pub fn repack(&mut self, plan: &Plan) -> Result<()> {
-        let mut changed = false;
-        let mut put = |block: Block, new: &[u8]| {
-            let old = &mut self.bytes[block.at as usize..][..new.len()];
-            changed |= old != new;
-            old.copy_from_slice(new);
-        };
+        let mut is_changed = false;
         for (ready, pass) in self.passes.iter().zip(plan.passes().map_err(refused)?) {
-            put(ready.grid, pass.grid);
+            is_changed |= self.uniforms.put(ready.grid, pass.grid);
             if let Some(params) = ready.params {
-                put(params, pass.params);
+                is_changed |= self.uniforms.put(params, pass.params);
             }
         }
-        if changed {
-            self.kernels.queue().write_buffer(&self.uniforms, 0, &self.bytes);
+        if is_changed {
+            self.uniforms.upload(self.kernels.queue());
             self.counts.uploads += 1;
         }
         Ok(())
@@ -225,7 +167,7 @@ impl PlanRunner {
         for name in self.past.inputs() {
             let texture = given(name)?.texture();
             let (format, size) = (texture.format(), [texture.width(), texture.height()]);
-            let make = || create_texture(self.kernels.device(), format, size, COPIED);
+            let make = || textures::create(self.kernels.device(), format, size, COPIED);
             self.counts.objects += self.rings.hold(name, format, size, Some(texture.clone()), make)?;
         }
         for (index, slot) in (0..).zip(&mut self.textures).filter(|(_, slot)| slot.role == Role::Input) {
@@ -248,6 +190,11 @@ impl PlanRunner {
                 readers.by_ref().filter(|p| p.textures.contains(&index)).for_each(|p| p.groups.clear());
             }
         }
+        self.bind_passes()
+    }
+
+    /// Makes the bind groups of passes whose textures are others now.
+    fn bind_passes(&mut self) -> Result<()> {
         for pass in self.passes.iter_mut().filter(|p| p.groups.is_empty()) {
             let slots = pass.textures.iter().filter_map(|index| self.textures.get(*index as usize));
             let turns = slots.map(|slot| slot.views.len()).max().unwrap_or(1);
@@ -330,57 +277,17 @@ impl PlanRunner {
     }
 }
 
-impl Slot {
-    fn is_like(&self, texture: &Texture<'_>) -> bool {
-        (self.role, self.format, self.size) == (texture.role, texture.format, texture.size)
-    }
-}
-
-/// What textures that passes write are used for.
-const WRITTEN: wgpu::TextureUsages = wgpu::TextureUsages::TEXTURE_BINDING
-    .union(wgpu::TextureUsages::STORAGE_BINDING)
-    .union(wgpu::TextureUsages::COPY_SRC);
-/// What copies of the host's textures are used for.
-const COPIED: wgpu::TextureUsages = wgpu::TextureUsages::TEXTURE_BINDING.union(wgpu::TextureUsages::COPY_DST);
-
-fn create_texture(
-    device: &wgpu::Device,
-    format: wgpu::TextureFormat,
-    [width, height]: [u32; 2],
-    usage: wgpu::TextureUsages,
-) -> Result<wgpu::TextureView> {
-    checked(device, || {
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("texture of a plan"),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage,
-            view_formats: &[],
-        });
-        Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
-    })
-}
-
 fn bind_group(
     kernels: &Kernels,
     pass: &ReadyPass,
-    uniforms: &wgpu::Buffer,
+    uniforms: &Uniforms,
     textures: &[Slot],
     turn: usize,
 ) -> Result<wgpu::BindGroup> {
-    let uniform = |block: Block| {
-        wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: uniforms,
-            offset: block.at,
-            size: NonZeroU64::new(block.bound),
-        })
-    };
-    let blocks = [(0, uniform(pass.grid))].into_iter().chain(pass.params.map(|block| (1, uniform(block))));
-    let mut entries: Vec<wgpu::BindGroupEntry<'_>> =
-        blocks.map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+    let blocks = [(0, pass.grid)].into_iter().chain(pass.params.map(|block| (1, block)));
+    let mut entries: Vec<wgpu::BindGroupEntry<'_>> = blocks
+        .map(|(binding, block)| wgpu::BindGroupEntry { binding, resource: uniforms.binding(block) })
+        .collect();
     for (binding, index) in (2..).zip(&pass.textures) {
         let slot = textures.get(*index as usize).ok_or_else(unbound)?;
         let view = slot.views.get(turn).or(slot.views.first()).ok_or_else(unbound)?;
