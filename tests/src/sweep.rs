@@ -142,17 +142,27 @@ pub fn cases() -> &'static [Case] {
     CASES.get_or_init(plans::all)
 }
 
-/// Every distinct pass of `kernel` in all cases, those of the smallest pictures first.
+/// Most steps of one kernel with the same parameters, image sizes and kind of picture: what leads to them differs, and more
+/// of them would show nothing new.
+const MOST_ALIKE: usize = 4;
+
+/// Distinct passes of `kernel` in all cases, those of the smallest pictures first: all parameters on all kinds of pictures,
+/// of each at most so many.
 pub fn steps(kernel: &'static Kernel) -> Vec<Step> {
     static RESULTS: OnceLock<Results> = OnceLock::new();
     let results = RESULTS.get_or_init(Results::default);
-    let mut known = BTreeSet::new();
+    let (mut known, mut alike) = (BTreeSet::new(), HashMap::<_, usize>::new());
     let mut steps = Vec::new();
     for case in cases().iter().filter(|case| case.plan.passes().iter().any(|p| p.kernel == kernel)) {
         for (index, made) in results.of(case, kernel) {
             if let Some(made) = made.get()
                 && known.insert(made.content)
             {
+                let count = alike.entry((description(&case.plan, index), case.kind as u8)).or_default();
+                *count += 1;
+                if *count > MOST_ALIKE {
+                    continue;
+                }
                 let (label, inputs) = (format!("{} pass {index}", case.label), made.inputs.clone());
                 steps.push(Step { label, kernel, case, index, inputs, outputs: made.outputs.clone() });
             }

@@ -49,18 +49,19 @@ const SIZE: [u32; 2] = [31, 23];
 
 fn the_node_keeps_every_kind_of_picture_finite(spec: &'static NodeSpec) -> Vec<String> {
     let mut wrong = Vec::new();
-    for setting in cases::settings(spec, 4).into_iter().chain(cases::mixed_ends(spec)) {
+    let settings = cases::settings(spec, 4).into_iter().chain(cases::mixed_ends(spec));
+    for (turn, setting) in settings.enumerate() {
         let mut setup = cases::setup(spec, false);
         setting.apply(&mut setup.graph, setup.node);
         let [width, height] = SIZE;
-        for kind in [Kind::Hdr, Kind::Broken, Kind::CutOut] {
+        // Every kind meets every space, though not with every setting.
+        let spaces = ColourSpace::ALL.into_iter().cycle().skip(turn);
+        for (kind, space) in [Kind::Hdr, Kind::Broken, Kind::CutOut].into_iter().zip(spaces) {
             let picture = pictures::color(kind, width, height);
-            for space in ColourSpace::ALL {
-                let request = Request { space, ..Request::new(width, height) };
-                let out = run::graph(&setup.graph, request, &picture);
-                if out.data().iter().any(|v| !v.is_finite()) {
-                    wrong.push(format!("({}) {kind:?} {space:?} is not finite", setting.label));
-                }
+            let request = Request { space, ..Request::new(width, height) };
+            let out = run::graph(&setup.graph, request, &picture);
+            if out.data().iter().any(|v| !v.is_finite()) {
+                wrong.push(format!("({}) {kind:?} {space:?} is not finite", setting.label));
             }
         }
     }
