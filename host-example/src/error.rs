@@ -8,6 +8,7 @@ use isophote_loader::abi::{
     ISOPHOTE_ERROR_CANCELLED, ISOPHOTE_ERROR_DEVICE, ISOPHOTE_ERROR_INTERNAL, ISOPHOTE_ERROR_INVALID_HANDLE,
     ISOPHOTE_ERROR_NO_DEVICE, ISOPHOTE_ERROR_OUT_OF_MEMORY,
 };
+use isophote_loader::printable;
 
 /// Why a command could not be carried out.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -59,10 +60,10 @@ impl Error {
     pub fn within(self, path: &Path) -> Self {
         match self {
             Self::Input { place, problem, fix } => {
-                Self::Input { place: format!("{}: {place}", path.display()), problem, fix }
+                Self::Input { place: one_line(format_args!("{}: {place}", path.display())), problem, fix }
             }
             Self::Failure { problem, fix } => {
-                Self::Failure { problem: format!("{}: {problem}", path.display()), fix }
+                Self::Failure { problem: one_line(format_args!("{}: {problem}", path.display())), fix }
             }
         }
     }
@@ -116,9 +117,9 @@ impl From<isophote_loader::Error> for Error {
     }
 }
 
-/// Messages of other libraries may span lines; ours never do.
+/// Messages of other libraries may span lines; ours never do. Names of files, and names in them, may hold anything.
 fn one_line(text: impl Display) -> String {
-    text.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
+    printable(&text.to_string().split_whitespace().collect::<Vec<_>>().join(" ")).into_owned()
 }
 
 /// Result of everything in the host.

@@ -5,7 +5,8 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::ErrorKind;
 use isophote_host::cli::Cli;
-use isophote_host::{drivers, limits};
+use isophote_host::{drivers, limits, output};
+use isophote_loader::printable;
 
 /// The program starts where the C library is older.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
@@ -22,7 +23,7 @@ fn main() -> ExitCode {
     match cli.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            output::complain(&error);
             ExitCode::from(error.exit_code())
         }
     }
@@ -43,6 +44,7 @@ fn usage(error: &clap::Error) -> ExitCode {
     let wrong = text.lines().take_while(|line| !line.trim().is_empty());
     let tips = text.lines().filter(|line| line.trim_start().starts_with("tip:"));
     let words: Vec<&str> = wrong.chain(tips).flat_map(str::split_whitespace).collect();
-    eprintln!("{}; see --help", words.join(" "));
+    // Words of the command line may be names of files.
+    eprintln!("{}; see --help", printable(&words.join(" ")));
     ExitCode::from(2)
 }

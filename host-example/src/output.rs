@@ -6,6 +6,7 @@ use std::path::Path;
 
 use half::f16;
 use isophote_exr_edit::{Plane, create};
+use isophote_loader::printable;
 
 use crate::apply::space::srgb_encode;
 use crate::error::{Error, Result};
@@ -153,13 +154,13 @@ fn planes(layer: &Layer<'_>) -> Vec<(String, Plane)> {
     layer.names.iter().take(count).enumerate().map(plane).collect()
 }
 
-/// Prints to standard output; whoever has read enough and closed it is no error.
+/// Prints to standard output what terminals can take; whoever has read enough and closed it is no error.
 ///
 /// # Errors
 /// [`Error::Failure`] when it cannot be written.
 pub fn print(text: &str) -> Result<()> {
     let mut stdout = std::io::stdout().lock();
-    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+    match stdout.write_all(printable(text).as_bytes()).and_then(|()| stdout.flush()) {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
             Err(Error::failure(format!("cannot write to standard output: {e}"), "redirect it elsewhere"))
         }
@@ -170,10 +171,10 @@ pub fn print(text: &str) -> Result<()> {
 /// Prints a warning on a line of standard error.
 pub fn warn(warning: impl Display) {
     // Where nobody can be warned the work goes on.
-    let _ = writeln!(std::io::stderr(), "warning: {warning}");
+    let _ = writeln!(std::io::stderr(), "warning: {}", printable(&warning.to_string()));
 }
 
-/// Prints one of several errors on standard error.
+/// Prints an error on standard error.
 pub fn complain(error: &Error) {
     // As for warnings; the exit code tells, too.
     let _ = writeln!(std::io::stderr(), "error: {error}");

@@ -8,7 +8,7 @@ use std::time::Duration;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
 use crate::error::Error;
-use crate::files;
+use crate::{files, output};
 
 /// Time between two looks at whether the process is to end.
 const TICK: Duration = Duration::from_millis(40);
@@ -47,7 +47,7 @@ impl Stop {
                 thread::sleep(TICK);
             }
             thread::sleep(GRACE);
-            eprintln!("error: {error}");
+            output::complain(&error);
             files::abandon(error.exit_code())
         };
         // Without a thread to spare the run ends after what is being done.

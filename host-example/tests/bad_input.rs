@@ -388,3 +388,35 @@ fn machines_without_an_adapter() {
     assert_eq!(listing(folder.path()), before);
     support::succeeds(run().args(["apply", "gaussian", "in.png", "out.png"]));
 }
+
+/// A file's name and names in files can hold commands to the terminal and marks that turn the direction of writing.
+#[test]
+#[cfg(unix)]
+fn names_are_no_commands_to_the_terminal() {
+    let folder = folder();
+    let hostile = "\u{1b}]0;title\u{7}\u{9b}2J\u{202e}gnp.exe";
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("a file");
+    write(&format!("{hostile}.png"), "no picture");
+    write("param.json", &serde_json::json!({"style": "gaussian", "parameters": {hostile: 1}}).to_string());
+    write("name.json", &serde_json::json!({"style": "gaussian", "name": hostile}).to_string());
+    picture(8, 8).save(folder.path().join("in.png")).expect("the picture can be written");
+    let runs: [&[&str]; 5] = [
+        &["apply", "gaussian", &format!("{hostile}.png"), "out.png"],
+        &["apply", "param.json", "in.png", "out.png"],
+        &["apply", hostile, "in.png", "out.png"],
+        &["apply", "gaussian", "in.png", "out.png", hostile],
+        &["preset", "show", "name.json"],
+    ];
+    for run in runs {
+        let output = isophote().current_dir(folder.path()).args(run).output().expect("the program starts");
+        for said in [&output.stdout, &output.stderr] {
+            let said = String::from_utf8_lossy(said);
+            let bad =
+                said.chars().find(|c| c.is_control() && *c != '\n' || ('\u{202a}'..='\u{202e}').contains(c));
+            assert_eq!(bad, None, "{said:?}");
+        }
+        let said =
+            String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+        assert!(said.contains(r"\u202egnp.exe"), "{run:?}: {said:?}");
+    }
+}

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use crate::error::Error;
+use crate::output;
 
 /// How long good news stays.
 const STAYS: Duration = Duration::from_secs(4);
@@ -37,7 +38,7 @@ impl Notes {
         if self.notes.iter().any(|note| note.text == text) {
             return;
         }
-        eprintln!("warning: {text}");
+        output::warn(&text);
         self.add(text, true);
     }
 

@@ -3,6 +3,7 @@
 use std::ffi::{CStr, CString, c_char};
 
 use super::error::{Error, Result};
+use super::printable::printable;
 use isophote_abi::{
     ISOPHOTE_ERROR_INVALID_ARGUMENT, ISOPHOTE_ERROR_TRUNCATED, ISOPHOTE_OK, IsophoteStatus, IsophoteText,
 };
@@ -31,13 +32,14 @@ pub unsafe fn kept<'a>(pointer: *const c_char) -> &'a str {
     unsafe { CStr::from_ptr(pointer) }.to_str().unwrap_or_default()
 }
 
-/// What `write` puts into the buffer that it is given, whatever it returns. This is how messages are fetched.
+/// Text that `write` puts into the buffer that it is given, whatever it returns, made [`printable`]: messages repeat names
+/// that come from files.
 pub fn message<T>(write: impl FnOnce(*mut IsophoteText) -> T) -> (T, String) {
     let mut bytes = [0u8; ROOM];
     let mut text = IsophoteText { data: bytes.as_mut_ptr().cast(), capacity: ROOM, length: 0 };
     let value = write(&raw mut text);
     let length = text.length.min(ROOM - 1);
-    (value, String::from_utf8_lossy(&bytes[..length]).into_owned())
+    (value, printable(&String::from_utf8_lossy(&bytes[..length])).into_owned())
 }
 
 /// A whole text of any length: asked for its length first, then for itself.

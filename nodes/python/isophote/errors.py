@@ -2,9 +2,20 @@
 
 from __future__ import annotations
 
+import re
+
+# Control characters, but for lines and tabs, and marks that turn the direction of writing.
+_HIDDEN = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+
 
 class IsophoteError(Exception):
-    """The library did not do what was asked; the message says what is wrong."""
+    """The library did not do what was asked; the message says what is wrong.
+
+    Messages repeat names that come from files, so that what terminals would obey stands in them as `\\u001b`.
+    """
+
+    def __init__(self, message: str = "") -> None:
+        super().__init__(_HIDDEN.sub(lambda found: f"\\u{ord(found[0]):04x}", message))
 
 
 class UnknownNameError(IsophoteError, LookupError):

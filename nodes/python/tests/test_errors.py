@@ -135,3 +135,12 @@ def test_ctrl_c_ends_the_work() -> None:
         process.send_signal(signal.SIGINT)
         output, error = process.communicate(timeout=300)
     assert process.returncode != 0 and "KeyboardInterrupt" in error and "done" not in output
+
+
+def test_messages_hold_no_commands_to_terminals() -> None:
+    hostile = "\x1b]0;title\x07\u202e"
+    for style in (hostile, f"look:{hostile}", {"style": "gaussian", "parameters": {hostile: 1}}):
+        with pytest.raises(isophote.IsophoteError) as caught:
+            isophote.apply(style, np.zeros((4, 4, 3), np.float32))
+        assert r"\u001b]0;title\u0007\u202e" in str(caught.value)
+        assert str(caught.value).isprintable()

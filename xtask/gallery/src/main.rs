@@ -121,8 +121,9 @@ impl Gallery<'_> {
             let is_style = text(node, "group") == "styles";
             let shown = if index == 0 || is_style { subjects } else { &subjects[..1] };
             let _ = writeln!(self.page, "<h3>{}</h3><div class=\"row\">", escaped(&shot.title));
-            for subject in shown {
-                let name = format!("{id}-{index}-{}.png", subject.name);
+            for (place, subject) in shown.iter().enumerate() {
+                // Names of the user's files may hold what no address does.
+                let name = format!("{id}-{index}-{place}.png");
                 self.picture(node, style, shot, subject, &name)?;
                 let _ = writeln!(
                     self.page,
