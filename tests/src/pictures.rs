@@ -92,6 +92,50 @@ pub fn broken(mut image: Image) -> Image {
     image
 }
 
+/// Values that arithmetic runs over on, which hosts hand over all the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hard {
+    /// The largest number everywhere.
+    Largest,
+    /// The largest number and its negative in turn, in patches.
+    Opposite,
+    /// Numbers whose squares are 0.
+    Tiny,
+    /// Infinity everywhere.
+    Infinite,
+    /// Nothing that is a number.
+    NotANumber,
+    /// All of these and large ones between what the image holds.
+    Mixed,
+}
+
+impl Hard {
+    /// All of them.
+    pub const ALL: [Self; 6] =
+        [Self::Largest, Self::Opposite, Self::Tiny, Self::Infinite, Self::NotANumber, Self::Mixed];
+
+    /// The image with such values.
+    pub fn of(self, mut image: Image) -> Image {
+        const MIXED: [f32; 9] =
+            [f32::MAX, f32::MIN, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e-38, -1e-42, 3e19, -2e9];
+        let (channels, width) = (image.channels() as usize, image.width() as usize);
+        let mut random = Random::new(17);
+        for (i, v) in image.data_mut().iter_mut().enumerate() {
+            let (x, y) = (i / channels % width, i / channels / width);
+            *v = match self {
+                Self::Largest => f32::MAX,
+                Self::Opposite if (x / 3 + y / 5 + i % channels).is_multiple_of(2) => f32::MAX,
+                Self::Opposite => f32::MIN,
+                Self::Tiny => 1e-38 * (1 + (x + y) % 5) as f32,
+                Self::Infinite => f32::INFINITY,
+                Self::NotANumber => f32::NAN,
+                Self::Mixed => MIXED.get(random.below(3 * MIXED.len())).copied().unwrap_or(*v),
+            };
+        }
+        image
+    }
+}
+
 /// The image with normal noise on its colours, of this standard deviation.
 pub fn noisy(mut image: Image, sigma: f32, seed: u64) -> Image {
     let mut random = Random::new(seed);

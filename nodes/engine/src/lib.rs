@@ -4,6 +4,7 @@
 //! threads; [`program::Program`] is the same plan lowered to textures and dispatches for any
 //! graphics API, and [`gpu`] runs that with wgpu.
 
+pub mod bounds;
 #[cfg(feature = "cpu")]
 pub mod cpu;
 pub mod dispatch;
@@ -28,4 +29,10 @@ pub use plan::{Class, ImageId, Kept, Plan, PlanBuilder, Support};
 pub mod fearless_simd {
     pub use crate::dispatch;
     pub use ::fearless_simd::*;
+
+    /// The traits of vectors, and [`Bounds`](crate::bounds::Bounds).
+    pub mod prelude {
+        pub use crate::bounds::Bounds;
+        pub use ::fearless_simd::prelude::*;
+    }
 }

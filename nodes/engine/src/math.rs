@@ -4,6 +4,7 @@
 //! which is what makes tiles equal full frames. Polynomials are those of the Cephes library or of
 //! least greatest error, their relative error below 3e-7 over the stated ranges.
 
+use crate::bounds::Bounds;
 #[cfg(target_arch = "x86_64")]
 use fearless_simd::Avx2;
 use fearless_simd::{Simd, f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, prelude::*};
@@ -43,7 +44,7 @@ macro_rules! elementary {
             #[inline(always)]
             fn exp(self) -> Self {
                 let simd = self.simd;
-                let x = self.min($float::splat(simd, 88.3)).max($float::splat(simd, -88.0));
+                let x = self.at_most($float::splat(simd, 88.3)).at_least($float::splat(simd, -88.0));
                 let n = (x * $float::splat(simd, std::f32::consts::LOG2_E)).round_ties_even();
                 let r = n.mul_add($float::splat(simd, -LN2_HIGH), x);
                 let r = n.mul_add($float::splat(simd, -LN2_LOW), r);
@@ -62,13 +63,13 @@ macro_rules! elementary {
 
             #[inline(always)]
             fn exp2(self) -> Self {
-                self.min($float::splat(self.simd, 127.0)).exp2_falling()
+                self.at_most($float::splat(self.simd, 127.0)).exp2_falling()
             }
 
             #[inline(always)]
             fn exp2_falling(self) -> Self {
                 let simd = self.simd;
-                let x = self.max($float::splat(simd, -126.0));
+                let x = self.at_least($float::splat(simd, -126.0));
                 let shift = $float::splat(simd, WHOLE);
                 let shifted = x + shift;
                 let r = x - (shifted - shift);
@@ -115,7 +116,7 @@ macro_rules! elementary {
             fn powf(self, y: f32) -> Self {
                 let simd = self.simd;
                 let zero = $float::splat(simd, 0.0);
-                let bits: $int<S> = self.max($float::splat(simd, f32::MIN_POSITIVE)).bitcast();
+                let bits: $int<S> = self.at_least($float::splat(simd, f32::MIN_POSITIVE)).bitcast();
                 // The mantissa lies between the roots of 1/2 and 2, so that log2 has no sign to lose.
                 let exponent = (bits - $int::splat(simd, 0x3f35_04f3)) >> 23;
                 let mantissa: $float<S> = (bits - (exponent << 23)).bitcast();
@@ -159,7 +160,7 @@ macro_rules! elementary {
                 let p = p.mul_add(z, $float::splat(simd, 1.333_144_2e-1));
                 let p = p.mul_add(z, $float::splat(simd, -3.333_328_2e-1));
                 let near = (p * z).mul_add(self, self);
-                let e = (a + a).min($float::splat(simd, 40.0)).exp();
+                let e = (a + a).at_most($float::splat(simd, 40.0)).exp();
                 let far = ($float::splat(simd, 1.0)
                     - $float::splat(simd, 2.0) / (e + $float::splat(simd, 1.0)))
                 .copysign(self);
@@ -261,6 +262,7 @@ pub fn spread<S: Simd>(factor: f32x8<S>) -> [f32x8<S>; 4] {
 mod tests {
     use super::*;
     use crate::dispatch;
+    use crate::dispatch::levels;
     use fearless_simd::Level;
 
     fn apply(
@@ -280,27 +282,31 @@ mod tests {
         }
     }
 
-    fn on_lanes(x: &[f32; 16], f: impl Fn(f32x16<Avx2>) -> f32x16<Avx2>) -> Option<[f32; 16]> {
-        let simd = Level::new().as_avx2()?;
-        Some(simd.vectorize(
-            #[inline(always)]
-            || f(f32x16::from_slice(simd, x)).to_array(),
-        ))
+    /// A function of sixteen numbers by the vectors of a level.
+    macro_rules! on_lanes {
+        ($level:expr, $v:ident => $result:expr) => {
+            |x: &[f32; 16]| {
+                dispatch!($level, simd => {
+                    let $v = f32x16::from_slice(simd, x);
+                    $result.to_array()
+                })
+            }
+        };
     }
 
     #[test]
     fn elementary_functions_meet_their_bounds() {
-        if Level::new().as_avx2().is_none() {
-            return;
+        for (_, level) in levels() {
+            apply(|x| f64::from(x).exp(), on_lanes!(level, v => v.exp()), -80.0, 80.0, 3e-7);
+            apply(|x| f64::from(x).exp2(), on_lanes!(level, v => v.exp2()), -120.0, 120.0, 3e-7);
+            apply(|x| f64::from(x).tanh(), on_lanes!(level, v => v.tanh()), -9.0, -1e-4, 3e-7);
+            let power = |x: f32| f64::from(x).powf(1.0 / 2.4);
+            apply(power, on_lanes!(level, v => v.powf(1.0 / 2.4)), 1e-5, 9e3, 1e-6);
+            apply(|x| f64::from(x).ln(), on_lanes!(level, v => v.ln()), 2.0, 1e6, 3e-7);
+            let inverse = |x: f32| f64::from(x).sqrt().recip();
+            apply(inverse, on_lanes!(level, v => v.inverse_sqrt()), 1e-3, 7.0, 1e-6);
+            apply(inverse, on_lanes!(level, v => v.inverse_sqrt()), 1e-30, 1e33, 1e-6);
         }
-        let run = |f: fn(f32x16<Avx2>) -> f32x16<Avx2>| move |x: &[f32; 16]| on_lanes(x, f).unwrap();
-        apply(|x| f64::from(x).exp(), run(|v| v.exp()), -80.0, 80.0, 3e-7);
-        apply(|x| f64::from(x).exp2(), run(|v| v.exp2()), -120.0, 120.0, 3e-7);
-        apply(|x| f64::from(x).tanh(), run(|v| v.tanh()), -9.0, -1e-4, 3e-7);
-        apply(|x| f64::from(x).powf(1.0 / 2.4), run(|v| v.powf(1.0 / 2.4)), 1e-5, 9e3, 1e-6);
-        apply(|x| f64::from(x).ln(), run(|v| v.ln()), 2.0, 1e6, 3e-7);
-        apply(|x| f64::from(x).sqrt().recip(), run(|v| v.inverse_sqrt()), 1e-3, 7.0, 1e-6);
-        apply(|x| f64::from(x).sqrt().recip(), run(|v| v.inverse_sqrt()), 1e-30, 1e33, 1e-6);
     }
 
     #[test]

@@ -179,7 +179,7 @@ impl Strip {
                 self.next,
                 #[inline(always)]
                 |pixels| {
-                    least = least.min(pixels[3]);
+                    least = least.at_most(pixels[3]);
                     premultiply(pixels)
                 },
             );

@@ -38,12 +38,12 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         let detector: [f32x8<_>; 4] = around.block.read(simd, &pass.inputs[1]);
         let mut result = [zero, zero, zero, around.centre(3)];
         for c in 0..3 {
-            let speed = (detector[c] * -params.steepness).max(-one).min(one);
+            let speed = (detector[c] * -params.steepness).within(-one, one);
             let up = speed.simd_gt(zero);
             let mut squares = zero;
             for (dx, dy) in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
                 let excess = around.excess(dx, dy, c);
-                let pull = up.select(excess, -excess).max(zero);
+                let pull = up.select(excess, -excess).at_least(zero);
                 squares = pull.mul_add(pull, squares);
             }
             result[c] = (speed * squares.sqrt()).mul_add(f32x8::splat(simd, params.time_step), around.centre(c));

@@ -79,18 +79,18 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
                 + noise(simd, qx * 0.13, qy * 0.13, 1013) * 0.3
                 + noise(simd, qx * 0.037, qy * 0.037, 2027) * 0.25;
             let [l, alpha] = block.read(simd, lightness);
-            let tone = (l / alpha.max(1e-6) * 0.01).max(0.0).min(1.0);
-            let fill = alpha.max(0.0).min(1.0) * params.fill;
+            let tone = (l / alpha.at_least(1e-6) * 0.01).within(0.0, 1.0);
+            let fill = alpha.within(0.0, 1.0) * params.fill;
             let shade = ((grain - 0.5) * params.texture_amount + 1.0) * (one - fill * 0.5 * (one - tone));
             let light = fill * 0.35 * tone;
             let mut rule = one * 0.0;
             if params.spacing > 0.0 {
                 let fine = ruled(x, y, params.spacing, params.scale) * 0.16;
                 let strong = ruled(x, y, 5.0 * params.spacing, 1.5 * params.scale) * 0.32;
-                rule = fine.max(strong) * params.line[3];
+                rule = fine.at_least(strong) * params.line[3];
             }
             let [edge] = block.read(simd, edges);
-            let ink = (one - edge.max(0.0).min(1.0)) * params.line[3];
+            let ink = (one - edge.within(0.0, 1.0)) * params.line[3];
             let drawn = Drawn { shade, light, rule, ink };
             let [r, g, b] = [drawn.over(params, 0), drawn.over(params, 1), drawn.over(params, 2)];
             write([r, g, b, if params.cover != 0 { one } else { alpha }], target);
@@ -122,12 +122,12 @@ impl<S: Simd> Drawn<S> {
 /// How much of the pixels at (x, y) is covered by lines `width` wide, `spacing` apart.
 #[inline(always)]
 fn ruled<S: Simd>(x: f32x8<S>, y: f32x8<S>, spacing: f32, width: f32) -> f32x8<S> {
-    ruled_along(x, spacing, width).max(ruled_along(y, spacing, width))
+    ruled_along(x, spacing, width).at_least(ruled_along(y, spacing, width))
 }
 
 #[inline(always)]
 fn ruled_along<S: Simd>(x: f32x8<S>, spacing: f32, width: f32) -> f32x8<S> {
     let offset = x - ((x / spacing).floor() + 0.5) * spacing;
     let reach = f32x8::splat(x.simd, 0.5 + 0.5 * width);
-    (reach - offset.abs()).max(0.0).min(width.min(1.0))
+    (reach - offset.abs()).within(0.0, width.min(1.0))
 }

@@ -25,7 +25,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     dispatch!(pass.level, simd => for_blocks::<4>(band, #[inline(always)] |block, target| {
         let [r, g, b, a] = block.read(simd, source);
         let [edge] = block.read(simd, edges);
-        let ink = (f32x8::splat(simd, 1.0) - edge.max(0.0).min(1.0)) * params.line[3];
+        let ink = (f32x8::splat(simd, 1.0) - edge.within(0.0, 1.0)) * params.line[3];
         let [r, g, b] = [over(r, ink, &params, 0), over(g, ink, &params, 1), over(b, ink, &params, 2)];
         write([r, g, b, a], target);
     }));

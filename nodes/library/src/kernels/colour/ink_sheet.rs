@@ -105,15 +105,15 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
                     + noise(simd, gx * 0.31, gy * 0.31, 2027) * 0.3,
             );
             let [r, g, b, a] = block.read(simd, source);
-            let alpha = a.max(zero).min(one);
+            let alpha = a.within(zero, one);
             let [stroke, ..]: [f32x8<S>; 4] = block.read(simd, strokes);
-            let height = mix(tooth, stroke.max(zero).min(one), zero + params.follow);
+            let height = mix(tooth, stroke.within(zero, one), zero + params.follow);
 
             let [edge, ..]: [f32x8<S>; 4] = block.read(simd, lines);
-            let line = one - edge.max(zero).min(one);
+            let line = one - edge.within(zero, one);
             let [mark, grained] = block.read(simd, marks);
             // A dry tool leaves out the valleys of the paper even where it presses hard; in light tones nothing breaks.
-            let dry = (height - 0.55).max(zero) * params.dryness;
+            let dry = (height - 0.55).at_least(zero) * params.dryness;
             let pressed = catches(line, height, zero + params.dryness * params.grain) * (one - dry);
             let grain = grained * params.grain;
             let toned = catches(mark, height, grain) * (one - dry * grained);
@@ -125,7 +125,7 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             let paper = (tooth - 0.5) * params.texture_amount + 1.0;
             let mut laid = [r, g, b];
             for (channel, value) in laid.iter_mut().enumerate() {
-                let own = value.max(zero).min(one);
+                let own = value.within(zero, one);
                 let sheet = mix(paper * params.paper[channel], own * 0.94 + 0.06, chalk);
                 let line = f32x8::splat(simd, params.line[channel]);
                 let line = mix(line, own * 0.3, zero + params.colour);
@@ -140,7 +140,7 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
 /// Noise whose values fill 0..=1.
 #[inline(always)]
 fn even<S: Simd>(v: f32x8<S>) -> f32x8<S> {
-    ((v - 0.5) * 1.7 + 0.5).max(0.0).min(1.0)
+    ((v - 0.5) * 1.7 + 0.5).within(0.0, 1.0)
 }
 
 /// How much ink of density `d` catches where the height is `h`, for a grain of depth `depth`: as much on the
@@ -148,7 +148,7 @@ fn even<S: Simd>(v: f32x8<S>) -> f32x8<S> {
 #[inline(always)]
 fn catches<S: Simd>(d: f32x8<S>, h: f32x8<S>, depth: f32x8<S>) -> f32x8<S> {
     let one = f32x8::splat(d.simd, 1.0);
-    (d + d * (one - d) * (h * -1.0 + 0.5) * (depth * 4.0)).max(0.0).min(1.0)
+    (d + d * (one - d) * (h * -1.0 + 0.5) * (depth * 4.0)).within(0.0, 1.0)
 }
 
 /// From `a` at 0 to `b` at 1.

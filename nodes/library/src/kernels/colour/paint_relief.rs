@@ -60,7 +60,7 @@ fn relief<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                     - (dx * params.light[0] + dy * params.light[1]);
                 let block = Block::until(x1, x0 + (BLOCK * i) as i32, y);
                 let [l, a, b, alpha] = block.read(simd, &pass.inputs[0]);
-                let share = (l.max(0.0) + 16.0) / 116.0;
+                let share = (l.at_least(0.0) + 16.0) / 116.0;
                 write([l + share * lift, a, b, alpha], target);
             }
         },

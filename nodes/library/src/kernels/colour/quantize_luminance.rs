@@ -108,19 +108,19 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
             let (gx, gy) = ((right - left) * 0.5, (below - above) * 0.5);
             let g = (gx * gx + gy * gy).sqrt();
             if params.adaptive != 0 {
-                let t = ((g - params.lambda_delta) * params.inverse_delta).max(0.0).min(1.0);
+                let t = ((g - params.lambda_delta) * params.inverse_delta).within(0.0, 1.0);
                 phi = t * (params.omega_phi - params.lambda_phi) + params.lambda_phi;
             }
             if params.inverse_least > 0.0 {
-                phi = phi.min(f32x8::splat(simd, 2.0) / (g * params.crispest).max(1e-6));
+                phi = phi.at_most(f32x8::splat(simd, 2.0) / (g * params.crispest).at_least(1e-6));
                 let [x, y] = around.of(simd, &pass.inputs[1], &block);
                 let length = (x * x + y * y).sqrt();
-                let t = ((length * params.inverse_least - 0.6) * 1.25).max(0.0).min(1.0);
+                let t = ((length * params.inverse_least - 0.6) * 1.25).within(0.0, 1.0);
                 stepped = t * t * (t * -2.0 + 3.0);
             }
         }
         let middle = ((l * params.inverse_width).floor() + 0.5) * params.width;
-        let x = (phi * (l - middle)).max(-20.0).min(20.0);
+        let x = (phi * (l - middle)).within(-20.0, 20.0);
         let level = middle + x.tanh() * (0.5 * params.width);
         write([l + stepped * (level - l), a, b, alpha], target);
     }));
@@ -195,5 +195,5 @@ fn neighbours<S: Simd>(simd: S, view: &View<'_>, block: &Block, dx: i32, dy: i32
         }
         [f32x8::simd_from(simd, lightness), f32x8::simd_from(simd, coverage)]
     };
-    own + (l - own) * alpha.max(0.0).min(1.0)
+    own + (l - own) * alpha.within(0.0, 1.0)
 }

@@ -23,7 +23,7 @@ pub fn pass(plan: &mut PlanBuilder, lab: ImageId, params: &Params) -> ImageId {
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |[l, a, b, alpha]| {
-        let t = (l * 0.01).max(0.0).min(1.0);
+        let t = (l * 0.01).within(0.0, 1.0);
         let rest = f32x8::splat(simd, 1.0) - t;
         let lift = t * rest * 90.0 * (rest * params.darks + t * params.lights);
         [l + lift, a, b, alpha]

@@ -90,8 +90,8 @@ fn differences<S: Simd>(simd: S, params: &Params, view: &View<'_>, band: &mut Ba
                 + ((right_up - left_up) + (right_down - left_down)) * 0.125;
             let y = (around.excess(0, 1, 0) - around.excess(0, -1, 0)) * 0.25
                 + ((left_down - left_up) + (right_down - right_up)) * 0.125;
-            let length = (x * x + y * y).sqrt().max(1e-6);
-            let share = (one * params.longest / length).min(one);
+            let length = (x * x + y * y).sqrt().at_least(1e-6);
+            let share = (one * params.longest / length).at_most(one);
             let shorter = share * share * around.centre(3);
             [x * shorter, y * shorter, zero, one]
         },

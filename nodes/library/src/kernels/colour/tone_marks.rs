@@ -114,7 +114,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         let covered = alpha.simd_gt(1e-4);
         let one = f32x8::splat(simd, 1.0);
         let lightness = covered.select(sum / covered.select(alpha, one), one * 100.0);
-        let t = ((one * params.light - lightness) * params.slope).max(0.0).min(1.0);
+        let t = ((one * params.light - lightness) * params.slope).within(0.0, 1.0);
         let d = t * (one - (one - t) * params.ease);
         let grained = rise((one * params.smooth_from - lightness) * params.inverse_fade);
         let marked = grained * (1.0 - params.rubbed);
@@ -133,7 +133,7 @@ fn drawn<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: &Block, d
     let least = one * 1e-6;
     let [e, f, g, _]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[1]);
     let tangent = tensor::tangent(e, f, g);
-    let gradient = (e + g).max(0.0).sqrt();
+    let gradient = (e + g).at_least(0.0).sqrt();
     let form = rise((tensor::anisotropy(e, f, g) - params.significant) * 4.0)
         * rise((gradient - 0.001) * 250.0)
         * params.form;
@@ -143,9 +143,9 @@ fn drawn<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: &Block, d
     let z = (noise - 0.5) * params.stroke_gain * gain;
     // What strokes along the form leave over is hatched.
     let followed = d * form;
-    let rest = one - (one - d) / (one - followed).max(least);
-    let first = rest - (rest - 0.45).max(0.0) * 0.5;
-    let second = one - (one - rest) / (one - first).max(least);
+    let rest = one - (one - d) / (one - followed).at_least(least);
+    let first = rest - (rest - 0.45).at_least(0.0) * 0.5;
+    let second = one - (one - rest) / (one - first).at_least(least);
     let hatches = if params.given_gain > 0.0 {
         let [a, ..]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[3]);
         let [b, ..]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[4]);
@@ -163,7 +163,7 @@ fn drawn<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: &Block, d
 /// A ramp from 0 to 1.
 #[inline(always)]
 fn rise<S: Simd>(t: f32x8<S>) -> f32x8<S> {
-    let t = t.max(0.0).min(1.0);
+    let t = t.within(0.0, 1.0);
     t * t * (t * -2.0 + 3.0)
 }
 
@@ -172,7 +172,7 @@ fn rise<S: Simd>(t: f32x8<S>) -> f32x8<S> {
 #[inline(always)]
 fn covered<S: Simd>(r: f32x8<S>, s: f32x8<S>, params: &Params) -> f32x8<S> {
     let size = 1.0 / params.inverse_scale.min(0.5 * params.spacing);
-    ((s - r) * size + 0.5).max(0.0).min(1.0) - ((-s - r) * size + 0.5).max(0.0).min(1.0)
+    ((s - r) * size + 0.5).within(0.0, 1.0) - ((-s - r) * size + 0.5).within(0.0, 1.0)
 }
 
 /// Hatches of mean density `d` along `along`, as if drawn by hand.
@@ -194,7 +194,7 @@ fn hatch<S: Simd>(
     let line = phase.floor();
     // The pressure of the hand, stroke by stroke.
     let pressure = noise(simd, p * (0.11 / spacing), line * 7.0, seed + 57) - 0.5;
-    let density = (d + d * (one - d) * pressure * 0.7).max(0.0).min(1.0);
+    let density = (d + d * (one - d) * pressure * 0.7).within(0.0, 1.0);
     let r = (phase - line - 0.5).abs() * spacing;
     let half = one * (0.5 * spacing);
     let light = covered(r, density * half, params);
@@ -205,9 +205,9 @@ fn hatch<S: Simd>(
 /// Strokes of mean density `d` where noise is higher than most, `z` in standard deviations.
 #[inline(always)]
 fn stroke<S: Simd>(z: f32x8<S>, d: f32x8<S>, params: &Params) -> f32x8<S> {
-    let h = (z * 0.8).max(-8.0).min(8.0).tanh() * 0.5 + 0.5;
+    let h = (z * 0.8).within(-8.0, 8.0).tanh() * 0.5 + 0.5;
     let wide = d * (1.0 + params.softness) - 0.5 * params.softness;
-    ((wide - h) / params.softness + 0.5).max(0.0).min(1.0)
+    ((wide - h) / params.softness + 0.5).within(0.0, 1.0)
 }
 
 /// By how much fewer grains a stroke averages beside the picture's border, where its line is cut: 1 over the root of the
@@ -223,11 +223,11 @@ fn border_gain<S: Simd>(
     let one = f32x8::splat(place[0].simd, 1.0);
     let mut variance = one;
     for i in 0..2 {
-        let near = place[i].min(one * full[i] as f32 - place[i]);
-        let cut = near * params.inverse_length / tangent[i].abs().max(1e-3);
+        let near = place[i].at_most(one * full[i] as f32 - place[i]);
+        let cut = near * params.inverse_length / tangent[i].abs().at_least(1e-3);
         let beside = near / params.stroke_width;
         for d in [cut, beside] {
-            variance *= one + (d * (d * -0.28 - 0.92)).max(-80.0).exp();
+            variance *= one + (d * (d * -0.28 - 0.92)).at_least(-80.0).exp();
         }
     }
     one / variance.sqrt()

@@ -49,7 +49,8 @@ fn moved<S: Simd>(simd: S, params: &Params, source: &View<'_>, around: &Neighbou
     let x = (around.excess(1, 0, 0) - around.excess(-1, 0, 0)) * factor;
     let y = (around.excess(0, 1, 0) - around.excess(0, -1, 0)) * factor;
     let length = (x * x + y * y).sqrt();
-    let share = f32x8::splat(simd, params.limit) / length.max(f32x8::splat(simd, params.limit.max(1e-6)));
+    let share =
+        f32x8::splat(simd, params.limit) / length.at_least(f32x8::splat(simd, params.limit.max(1e-6)));
     let [cx, cy] = around.block.centres(simd);
     unpremultiply(sample_linear4(simd, source, x * share + cx, y * share + cy))
 }

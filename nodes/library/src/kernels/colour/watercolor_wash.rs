@@ -95,11 +95,11 @@ fn washed<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
             let v: [f32x8<S>; 4] = block.read(simd, &pass.inputs[0]);
             let around: [f32x8<S>; 4] = block.read(simd, &pass.inputs[1]);
             let excess = luma(&around) - luma(&v);
-            let gathered = (excess.max(0.0) + (-excess).max(0.0) * 0.25) * params.edges;
+            let gathered = (excess.at_least(0.0) + (-excess).at_least(0.0) * 0.25) * params.edges;
             let density = gathered + (cloud * 2.0 - 1.0) * params.clouds + (grain * 2.0 - 1.0) * params.grain;
             let painted = |c: f32x8<S>| {
                 let thin = f32x8::splat(simd, 1.0) - (f32x8::splat(simd, 1.0) - c) * params.pigment;
-                thin - density * (thin - thin * thin).max(0.0)
+                thin - density * (thin - thin * thin).at_least(0.0)
             };
             write([painted(v[0]), painted(v[1]), painted(v[2]), v[3]], target);
         },
@@ -109,5 +109,5 @@ fn washed<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
 /// Luma within the range of paper.
 #[inline(always)]
 fn luma<S: Simd>(v: &[f32x8<S>; 4]) -> f32x8<S> {
-    (v[0] * 0.2126 + v[1] * 0.7152 + v[2] * 0.0722).max(0.0).min(1.0)
+    (v[0] * 0.2126 + v[1] * 0.7152 + v[2] * 0.0722).within(0.0, 1.0)
 }

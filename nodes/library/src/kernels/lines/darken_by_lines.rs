@@ -23,6 +23,6 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     dispatch!(pass.level, simd => for_blocks::<2>(band, #[inline(always)] |block, target| {
         let [l, alpha] = block.read(simd, lightness);
         let [edge]: [f32x8<_>; 1] = block.read(simd, edges);
-        write([l * edge.max(0.0).min(1.0), alpha], target);
+        write([l * edge.within(0.0, 1.0), alpha], target);
     }));
 }

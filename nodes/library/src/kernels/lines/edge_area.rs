@@ -79,8 +79,8 @@ fn areas<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             ];
             let [_, total]: [f32x8<S>; 2] = block.read(simd, &pass.inputs[1]);
             let [u, v]: [f32x8<S>; 2] = block.read(simd, &pass.inputs[2]);
-            let speed = (u.mul_add(u, v * v).sqrt() * params.inverse_moving).min(1.0);
-            let share = ((total - 1.0) * params.inverse_most).max(0.0).min(1.0) * speed;
+            let speed = (u.mul_add(u, v * v).sqrt() * params.inverse_moving).at_most(1.0);
+            let share = ((total - 1.0) * params.inverse_most).within(0.0, 1.0) * speed;
             write([area(params, around, share)], &mut row[at..at + block.len]);
         }
     }

@@ -82,7 +82,7 @@ fn candidates<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut 
                 let height = near(simd, &heights, at, 0, 0);
                 if params.method == Method::Magnitude as u32 {
                     let t = (height - params.low) / (params.high - params.low).max(1e-3);
-                    let t = t.max(0.0).min(1.0);
+                    let t = t.within(0.0, 1.0);
                     write([one - t * t * (t * -2.0 + 3.0)], pixels);
                     continue;
                 }
@@ -129,7 +129,7 @@ fn is_maximum<S: Simd>(
     let straight_behind = upright.select(down.select(north, south), right.select(west, east));
     let corner_ahead = down.select(right.select(se, sw), right.select(ne, nw));
     let corner_behind = down.select(right.select(nw, ne), right.select(sw, se));
-    let slant = ax.min(ay) / ax.max(ay).max(1e-30);
+    let slant = ax.at_most(ay) / ax.at_least(ay).at_least(1e-30);
     let ahead = straight_ahead + (corner_ahead - straight_ahead) * slant;
     let behind = straight_behind + (corner_behind - straight_behind) * slant;
     height.simd_gt(behind * TIE) & (height * TIE).simd_ge(ahead)

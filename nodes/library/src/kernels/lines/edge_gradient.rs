@@ -57,7 +57,7 @@ fn derivatives<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut
                 let at = BLOCK * i;
                 let zero = f32x8::splat(simd, 0.0);
                 let (alpha, own) = (eight(simd, cover[1], at + 1), eight(simd, light[1], at + 1));
-                let own = alpha.simd_gt(0.0).select(own / alpha.max(1e-30), zero);
+                let own = alpha.simd_gt(0.0).select(own / alpha.at_least(1e-30), zero);
                 // How far the neighbours are above the pixel, as far as they are covered.
                 let mut rise = [[zero; 3]; 3];
                 for dy in 0..3 {

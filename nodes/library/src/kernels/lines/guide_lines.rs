@@ -147,7 +147,7 @@ fn strength<S: Simd>(
         if has(2) {
             let after = depths(simd, depth, line.nearest(k + 2));
             let bend_next = depth_bend(depth_here, depth_next, after);
-            found[2] = ramp((bend_here.min(bend_next) - 0.02) * 10.0);
+            found[2] = ramp((bend_here.at_most(bend_next) - 0.02) * 10.0);
             (depth_here, depth_next, bend_here) = (depth_next, after, bend_next);
         }
         if has(4) {
@@ -162,7 +162,7 @@ fn strength<S: Simd>(
         sums[1].add([found[1], found[2], found[3]], others);
     }
     let [creases, outlines] = sums.map(GuideSums::ridge);
-    (creases * params.amount[0]).max(outlines * params.amount[1])
+    (creases * params.amount[0]).at_least(outlines * params.amount[1])
 }
 
 /// Weights of the narrower and of the wider Gaussian at a distance, of creases or outlines.
@@ -203,7 +203,7 @@ impl<S: Simd> GuideSums<S> {
     fn ridge(self) -> f32x8<S> {
         let mut ridge = f32x8::splat(self.weights[0].simd, 0.0);
         for (narrow, wide) in self.narrow.iter().zip(&self.wide) {
-            ridge = ridge.max(*narrow / self.weights[0] - *wide / self.weights[1]);
+            ridge = ridge.at_least(*narrow / self.weights[0] - *wide / self.weights[1]);
         }
         ridge
     }
@@ -239,7 +239,7 @@ fn ids<S: Simd>(simd: S, view: &View<'_>, [x, y]: [i32x8<S>; 2]) -> f32x8<S> {
 /// t^2 (3 - 2 t) of t clamped to 0..=1.
 #[inline(always)]
 fn ramp<S: Simd>(t: f32x8<S>) -> f32x8<S> {
-    let t = t.max(0.0).min(1.0);
+    let t = t.within(0.0, 1.0);
     t * t * (t * -2.0 + 3.0)
 }
 
@@ -266,7 +266,7 @@ fn dot<S: Simd>(a: [f32x8<S>; 3], b: [f32x8<S>; 3]) -> f32x8<S> {
 fn relative_nearness<S: Simd>(z0: f32x8<S>, z: f32x8<S>) -> f32x8<S> {
     let (zero, one) = (f32x8::splat(z0.simd, 0.0), f32x8::splat(z0.simd, 1.0));
     let there = z.simd_gt(0.0);
-    let near = there.select((z0 / there.select(z, one)).min(2.0), zero);
+    let near = there.select((z0 / there.select(z, one)).at_most(2.0), zero);
     z0.simd_gt(0.0).select(near, there.select(one + 1.0, one))
 }
 

@@ -206,9 +206,9 @@ impl<S: Simd> Ellipses<S> {
             let middle = rows * shift[k];
             let square = squares.mul_add(f32x8::splat(simd, width[k]), f32x8::splat(simd, inverse[k]));
             let some = square.simd_ge(f32x8::splat(simd, 0.0));
-            let half = some.select(square.max(0.0).sqrt() + 1e-3, none);
-            first = first.min(middle - half);
-            last = last.max(middle + half);
+            let half = some.select(square.at_least(0.0).sqrt() + 1e-3, none);
+            first = first.at_most(middle - half);
+            last = last.at_least(middle + half);
         }
         [first.ceil().to_array(), last.floor().to_array()]
     }
@@ -399,7 +399,7 @@ fn weights<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
         let inside = distance.simd_le(f32x8::splat(simd, INSIDE));
         inside.select(gaussian(distance), f32x8::splat(simd, 0.0)).store_slice(&mut tap.0[NORM]);
         // No sector may hold what lies outside the ellipse: 0 must not be divided by 0.
-        sum.max(f32::MIN_POSITIVE).store_slice(&mut tap.0[TOTAL]);
+        sum.at_least(f32::MIN_POSITIVE).store_slice(&mut tap.0[TOTAL]);
         for k in 0..4 {
             if EIGHT || k % 2 == 0 {
                 pairs[k][0].store_slice(&mut tap.0[BOTH + k]);
@@ -419,7 +419,7 @@ fn weights<S: Simd, const OPAQUE: bool, const EIGHT: bool>(
 /// sector and zeta - eta times the square of that across it.
 #[inline(always)]
 fn opposite<S: Simd>(forward: f32x8<S>, k: f32x8<S>, zero: f32x8<S>) -> [f32x8<S>; 2] {
-    let (near, far) = ((k + forward).max(zero), (k - forward).max(zero));
+    let (near, far) = ((k + forward).at_least(zero), (k - forward).at_least(zero));
     let near = near * near;
     [far.mul_add(far, near), (-far).mul_add(far, near)]
 }

@@ -204,8 +204,8 @@ fn mean_of_flattest<S: Simd>(
         let mean = [r * n, g * n, b * n];
         let mean_square = square * n;
         let variance = mean_square - mean[2].mul_add(mean[2], mean[1].mul_add(mean[1], mean[0] * mean[0]));
-        variances[k] = seen.select(variance.max(zero), f32x8::splat(simd, 3e38));
-        least = least.min(variances[k]);
+        variances[k] = seen.select(variance.at_least(zero), f32x8::splat(simd, 3e38));
+        least = least.at_most(variances[k]);
         (means[k], covers[k], mean_squares[k]) = (mean, seen.select(a, zero), mean_square);
     }
     let limit = least * (1.0 + params.tie);

@@ -75,8 +75,8 @@ fn resample<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ba
                 let [sum, low, high, below] = &rows[(2 * y + j).rem_euclid(12) as usize][x];
                 sharp = f32x4::splat(simd, *lobe).mul_add(f32x4::from_slice(simd, sum), sharp);
                 if (-1..=2).contains(&j) {
-                    least = least.min(f32x4::from_slice(simd, low));
-                    most = most.max(f32x4::from_slice(simd, high));
+                    least = least.at_most(f32x4::from_slice(simd, low));
+                    most = most.at_least(f32x4::from_slice(simd, high));
                 }
                 if (0..=1).contains(&j) {
                     mean += f32x4::from_slice(simd, below) * 0.25;
@@ -87,7 +87,7 @@ fn resample<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ba
             // Not `clamp`: without any coverage the bounds are exchanged.
             let mut resampled = sharp / sharp_alpha.max(0.25);
             if params.limited != 0 {
-                resampled = resampled.max(least).min(most);
+                resampled = resampled.within(least, most);
             }
             let share = (4.0 * sharp_alpha.min(alpha) - 3.0).clamp(0.0, 1.0);
             let value = (resampled - below).mul_add(f32x4::splat(simd, share), below);
@@ -113,8 +113,8 @@ fn row<S: Simd>(simd: S, source: &[f32], lobes: &[f32; 12], covered: &mut Vec<f3
             sum = f32x4::splat(simd, *lobe).mul_add(value, sum);
             if (4..8).contains(&i) && plain[4 * i + 3] > 0.0 {
                 let colour = f32x4::from_slice(simd, &plain[4 * i..4 * i + 4]);
-                least = least.min(colour);
-                most = most.max(colour);
+                least = least.at_most(colour);
+                most = most.at_least(colour);
             }
             if (5..7).contains(&i) {
                 below += value;

@@ -74,16 +74,16 @@ fn merge<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
         let [r, g, b, a] = block.read(simd, &pass.inputs[0]);
         let below: [f32x8<S>; 4] = read(simd, &filtered[4 * at..4 * at + 32]);
         let deviation = eight(simd, &deviations, at);
-        let beta = (deviation * params.gain - params.threshold).max(zero).min(one);
+        let beta = (deviation * params.gain - params.threshold).within(zero, one);
         let beta = if params.edge >= 0.0 {
             let [e, _, g, _]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[3]);
-            let steep = ((e + g).max(zero).sqrt() - params.edge) * params.inverse_ramp;
-            beta.max(steep.max(zero).min(one))
+            let steep = ((e + g).at_least(zero).sqrt() - params.edge) * params.inverse_ramp;
+            beta.at_least(steep.within(zero, one))
         } else {
             beta
         };
         let beta = below[3].simd_lt(least).select(one, beta);
-        let n = one / below[3].max(least);
+        let n = one / below[3].at_least(least);
         let mut out = [r, g, b, a];
         for (out, below) in out.iter_mut().zip(below).take(3) {
             let below = below * n;

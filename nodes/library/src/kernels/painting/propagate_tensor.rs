@@ -47,8 +47,8 @@ fn merge<S: Simd>(simd: S, pass: &CpuPass<'_>, band: &mut Band<'_>) {
         let at = 4 * (block.x - columns[0]) as usize;
         let mut own: [f32x8<S>; 4] = block.read(simd, &pass.inputs[0]);
         let below: [f32x8<S>; 4] = read(simd, &coarse[at..at + 32]);
-        let a = anisotropy(own[0], own[1], own[2]).max(floor);
-        let b = anisotropy(below[0], below[1], below[2]).max(floor);
+        let a = anisotropy(own[0], own[1], own[2]).at_least(floor);
+        let b = anisotropy(below[0], below[1], below[2]).at_least(floor);
         let share = b / (a + b);
         for (own, below) in own.iter_mut().zip(below) {
             *own = (below - *own).mul_add(share, *own);

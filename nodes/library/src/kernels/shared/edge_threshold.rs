@@ -65,7 +65,7 @@ pub fn edge_threshold<S: Simd>(u: f32x8<S>, kind: u32, epsilon: f32, phi: f32) -
     if paper.all_true() {
         return one;
     }
-    let x = ((u - epsilon) * phi).max(-20.0).min(zero);
+    let x = ((u - epsilon) * phi).within(-20.0, 0.0);
     let below = if kind == Threshold::Binary as u32 {
         zero
     } else if kind == Threshold::Tanh as u32 {
@@ -73,7 +73,7 @@ pub fn edge_threshold<S: Simd>(u: f32x8<S>, kind: u32, epsilon: f32, phi: f32) -
         let e = (x * (2.0 * std::f32::consts::LOG2_E)).exp2_falling();
         (e + e) / (e + 1.0)
     } else {
-        let t = (x * 0.25 + 0.5).max(0.0);
+        let t = (x * 0.25 + 0.5).at_least(0.0);
         t * 2.0 * t * (t * -2.0 + 3.0)
     };
     paper.select(one, below)
@@ -108,7 +108,7 @@ pub fn dog_of_sums<S: Simd>(
     edge: f32,
 ) -> (f32x8<S>, mask32x8<S>) {
     let one = f32x8::splat(narrow.simd, 1.0);
-    let covered = narrow_alpha.min(wide_alpha).simd_gt(LEAST_COVERAGE);
+    let covered = narrow_alpha.at_most(wide_alpha).simd_gt(LEAST_COVERAGE);
     let narrow = narrow / covered.select(narrow_alpha, one);
     let wide = wide / covered.select(wide_alpha, one);
     (narrow * base + (narrow - wide) * edge, covered)

@@ -31,9 +31,9 @@ pub fn plain<S: Simd>(pixels: [f32x8<S>; 4], premultiplied: u32) -> [f32x8<S>; 4
 pub fn beyond_coverage<S: Simd>([r, g, b, a]: [f32x8<S>; 4]) -> [f32x8<S>; 3] {
     let (zero, one) = (f32x8::splat(a.simd, 0.0), f32x8::splat(a.simd, 1.0));
     let share = (one - a) * (one - a);
-    let most = a / (share * share).max(f32x8::splat(a.simd, 1e-30));
+    let most = a / (share * share).at_least(f32x8::splat(a.simd, 1e-30));
     [r, g, b].map(|v| {
-        let excess = (v.abs() - most).max(zero);
+        let excess = (v.abs() - most).at_least(zero);
         v.simd_lt(zero).select(-excess, excess)
     })
 }
@@ -42,14 +42,14 @@ pub fn beyond_coverage<S: Simd>([r, g, b, a]: [f32x8<S>; 4]) -> [f32x8<S>; 3] {
 #[inline(always)]
 pub fn finite_pixels<S: Simd>([r, g, b, a]: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
     let (zero, one) = (f32x8::splat(r.simd, 0.0), f32x8::splat(r.simd, 1.0));
-    [finite(r), finite(g), finite(b), finite(a).min(one).max(zero)]
+    [finite(r), finite(g), finite(b), finite(a).at_most(one).at_least(zero)]
 }
 
 /// Values cut to the largest half, 0 for what is not a number.
 #[inline(always)]
 fn finite<S: Simd>(v: f32x8<S>) -> f32x8<S> {
     let largest = f32x8::splat(v.simd, LARGEST_HALF);
-    v.is_nan().select(f32x8::splat(v.simd, 0.0), v.min(largest).max(-largest))
+    v.is_nan().select(f32x8::splat(v.simd, 0.0), v.at_most(largest).at_least(-largest))
 }
 
 /// Whether a premultiplied picture, four values a pixel, has light beyond its coverage ([`beyond_coverage`]).

@@ -24,7 +24,7 @@ pub fn is_known<S: Simd>([x, _]: [f32x8<S>; 2]) -> mask32x8<S> {
 pub fn is_inside<S: Simd>(x: f32x8<S>, y: f32x8<S>, [width, height]: [i32; 2]) -> mask32x8<S> {
     // Distances to the borders, so that one comparison is enough.
     let (right, bottom) = (f32x8::splat(x.simd, width as f32) - x, f32x8::splat(x.simd, height as f32) - y);
-    x.min(right).min(y.min(bottom)).simd_ge(0.0)
+    x.at_most(right).at_most(y.at_most(bottom)).simd_ge(0.0)
 }
 
 /// Motions unless they are longer than `limit` or no numbers, which makes them unknown.
@@ -112,7 +112,7 @@ pub fn sample_sharp_covered4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: 
                 for i in 0..4 {
                     let pixel = eight(simd, taps, 4 * i);
                     if i == 0 || pair == 3 {
-                        least = least.min(pixel);
+                        least = least.at_most(pixel);
                     }
                     row = pixel.mul_add(f32x8::splat(simd, wx[i][0]), row);
                 }
@@ -134,7 +134,7 @@ pub fn sample_sharp_covered4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: 
                 let mut row = zero;
                 for i in 0..4 {
                     let pixel = load_pixels(simd, &low[4 * i..], &high[4 * i..]);
-                    least = least.min(pixel);
+                    least = least.at_most(pixel);
                     row = pixel.mul_add(spread_x[i][lane], row);
                 }
                 sum = row.mul_add(spread_y[j][lane], sum);
@@ -236,7 +236,7 @@ impl Run {
         let (columns, fx) = floor_and_share(x, w);
         let (rows, fy) = floor_and_share(y, h);
         let (column, row, fx_first, fy_first) = (columns[0], rows[0], fx[0], fy[0]);
-        let apart = (fx - fx_first).abs().max((fy - fy_first).abs());
+        let apart = (fx - fx_first).abs().at_least((fy - fy_first).abs());
         let is_run = are_neighbours(simd, columns, rows) && apart.simd_le(0.0).all_true();
         let is_inside = before <= column && column + 7 + after < w && before <= row && row + after < h;
         let at = (row - before - held.y0) * view.stride() as i32
@@ -257,7 +257,7 @@ fn are_neighbours<S: Simd>(simd: S, columns: i32x8<S>, rows: i32x8<S>) -> bool {
 fn all_between<S: Simd>([x, y]: [i32x8<S>; 2], [left, top]: [i32; 2], [right, bottom]: [i32; 2]) -> bool {
     // Small pictures have no such.
     let there_are = left <= right && top <= bottom;
-    let nearest = [x.max(left).min(right), y.max(top).min(bottom)];
+    let nearest = [x.within(left, right), y.within(top, bottom)];
     there_are && ((nearest[0] - x) | (nearest[1] - y)).simd_eq(0).all_true()
 }
 
@@ -312,11 +312,14 @@ pub fn motion_at<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>, li
     let [a, b, c, d] = corners2(simd, view, left, top);
     let (a, b, c, d) = (bounded(a, limit), bounded(b, limit), bounded(c, limit), bounded(d, limit));
     // The nearest pixel is the one before the position or the next.
-    let near_x = x.floor().max(-2.0f32).min(w as f32 + 2.0).to_int::<i32x8<S>>().simd_eq(left);
-    let near_y = y.floor().max(-2.0f32).min(h as f32 + 2.0).to_int::<i32x8<S>>().simd_eq(top);
+    let near_x = x.floor().within(-2.0f32, w as f32 + 2.0).to_int::<i32x8<S>>().simd_eq(left);
+    let near_y = y.floor().within(-2.0f32, h as f32 + 2.0).to_int::<i32x8<S>>().simd_eq(top);
     let mut spread = f32x8::splat(simd, 0.0);
     for i in 0..2 {
-        spread = spread.max(a[i].max(b[i]).max(c[i].max(d[i])) - a[i].min(b[i]).min(c[i].min(d[i])));
+        spread = spread.at_least(
+            a[i].at_least(b[i]).at_least(c[i].at_least(d[i]))
+                - a[i].at_most(b[i]).at_most(c[i].at_most(d[i])),
+        );
     }
     let alike = spread.simd_le(1.0);
     let mut motion = a;
@@ -365,7 +368,7 @@ pub fn beside<S: Simd>(simd: S, view: &View<'_>, block: Block, [dx, dy]: [i32; 2
 /// The pixel before a position, on one axis of a picture of `full` pixels, and the next one's share.
 #[inline(always)]
 fn floor_and_share<S: Simd>(position: f32x8<S>, full: i32) -> (i32x8<S>, f32x8<S>) {
-    let position = (position - 0.5).max(-2.0f32).min(full as f32 + 2.0);
+    let position = (position - 0.5).within(-2.0f32, full as f32 + 2.0);
     let floor = position.floor();
     (floor.to_int(), position - floor)
 }

@@ -30,7 +30,7 @@ pub fn outer_product<S: Simd>(
     for c in 0..3 {
         let (mut xx, mut xy, mut yy) = (x[c] * x[c], x[c] * y[c], y[c] * y[c]);
         if flags & 2 != 0 {
-            let inverse = f32x8::splat(simd, 1.0) / (xx + yy).max(f32x8::splat(simd, 1e-30)).sqrt();
+            let inverse = f32x8::splat(simd, 1.0) / (xx + yy).at_least(f32x8::splat(simd, 1e-30)).sqrt();
             (xx, xy, yy) = (xx * inverse, xy * inverse, yy * inverse);
         }
         (e, f, g) = (e + xx, f + xy, g + yy);

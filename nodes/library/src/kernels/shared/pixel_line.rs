@@ -78,16 +78,16 @@ impl<S: Simd> PixelLine<S> {
         let unit = [one.copysign(tx), one.copysign(ty)];
         let tx = back_x.select(zero, back_y.select(unit[0], tx));
         let ty = back_y.select(zero, back_x.select(unit[1], ty));
-        self.turn = along.abs().min(one);
+        self.turn = along.abs().at_most(one);
         self.direction = [tx, ty];
         let exits = self.boundary();
         for axis in 0..2 {
             let t = self.direction[axis];
             let moves = t.abs().simd_gt(1e-6);
-            let exit = ((exits[axis] - self.position[axis]) / moves.select(t, one)).max(zero);
+            let exit = ((exits[axis] - self.position[axis]) / moves.select(t, one)).at_least(zero);
             self.exits[axis] = moves.select(exit, f32x8::splat(simd, FAR));
         }
-        self.exits[0].min(self.exits[1])
+        self.exits[0].at_most(self.exits[1])
     }
 
     /// Coordinates of the boundaries that lie ahead.
@@ -168,7 +168,7 @@ impl<S: Simd> GaussianLines<S> {
     ) {
         let zero = f32x8::splat(simd, 0.0);
         // 1 / (sigma sqrt 2).
-        let inverse = f32x8::splat(simd, std::f32::consts::FRAC_1_SQRT_2) / self.sigma.max(1e-3);
+        let inverse = f32x8::splat(simd, std::f32::consts::FRAC_1_SQRT_2) / self.sigma.at_least(1e-3);
         let mut line = PixelLine::begin(x, y, direction);
         let (mut u, mut passed) = (zero, zero);
         let mut active = u.simd_lt(self.limit);
@@ -180,12 +180,12 @@ impl<S: Simd> GaussianLines<S> {
             active &= line.turn.simd_ge(self.least_turn);
             if self.turns_count {
                 // What the turn adds to the arc length lies between two segments.
-                u += (acos(line.turn) * self.limit / std::f32::consts::PI - h).max(zero);
+                u += (acos(line.turn) * self.limit / std::f32::consts::PI - h).at_least(zero);
                 passed = error_function(u * inverse);
             }
-            let end = (u + h).min(self.limit);
+            let end = (u + h).at_most(self.limit);
             let reached = error_function(end * inverse);
-            visit(line.pixels(), active.select((reached - passed).max(zero), zero));
+            visit(line.pixels(), active.select((reached - passed).at_least(zero), zero));
             (u, passed) = (end, reached);
             active &= u.simd_lt(self.limit);
             active = line.cross(field, h, active);

@@ -50,8 +50,8 @@ pub fn sample_linear4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S
 pub fn fetch4<S: Simd>(simd: S, view: &View<'_>, x: i32x8<S>, y: i32x8<S>) -> [f32x8<S>; 4] {
     let ([w, h], held) = (view.full(), view.window());
     let zero = i32x8::splat(simd, 0);
-    let x = x.max(zero).min(i32x8::splat(simd, w - 1)) - held.x0;
-    let y = y.max(zero).min(i32x8::splat(simd, h - 1)) - held.y0;
+    let x = x.within(zero, i32x8::splat(simd, w - 1)) - held.x0;
+    let y = y.within(zero, i32x8::splat(simd, h - 1)) - held.y0;
     let at = (y * view.stride() as i32 + x * 4).to_array();
     let data = view.data();
     let mut pixels = [f32x8::splat(simd, 0.0); 4];
@@ -72,7 +72,7 @@ fn bilinear<S: Simd>([a, b, c, d]: [f32x8<S>; 4], fx: f32x8<S>, fy: f32x8<S>) ->
 #[inline(always)]
 fn floor_and_share<S: Simd>(position: f32x8<S>, full: i32) -> (i32x8<S>, f32x8<S>) {
     // Far outside, the integer conversion would saturate or wrap: keep positions near the picture.
-    let position = (position - 0.5).max(-2.0f32).min(full as f32 + 2.0);
+    let position = (position - 0.5).within(-2.0f32, full as f32 + 2.0);
     let floor = position.floor();
     (floor.to_int(), position - floor)
 }
@@ -110,8 +110,8 @@ pub fn sample_linear2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S
     let rows = Axis { full: h, start: window.y0, stride: view.stride() as i32 };
     let (top, bottom, fy) = rows.taps(simd, y);
     // At the right edge the left pixel is the last but one, with all the weight on the last.
-    let column = (x - 0.5).max(0.0f32).min((w - 1) as f32);
-    let left = column.floor().min((w - 2) as f32);
+    let column = (x - 0.5).within(0.0f32, (w - 1) as f32);
+    let left = column.floor().at_most((w - 2) as f32);
     let fx = column - left;
     let left = (left.to_int::<i32x8<S>>() - i32x8::splat(simd, window.x0)) * 2;
     let fy = spread(fy);
@@ -186,8 +186,8 @@ impl Axis {
         let (zero, start) = (i32x8::splat(simd, 0), i32x8::splat(simd, self.start));
         let stride = i32x8::splat(simd, self.stride);
         let (i, share) = floor_and_share(position, self.full);
-        let first = (i.max(zero).min(last) - start) * stride;
-        let second = ((i + 1).max(zero).min(last) - start) * stride;
+        let first = (i.within(zero, last) - start) * stride;
+        let second = ((i + 1).within(zero, last) - start) * stride;
         (first, second, share)
     }
 }

@@ -48,7 +48,7 @@ impl<S: Simd> Sector<S> {
     #[inline(always)]
     pub fn new([r, g, b, q, a]: [f32x8<S>; 5], weights: f32x8<S>) -> Self {
         let zero = f32x8::splat(weights.simd, 0.0);
-        let cover = a / weights.max(f32x8::splat(weights.simd, 1e-20));
+        let cover = a / weights.at_least(f32x8::splat(weights.simd, 1e-20));
         let seen = cover.simd_gt(f32x8::splat(weights.simd, SEEN));
         let n = seen.select(f32x8::splat(weights.simd, 1.0) / a, zero);
         Self::of([r, g, b, q], n, seen.select(cover, zero))
@@ -66,7 +66,7 @@ impl<S: Simd> Sector<S> {
     fn of([r, g, b, q]: [f32x8<S>; 4], n: f32x8<S>, cover: f32x8<S>) -> Self {
         let mean = [r * n, g * n, b * n];
         let square = mean[2].mul_add(mean[2], mean[1].mul_add(mean[1], mean[0] * mean[0]));
-        Self { mean, variance: (q * n - square).max(0.0), cover }
+        Self { mean, variance: (q * n - square).at_least(0.0), cover }
     }
 }
 
@@ -100,14 +100,14 @@ impl Response {
         let mut least = f32x8::splat(simd, f32::MAX);
         let mut deviation = zero;
         for sector in sectors {
-            let bounded = sector.variance.max(threshold);
-            least = sector.cover.simd_gt(zero).select(least.min(bounded), least);
-            deviation += sector.variance.sqrt().max(floor);
+            let bounded = sector.variance.at_least(threshold);
+            least = sector.cover.simd_gt(zero).select(least.at_most(bounded), least);
+            deviation += sector.variance.sqrt().at_least(floor);
         }
         let mut alphas = [one; N];
         for k in 0..N {
             // Sectors without coverage may lie below the least of the others.
-            alphas[k] = (least / sectors[k].variance.max(threshold)).min(one);
+            alphas[k] = (least / sectors[k].variance.at_least(threshold)).at_most(one);
         }
         power(&mut alphas, self.q);
         let mut sum = [zero; 4];

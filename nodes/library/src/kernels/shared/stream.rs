@@ -53,7 +53,7 @@ pub const FEW_STEPS: f32 = 3.0;
 #[inline(always)]
 pub fn few_steps<S: Simd>(steps: f32x8<S>, stretch: f32) -> f32x8<S> {
     // A last bit must not add a step.
-    (steps * stretch.recip() - 1e-3).ceil().max(steps.min(f32x8::splat(steps.simd, FEW_STEPS)))
+    (steps * stretch.recip() - 1e-3).ceil().at_least(steps.at_most(f32x8::splat(steps.simd, FEW_STEPS)))
 }
 
 /// By how much steps are longer when `few` of them take the place of `steps`.
@@ -272,7 +272,7 @@ pub fn in_bounds<S: Simd>([w, h]: [i32; 2], x: f32x8<S>, y: f32x8<S>) -> mask32x
 /// Angle of a cosine in 0..=1, error below 7e-5 (Abramowitz and Stegun 4.4.45).
 #[inline(always)]
 pub fn acos<S: Simd>(cosine: f32x8<S>) -> f32x8<S> {
-    let x = cosine.min(f32x8::splat(cosine.simd, 1.0));
+    let x = cosine.at_most(f32x8::splat(cosine.simd, 1.0));
     let p = f32x8::splat(cosine.simd, -0.018_729_3).mul_add(x, f32x8::splat(cosine.simd, 0.074_261_0));
     let p = p.mul_add(x, f32x8::splat(cosine.simd, -0.212_114_4));
     let p = p.mul_add(x, f32x8::splat(cosine.simd, 1.570_728_8));

@@ -29,7 +29,7 @@ fn scales<S: Simd>(v: f32x8<S>) -> (f32x8<S>, f32x8<S>) {
 /// sqrt(d^2 + f^2) (2.80) and the major eigenvector (2.82) of tensors with d = (E - G) / 2 and f = F.
 #[inline(always)]
 pub fn axis<S: Simd>(d: f32x8<S>, f: f32x8<S>) -> (f32x8<S>, [f32x8<S>; 2]) {
-    let size = d.abs().max(f.abs());
+    let size = d.abs().at_least(f.abs());
     let zero = size.simd_lt(f32x8::splat(d.simd, f32::MIN_POSITIVE));
     let (scale, unscale) = scales(size);
     let (ds, fs) = (d * scale, f * scale);
@@ -51,14 +51,15 @@ pub fn axis<S: Simd>(d: f32x8<S>, f: f32x8<S>) -> (f32x8<S>, [f32x8<S>; 2]) {
 /// below 2^127.
 #[inline(always)]
 pub fn eigen<S: Simd>(e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> Eigen<S> {
-    let size = e.max(g).max(f.abs());
+    let size = e.at_least(g).at_least(f.abs());
     let zero = size.simd_lt(f32x8::splat(e.simd, f32::MIN_POSITIVE));
     let (scale, unscale) = scales(size);
     let (e, f, g) = (e * scale, f * scale, g * scale);
     let (radius, [x, y]) = axis((e - g) * 0.5, f);
     let lambda1 = (e + g) * 0.5 + radius;
     // Only tensors that are not semidefinite have lambda1 < 1/2 here; the bound keeps them finite.
-    let lambda2 = (e * g - f * f).max(f32x8::splat(e.simd, 0.0)) / lambda1.max(f32x8::splat(e.simd, 0.25));
+    let lambda2 =
+        (e * g - f * f).at_least(f32x8::splat(e.simd, 0.0)) / lambda1.at_least(f32x8::splat(e.simd, 0.25));
     Eigen {
         lambda1: zero.select(f32x8::splat(e.simd, 0.0), lambda1 * unscale),
         lambda2: zero.select(f32x8::splat(e.simd, 0.0), lambda2 * unscale),
@@ -97,7 +98,7 @@ pub fn tangent_along<S: Simd>(
     let y = (r + d).mul_add(py, -(f * px));
     let size = x.mul_add(x, y * y);
     let one = f32x8::splat(d.simd, 1.0);
-    let inverse = size.max(f32x8::splat(d.simd, f32::MIN_POSITIVE)).inverse_sqrt();
+    let inverse = size.at_least(f32x8::splat(d.simd, f32::MIN_POSITIVE)).inverse_sqrt();
     let cosine = px.mul_add(x * inverse, py * (y * inverse));
     // False for what has overflowed too.
     let decided = size.simd_gt(rr * 1e-8) & size.simd_le(f32x8::splat(d.simd, f32::MAX));
@@ -113,7 +114,7 @@ pub fn anisotropy<S: Simd>(e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> f32x8<S> {
     let half_trace = (e + g) * 0.5;
     let zero = half_trace.simd_lt(f32x8::splat(e.simd, f32::MIN_POSITIVE));
     let (radius, _) = axis((e - g) * 0.5, f);
-    zero.select(f32x8::splat(e.simd, 0.0), (radius / half_trace).min(f32x8::splat(e.simd, 1.0)))
+    zero.select(f32x8::splat(e.simd, 0.0), (radius / half_trace).at_most(f32x8::splat(e.simd, 1.0)))
 }
 
 /// One tensor at a time, by the same operations.

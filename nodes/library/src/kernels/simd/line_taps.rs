@@ -325,7 +325,7 @@ impl LineTaps {
         let place = f32x8::splat(simd, step.row);
         // No tap lies before the first row.
         let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        let first = (one - (step.across - place)).max(zero);
+        let first = (one - (step.across - place)).at_least(zero);
         let shares = [first, step.share(place + 1.0), step.share(place + 2.0)];
         let mut taps = [[f32x8::splat(simd, 0.0); N]; 2];
         let channels = self.channels();
@@ -381,7 +381,7 @@ impl<S: Simd> Step<S> {
     #[inline(always)]
     fn share(&self, place: f32x8<S>) -> f32x8<S> {
         let (zero, one) = (f32x8::splat(place.simd, 0.0), f32x8::splat(place.simd, 1.0));
-        (one - (self.across - place).abs()).max(zero)
+        (one - (self.across - place).abs()).at_least(zero)
     }
 }
 

@@ -78,7 +78,7 @@ impl MomentBuffer {
         let mut least = one;
         for (i, block) in source.chunks(32).enumerate() {
             let [r, g, b, a] = read(simd, block);
-            least = least.min(a);
+            least = least.at_most(a);
             let square = b.mul_add(b, g.mul_add(g, r * r));
             let values = [r * a, g * a, b * a, square * a, a];
             // By number: adapters of iterators over vectors would be calls.

@@ -36,7 +36,7 @@ impl Block {
     #[inline(always)]
     pub fn columns<S: Simd>(&self, simd: S) -> i32x8<S> {
         let lanes = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
-        lanes.min(i32x8::splat(simd, self.len as i32 - 1)) + i32x8::splat(simd, self.x)
+        lanes.at_most(i32x8::splat(simd, self.len as i32 - 1)) + i32x8::splat(simd, self.x)
     }
 
     /// Centres of the pixels, x and y; lanes past the end repeat the last one.
@@ -262,8 +262,8 @@ pub fn unpremultiply<S: Simd>([r, g, b, a]: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
 #[inline(always)]
 pub fn offsets<S: Simd>(view: &View<'_>, x: i32x8<S>, y: i32x8<S>) -> i32x8<S> {
     let ([w, h], window) = (view.full(), view.window());
-    let column = x.max(0).min(w - 1) - window.x0;
-    let row = y.max(0).min(h - 1) - window.y0;
+    let column = x.within(0, w - 1) - window.x0;
+    let row = y.within(0, h - 1) - window.y0;
     row * view.stride() as i32 + column * view.channels() as i32
 }
 

@@ -188,7 +188,7 @@ fn filtered_block<S: Simd, const OPAQUE: bool>(
 fn exp2<S: Simd>(x: f32x8<S>) -> f32x8<S> {
     let simd = x.simd;
     let c = |v: f32| f32x8::splat(simd, v);
-    let x = x.max(c(-125.0));
+    let x = x.at_least(c(-125.0));
     let shifted = x + c(12_582_912.0);
     let r = x - (shifted - c(12_582_912.0));
     let p = c(1.326_472_7e-3);

@@ -100,5 +100,5 @@ fn convolved<S: Simd>(
         );
     }
     let [r, g, b, alpha] = unpremultiply(sum);
-    [r, g, b, alpha / norm.max(1e-6)]
+    [r, g, b, alpha / norm.at_least(1e-6)]
 }

@@ -55,18 +55,18 @@ fn of<S: Simd>(simd: S, [e, f, g, _]: [f32x8<S>; 4], params: &Params) -> [f32x8<
     let c = |v: f32| f32x8::splat(simd, v);
     let Eigen { lambda1, lambda2, major: [nx, ny] } = eigen(e, f, g);
     let (across, along) = if params.scheme == Scheme::CoherenceEnhancing as u32 {
-        let q = ((lambda1 - lambda2) * params.falloff).min(c(1e9));
-        let exponent = (c(1.0) / (q * q).max(c(1e-18))).min(c(87.0));
+        let q = ((lambda1 - lambda2) * params.falloff).at_most(c(1e9));
+        let exponent = (c(1.0) / (q * q).at_least(c(1e-18))).at_most(c(87.0));
         (c(0.001), (-exponent).exp() * 0.999 + 0.001)
     } else {
-        let s = (lambda1 * params.falloff).min(c(1e8));
+        let s = (lambda1 * params.falloff).at_most(c(1e8));
         let s4 = (s * s) * (s * s);
-        let exponent = (c(3.314_88) / s4.max(c(1e-30))).min(c(87.0));
+        let exponent = (c(3.314_88) / s4.at_least(c(1e-30))).at_most(c(87.0));
         (c(1.0) - (-exponent).exp(), c(1.0))
     };
     let a = across * nx * nx + along * ny * ny;
     let b = (across - along) * nx * ny;
     let d = across * ny * ny + along * nx * nx;
     let size = b.abs();
-    [(a - size).max(c(0.0)), (d - size).max(c(0.0)), (size + b) * 0.5, (size - b) * 0.5]
+    [(a - size).at_least(c(0.0)), (d - size).at_least(c(0.0)), (size + b) * 0.5, (size - b) * 0.5]
 }

@@ -79,11 +79,11 @@ fn raise<S: Simd>(simd: S, target: &mut [f32], values: &[f32]) {
     let mut i = 0;
     while i + 8 <= len {
         let v = eight(simd, values, i);
-        v.max(eight(simd, target, i)).store_slice(&mut target[i..i + 8]);
+        v.at_least(eight(simd, target, i)).store_slice(&mut target[i..i + 8]);
         i += 8;
     }
     while i < len {
-        target[i] = target[i].max(values[i]);
+        target[i] = values[i].at_least(target[i]);
         i += 1;
     }
 }
@@ -96,11 +96,11 @@ fn double<S: Simd>(simd: S, row: &mut [f32], length: usize) {
     let mut i = 0;
     while i + 8 <= len {
         let v = f32x8::from_slice(simd, &row[i + ahead..i + ahead + 8]);
-        v.max(eight(simd, row, i)).store_slice(&mut row[i..i + 8]);
+        v.at_least(eight(simd, row, i)).store_slice(&mut row[i..i + 8]);
         i += 8;
     }
     while i < len {
-        row[i] = row[i].max(row[i + ahead]);
+        row[i] = row[i + ahead].at_least(row[i]);
         i += 1;
     }
 }

@@ -213,7 +213,7 @@ impl Filter<'_> {
             let [r, g, b, a] = sample_linear4(simd, &self.source, x, y);
             let mut colour = [r, g, b];
             if !self.opaque {
-                let seen = f32x8::splat(simd, 1.0) / a.max(f32x8::splat(simd, 1e-6));
+                let seen = f32x8::splat(simd, 1.0) / a.at_least(f32x8::splat(simd, 1e-6));
                 colour = [r * seen, g * seen, b * seen];
             }
             let weight = weight(colour, origin, domain);
@@ -256,7 +256,7 @@ fn weight<S: Simd>(colour: [f32x8<S>; 3], origin: &Origin<S>, domain: f32x8<S>) 
 fn distance_back<S: Simd>(line: &Stream<S>) -> f32x8<S> {
     let (x, near_x) = back_along(line.x, line.direction[0]);
     let (y, near_y) = back_along(line.y, line.direction[1]);
-    (near_x | near_y).select(f32x8::splat(x.simd, 0.0), x.min(y))
+    (near_x | near_y).select(f32x8::splat(x.simd, 0.0), x.at_most(y))
 }
 
 /// The same along one axis, and whether a crossing lies within rounding of the position.
@@ -265,7 +265,7 @@ fn back_along<S: Simd>(p: f32x8<S>, t: f32x8<S>) -> (f32x8<S>, mask32x8<S>) {
     let simd = p.simd;
     let p = p + 0.5;
     let f = p - p.floor();
-    let near = f.min(f32x8::splat(simd, 1.0) - f).simd_lt(f32x8::splat(simd, 1e-4));
+    let near = f.at_most(f32x8::splat(simd, 1.0) - f).simd_lt(f32x8::splat(simd, 1e-4));
     let ahead = t.simd_lt(f32x8::splat(simd, 0.0)).select(f - 1.0, f);
     let still = t.abs().simd_lt(f32x8::splat(simd, 1e-6));
     (still.select(f32x8::splat(simd, 1e3), ahead / t), near)

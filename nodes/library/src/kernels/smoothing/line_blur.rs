@@ -97,7 +97,7 @@ fn hatched<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
                     sum = value.mul_add(f32x8::splat(simd, *share), sum);
                 }
             }
-            let value = ((sum / weights - 0.5) * params.gain + 0.5).max(zero).min(one);
+            let value = ((sum / weights - 0.5) * params.gain + 0.5).within(zero, one);
             write([value, value, value, one], target);
         },
     );

@@ -282,7 +282,8 @@ impl<S: Simd> Arcs<S> {
             sigma *= a * a * 0.25;
         }
         let radius = (sigma * 2.0 + 1e-3).floor();
-        let falloff = f32x8::splat(e.simd, -0.721_347_52) / (sigma * sigma).max(f32x8::splat(e.simd, 1e-6));
+        let falloff =
+            f32x8::splat(e.simd, -0.721_347_52) / (sigma * sigma).at_least(f32x8::splat(e.simd, 1e-6));
         let (length, least_turn) = stretched_step(params, radius);
         let gaussian = (falloff * length * length).exp2_falling();
         let growth = gaussian * gaussian;
@@ -344,7 +345,7 @@ impl<S: Simd> Arcs<S> {
     #[inline(always)]
     fn step(&mut self, side: usize, line: &Stream<S>) -> f32x8<S> {
         self.u[side] += if self.turns_count {
-            self.length.max(acos(line.turn) * self.radius / std::f32::consts::PI)
+            self.length.at_least(acos(line.turn) * self.radius / std::f32::consts::PI)
         } else {
             self.length
         };
@@ -377,7 +378,7 @@ fn stretched_step<S: Simd>(params: &Params, radius: f32x8<S>) -> (f32x8<S>, f32x
     // The cosine of so many times the angle whose cosine is c, exact for one and two times; no more than c,
     // since -1 stands for any turn.
     let c = one * params.least_turn;
-    let least_turn = c.min(one - stretch * ((one - c) * (one - c) + stretch * c * (one - c)));
+    let least_turn = c.at_most(one - stretch * ((one - c) * (one - c) + stretch * c * (one - c)));
     (stretch * params.step, least_turn)
 }
 

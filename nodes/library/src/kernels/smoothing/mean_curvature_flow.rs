@@ -217,7 +217,7 @@ fn block<S: Simd>(
         sum[3] = share.mul_add(v[3], sum[3]);
     }
     // Never beyond the mean of the neighbours.
-    let speed = speed.min(one / sum[3].max(f32x8::splat(simd, 1e-6)));
+    let speed = speed.at_most(one / sum[3].at_least(f32x8::splat(simd, 1e-6)));
     [
         speed.mul_add(sum[0], origin[0]),
         speed.mul_add(sum[1], origin[1]),

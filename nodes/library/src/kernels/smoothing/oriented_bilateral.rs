@@ -205,7 +205,8 @@ impl Row<'_> {
         let weights = Weights {
             origin,
             range: -0.721_347_52 / (params.sigma_r * params.sigma_r).max(1e-6),
-            domain: f32x8::splat(simd, -0.721_347_52) / (sigma_d * sigma_d).max(f32x8::splat(simd, 1e-6)),
+            domain: f32x8::splat(simd, -0.721_347_52)
+                / (sigma_d * sigma_d).at_least(f32x8::splat(simd, 1e-6)),
         };
         let alpha = origin[3];
         let mut sum = premultiply(origin);
@@ -262,7 +263,7 @@ impl Row<'_> {
                     );
                 } else if MODE == COVERED {
                     let [[r0, g0, b0, a0], [r1, g1, b1, a1]] = self.colours.taps::<S, 4>(&step);
-                    let (n0, n1) = (one / a0.max(1e-6), one / a1.max(1e-6));
+                    let (n0, n1) = (one / a0.at_least(1e-6), one / a1.at_least(1e-6));
                     let [e0, e1] =
                         weights.exponents([[r0 * n0, g0 * n0, b0 * n0], [r1 * n1, g1 * n1, b1 * n1]], domain);
                     block.taps[i] = [[r0, g0, b0, e0], [r1, g1, b1, e1]];

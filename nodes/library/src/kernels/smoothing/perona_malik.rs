@@ -112,7 +112,7 @@ fn block<S: Simd, const EXPONENTIAL: bool>(
     for v in neighbours {
         let d = [v[0] - origin[0], v[1] - origin[1], v[2] - origin[2]];
         let s = d[2].mul_add(d[2], d[1].mul_add(d[1], d[0] * d[0])) * falloff;
-        let g = if EXPONENTIAL { (-s.min(f32x8::splat(simd, 87.0))).exp() } else { one / (one + s) };
+        let g = if EXPONENTIAL { (-s.at_most(f32x8::splat(simd, 87.0))).exp() } else { one / (one + s) };
         let g = g * v[3];
         for c in 0..3 {
             sum[c] = g.mul_add(d[c], sum[c]);

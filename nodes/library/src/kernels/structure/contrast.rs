@@ -35,7 +35,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
             let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
             let mut rgb = [r, g, b];
             for v in &mut rgb {
-                *v = ((*v - 0.5) * params.gain + 0.5).max(zero).min(one);
+                *v = ((*v - 0.5) * params.gain + 0.5).within(zero, one);
             }
             [rgb[0], rgb[1], rgb[2], a]
         },

@@ -26,8 +26,8 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
         let own: [f32x8<_>; 4] = block.read(simd, &pass.inputs[0]);
         let painted: [f32x8<_>; 4] = block.read(simd, &pass.inputs[1]);
-        let share = painted[3].max(zero).min(one);
-        let trace = (own[0] + own[2]).max(f32x8::splat(simd, LEAST_TRACE));
+        let share = painted[3].within(zero, one);
+        let trace = (own[0] + own[2]).at_least(f32x8::splat(simd, LEAST_TRACE));
         let mut bent = [own[3] + (one - own[3]) * share; 4];
         for c in 0..3 {
             bent[c] = (one - share) * own[c] + trace * painted[c];

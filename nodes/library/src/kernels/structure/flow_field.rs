@@ -38,13 +38,13 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let sign = if params.invert_y != 0 { -1.0 } else { 1.0 };
     dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |pixels| {
         let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        let [r, g, _, a] = finite_pixels(pixels).map(|v| v.max(zero).min(one));
+        let [r, g, _, a] = finite_pixels(pixels).map(|v| v.within(zero, one));
         let (x, y) = (r * 2.0 - 1.0, (g * 2.0 - 1.0) * sign);
         let square = x * x + y * y;
         let length = square.sqrt();
-        let weight = (a * params.strength * length.min(one)).max(zero).min(one);
+        let weight = (a * params.strength * length.at_most(one)).within(zero, one);
         let weight = length.simd_gt(LEAST).select(weight, zero);
-        let scale = weight / square.max(f32x8::splat(simd, 1e-12));
+        let scale = weight / square.at_least(f32x8::splat(simd, 1e-12));
         [scale * y * y, -(scale * x * y), scale * x * x, weight]
     }));
 }

@@ -37,7 +37,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         |[e, f, g, _]| {
             let zero = f32x8::splat(simd, 0.0);
             let (radius, [x, y]) = axis((e - g) * 0.5, f);
-            let magnitude = ((e + g) * 0.5 + radius).max(zero).sqrt();
+            let magnitude = ((e + g) * 0.5 + radius).at_least(zero).sqrt();
             let none = magnitude.simd_lt(f32x8::splat(simd, LEAST));
             let (xx, xy, yy) = (x * x, x * y, y * y);
             [none.select(zero, xx), none.select(zero, xy), none.select(zero, yy), none.select(zero, magnitude)]

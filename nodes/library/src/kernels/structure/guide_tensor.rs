@@ -76,10 +76,10 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 fn clean_normal<S: Simd>(v: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
     let c = |x: f32| f32x8::splat(v[0].simd, x);
     let good = [v[0].is_finite(), v[1].is_finite(), v[2].is_finite(), v[3].is_finite()];
-    let valid = (good[0] & good[1] & good[2] & good[3]).select(v[3].max(c(0.0)).min(c(1.0)), c(0.0));
+    let valid = (good[0] & good[1] & good[2] & good[3]).select(v[3].within(c(0.0), c(1.0)), c(0.0));
     let mut normal = [c(0.0); 3];
     for i in 0..3 {
-        normal[i] = good[i].select(v[i].max(c(-1.0)).min(c(1.0)), c(0.0)) * valid;
+        normal[i] = good[i].select(v[i].within(c(-1.0), c(1.0)), c(0.0)) * valid;
     }
     let [x, y, z] = normal;
     [x, y, z, valid]
@@ -89,13 +89,13 @@ fn clean_normal<S: Simd>(v: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
 fn clean_depth<S: Simd>(v: f32x8<S>) -> f32x8<S> {
     // Where there is nothing, or no number, the depth is far behind everything.
     let far = f32x8::splat(v.simd, 1e30);
-    (v.is_finite() & v.simd_gt(f32x8::splat(v.simd, 0.0))).select(v.min(far), far)
+    (v.is_finite() & v.simd_gt(f32x8::splat(v.simd, 0.0))).select(v.at_most(far), far)
 }
 
 #[inline(always)]
 fn relative<S: Simd>(v: f32x8<S>, centre: f32x8<S>) -> f32x8<S> {
     let c = |x: f32| f32x8::splat(v.simd, x);
-    ((v - centre) / ((v + centre) * 0.5)).max(c(-1.0)).min(c(1.0))
+    ((v - centre) / ((v + centre) * 0.5)).within(c(-1.0), c(1.0))
 }
 
 #[inline(always)]

@@ -82,7 +82,7 @@ fn rows<S: Simd>(simd: S, params: &Params, band: &mut Band<'_>) {
                 let row = u32x8::splat(simd, mixed((y * params.grain).floor() as i32 as u32 ^ params.seed));
                 for i in 0..params.count {
                     let x = low_x.floor() + i as f32;
-                    let weight_x = (high_x.min(x + 1.0) - low_x.max(x)).max(zero);
+                    let weight_x = (high_x.at_most(x + 1.0) - low_x.at_least(x)).at_least(zero);
                     let column: i32x8<S> = (x * params.grain).floor().to_int();
                     let h = mixed_lanes(row + column.bitcast::<u32x8<S>>());
                     sum += (h >> 8).to_float::<f32x8<S>>() / 16_777_216.0 * (weight_x * weight_y);

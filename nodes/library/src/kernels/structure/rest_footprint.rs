@@ -103,10 +103,10 @@ fn footprint<S: Simd>(simd: S, pass: &CpuPass<'_>, block: Block) -> [f32x8<S>; 2
     let is_known = is_at_rest(here) & trace.simd_gt(1e-30);
     let divisor = is_known.select(trace, f32x8::splat(simd, 1.0));
     let f = (x.is_known & y.is_known).select(x.dot(&y), zero) / divisor;
-    let area = ((e / divisor) * (g / divisor) - f * f).max(zero).sqrt();
+    let area = ((e / divisor) * (g / divisor) - f * f).at_least(zero).sqrt();
     let half = (e - g) / divisor * 0.5;
     let longest = (half * half + f * f).sqrt() + 0.5;
-    let mean = area.max(longest * 0.25);
+    let mean = area.at_least(longest * 0.25);
     let none = f32x8::splat(simd, NO_FOOTPRINT);
     let halved = 0.5 * LOG2_E;
     [

@@ -66,12 +66,12 @@ fn smoothed<S: Simd>(simd: S, pass: &CpuPass<'_>, block: Block) -> f32x8<S> {
             }
             let squared = apart[2].mul_add(apart[2], apart[1].mul_add(apart[1], apart[0] * apart[0]));
             let most = pace * distance.max(1) as f32;
-            let far = squared.min(most * 16.0) / most;
-            let alike = is_known.select((far * -0.25 + 2.0).max(zero).min(one), one);
+            let far = squared.at_most(most * 16.0) / most;
+            let alike = is_known.select((far * -0.25 + 2.0).within(zero, one), one);
             let weight = counts.select(alike * SHARES[distance], zero);
             sum = weight.mul_add(counts.select(footprint, zero), sum);
             weights += weight;
         }
     }
-    (is_here & weights.simd_gt(1e-6)).select(sum / weights.max(1e-6), none)
+    (is_here & weights.simd_gt(1e-6)).select(sum / weights.at_least(1e-6), none)
 }

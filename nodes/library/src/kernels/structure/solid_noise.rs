@@ -104,16 +104,16 @@ fn marked<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: Block) -
         p[c] = counts.select(point[c], zero);
     }
     // So far from 0 that floats do not tell finer cells apart, marks are larger.
-    let farthest = p[0].abs().max(p[1].abs()).max(p[2].abs().max(1e-20));
-    let level = (counts.select(scale, zero) + params.spacing).max(farthest.ln() * LOG2_E - 22.0);
-    let level = level.max(-60.0).min(60.0);
+    let farthest = p[0].abs().at_least(p[1].abs()).at_least(p[2].abs().at_least(1e-20));
+    let level = (counts.select(scale, zero) + params.spacing).at_least(farthest.ln() * LOG2_E - 22.0);
+    let level = level.within(-60.0, 60.0);
     let floor = level.floor();
     let octave: i32x8<S> = floor.to_int();
     // Where the shares of the variance go evenly from one octave to the next, the width of marks stays.
     let (fine, coarse) = ((one - (level - floor)).sqrt(), ((level - floor) * COARSE).sqrt());
     let sum = fine * noise(simd, p, octave, params.seed) + coarse * noise(simd, p, octave + 1, params.seed);
     let even = sum / (fine * fine + coarse * coarse).sqrt();
-    let value = (even * params.deviation + 0.5).max(zero).min(one);
+    let value = (even * params.deviation + 0.5).within(zero, one);
     let mut pixels = [one; 4];
     for c in 0..3 {
         pixels[c] = counts.select(value, screen[c]);

@@ -109,7 +109,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 fn orientation<S: Simd>(simd: S, e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> [f32x8<S>; 3] {
     let c = |v: f32| f32x8::splat(simd, v);
     // Anisotropy times (cos 2 phi, sin 2 phi), phi the angle of the tangent.
-    let trace = (e + g).max(c(f32::MIN_POSITIVE));
+    let trace = (e + g).at_least(c(f32::MIN_POSITIVE));
     let (x, y) = ((g - e) / trace, f * -2.0 / trace);
     let (across, up) = (x * 0.25, y * 0.433_012_7);
     [x * 0.5 + 0.5, c(0.5) - across + up, c(0.5) - across - up]
@@ -127,12 +127,12 @@ fn measure<S: Simd>(simd: S, show: Show, params: &Params, t: [f32x8<S>; 3]) -> f
     let Corner { trace, lambda1, determinant } = Corner::of(simd, t);
     match show {
         Show::Orientation | Show::Anisotropy => a,
-        Show::AnisotropySqrt => a / (c(1.0) + (c(1.0) - a * a).max(c(0.0)).sqrt()),
+        Show::AnisotropySqrt => a / (c(1.0) + (c(1.0) - a * a).at_least(c(0.0)).sqrt()),
         Show::AnisotropySquared => a * a,
         Show::Condition => a * 0.5 + 0.5,
         Show::Significance => a.simd_gt(c(params.threshold)).select(a, c(0.0)),
         Show::Magnitude => {
-            let gradient = lambda1.max(c(0.0)).sqrt();
+            let gradient = lambda1.at_least(c(0.0)).sqrt();
             gradient / (gradient + HALF_GRADIENT)
         }
         Show::Harris => {
@@ -140,8 +140,8 @@ fn measure<S: Simd>(simd: S, show: Show, params: &Params, t: [f32x8<S>; 3]) -> f
             let grey = half_at_square(harris.abs().sqrt()) * 0.5;
             harris.simd_lt(c(0.0)).select(-grey, grey) + 0.5
         }
-        Show::Foerstner => half_at_square(determinant / trace.max(c(f32::MIN_POSITIVE))),
-        Show::TomasiKanade => half_at_square(determinant / lambda1.max(c(f32::MIN_POSITIVE))),
+        Show::Foerstner => half_at_square(determinant / trace.at_least(c(f32::MIN_POSITIVE))),
+        Show::TomasiKanade => half_at_square(determinant / lambda1.at_least(c(f32::MIN_POSITIVE))),
         Show::Rohr => half_at_square(determinant.sqrt()),
     }
 }
@@ -164,13 +164,13 @@ impl<S: Simd> Corner<S> {
         let c = |v: f32| f32x8::splat(simd, v);
         // Products of four gradients must not overflow.
         for v in &mut t {
-            *v = v.max(c(-1e9)).min(c(1e9));
+            *v = v.within(c(-1e9), c(1e9));
         }
         let [e, f, g] = t;
         let trace = e + g;
         let lambda1 = trace * 0.5 + tensor::axis((e - g) * 0.5, f).0;
         // What rounding leaves of the determinant of a tensor of rank one is no corner.
-        let determinant = (e * g - f * f - trace * 1e-6 * trace).max(c(0.0));
+        let determinant = (e * g - f * f - trace * 1e-6 * trace).at_least(c(0.0));
         Self { trace, lambda1, determinant }
     }
 }

@@ -62,8 +62,8 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 fn forth<S: Simd>(params: &Params, e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> [f32x8<S>; 3] {
     let least = f32x8::splat(e.simd, params.least);
     let eigen = eigen(e, f, g);
-    let larger = eigen.lambda1.max(least);
-    let smaller = eigen.lambda2.max(least).max(larger * params.share);
+    let larger = eigen.lambda1.at_least(least);
+    let smaller = eigen.lambda2.at_least(least).at_least(larger * params.share);
     composed(larger.ln(), smaller.ln(), eigen.major)
 }
 

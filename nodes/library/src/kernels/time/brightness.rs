@@ -23,6 +23,6 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |[r, g, b, a]| {
         let luma = (r * 0.2126 + g * 0.7152 + b * 0.0722) * a;
-        [luma.max(0.0f32).min(BRIGHTEST)]
+        [luma.within(0.0f32, BRIGHTEST)]
     }));
 }

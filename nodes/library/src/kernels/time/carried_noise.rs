@@ -74,16 +74,16 @@ fn faded<S: Simd>(simd: S, pass: &CpuPass<'_>, block: Block, params: &Params) ->
     let (px, py, qx, qy) = (x + ways[0], y + ways[1], x + ways[2], y + ways[3]);
     let (dx, dy) = (ways[2] - ways[0], ways[3] - ways[1]);
     let apart = dx * dx + dy * dy;
-    let t = (apart.sqrt() * params.decay).min(one);
+    let t = (apart.sqrt() * params.decay).at_most(one);
     let shared = one - t * t * (t * -2.0 + 3.0);
-    let own = (one - shared * shared).max(zero).sqrt();
+    let own = (one - shared * shared).at_least(zero).sqrt();
     let at_first = shared * noise_at(simd, common, px, py) + own * noise_at(simd, first, px, py);
     let at_second = shared * noise_at(simd, common, qx, qy) + own * noise_at(simd, second, qx, qy);
     // The common noise is like itself at both places as far as these are near: the variance of the sum is known.
-    let alike = shared * shared * (apart * params.falloff).max(-80.0).exp();
+    let alike = shared * shared * (apart * params.falloff).at_least(-80.0).exp();
     let (a, b) = (1.0 - params.share, params.share);
     let variance = alike * (2.0 * a * b) + (a * a + b * b);
-    let value = ((at_first * a + at_second * b) / variance.sqrt() + 0.5).max(zero).min(one);
+    let value = ((at_first * a + at_second * b) / variance.sqrt() + 0.5).within(zero, one);
     [value, value, value, one]
 }
 

@@ -52,7 +52,7 @@ fn taken_in<S: Simd>(simd: S, pass: &CpuPass<'_>, block: Block) -> [f32x8<S>; 4]
     let [cx, cy] = block.centres(simd);
     let (x, y) = (cx + counts.select(motion[0], zero), cy + counts.select(motion[1], zero));
     let mut carried = sample_sharp_covered4(simd, &pass.inputs[3], x, y);
-    carried[3] = carried[3].max(zero).min(one);
+    carried[3] = carried[3].within(zero, one);
     let carried = unpremultiply(carried);
     let alpha = (carried[3] - own[3]).mul_add(share, own[3]);
     let weight = alpha.simd_gt(LEAST_COVERAGE).select(share * carried[3] / alpha, zero);

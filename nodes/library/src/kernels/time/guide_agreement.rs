@@ -68,7 +68,7 @@ fn agreement<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: Block
     let motion: [f32x8<S>; 2] = block.read(simd, &pass.inputs[1]);
     let known = is_known(motion);
     let [cx, cy] = block.centres(simd);
-    let place = |p: f32x8<S>, full: i32| (p - 0.5).max(-2.0f32).min(full as f32 + 2.0).floor();
+    let place = |p: f32x8<S>, full: i32| (p - 0.5).within(-2.0f32, full as f32 + 2.0).floor();
     let [w, h] = theirs.full();
     let x: i32x8<S> = place(cx + known.select(motion[0], zero), w).to_int();
     let y: i32x8<S> = place(cy + known.select(motion[1], zero), h).to_int();
@@ -78,11 +78,11 @@ fn agreement<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: Block
         let alike = if params.kind == Guide::ObjectId as i32 {
             here.simd_eq(there).select(one, zero)
         } else {
-            let far = (here - there).abs() / here.max(1e-20);
+            let far = (here - there).abs() / here.at_least(1e-20);
             let nothing = here.simd_le(0.0) & there.simd_le(0.0);
-            nothing.select(one, (far * -20.0 + 2.0).max(zero).min(one))
+            nothing.select(one, (far * -20.0 + 2.0).within(zero, one))
         };
-        best = best.max(alike);
+        best = best.at_least(alike);
     }
     if params.weighted > 0.0 {
         let [weight]: [f32x8<S>; 1] = block.read(simd, &pass.inputs[2]);

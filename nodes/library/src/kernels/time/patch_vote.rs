@@ -58,7 +58,7 @@ fn votes<S: Simd>(simd: S, pass: &CpuPass<'_>, band: &mut Band<'_>) {
                 let at = patches.offset(across + (i & 1), along + (i >> 1));
                 let motion = [patches.data()[at], patches.data()[at + 1]];
                 let off = (brightness(simd, there, [x, y], motion) - origin).abs();
-                let weight = f32x4::splat(simd, 1.0) / (off * LEVELS).max(1.0f32);
+                let weight = f32x4::splat(simd, 1.0) / (off * LEVELS).at_least(1.0f32);
                 sums = [weight.mul_add(motion[0], sums[0]), weight.mul_add(motion[1], sums[1])];
                 weights += weight;
             }

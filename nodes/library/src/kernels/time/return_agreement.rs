@@ -46,7 +46,7 @@ fn agreement<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: Block
     let step: [f32x8<S>; 2] = block.read(simd, &pass.inputs[0]);
     let known = is_known(step);
     let [cx, cy] = block.centres(simd);
-    let place = |p: f32x8<S>, full: i32| (p - 0.5).max(-2.0f32).min(full as f32 + 2.0).floor();
+    let place = |p: f32x8<S>, full: i32| (p - 0.5).within(-2.0f32, full as f32 + 2.0).floor();
     let [w, h] = back.full();
     let x: i32x8<S> = place(cx + known.select(step[0], zero), w).to_int();
     let y: i32x8<S> = place(cy + known.select(step[1], zero), h).to_int();
@@ -55,10 +55,10 @@ fn agreement<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: Block
     for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
         let home = bounded(fetch2(simd, back, x + dx, y + dy), params.limit);
         let (mx, my) = (step[0] + home[0], step[1] + home[1]);
-        least = least.min(is_known(home).select(mx * mx + my * my, far));
+        least = least.at_most(is_known(home).select(mx * mx + my * my, far));
     }
     let slack = (step[0] * step[0] + step[1] * step[1]) * 0.01 + 1.0;
-    let mut agreement = (least / slack * -1.0 + 2.0).max(zero).min(1.0);
+    let mut agreement = (least / slack * -1.0 + 2.0).within(0.0, 1.0);
     if params.weighted > 0.0 {
         let [weight]: [f32x8<S>; 1] = block.read(simd, &pass.inputs[1]);
         agreement *= weight;
