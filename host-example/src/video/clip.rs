@@ -9,7 +9,10 @@ use std::process::ChildStdout;
 
 use super::container::container;
 use super::decode;
-use super::process::{Process, at, command, file};
+use super::decode::{OnError, Origin};
+use super::packets::Packets;
+use super::probe::probe;
+use super::process::{Process, at};
 use super::stream::Stream;
 use crate::error::{Error, Result};
 use crate::pixels::Pixels;
@@ -52,9 +55,10 @@ impl Clip {
         if !path.is_file() {
             return Err(Error::file(path, "is no file", "name a video"));
         }
-        let stream = Stream::of_file(path)?;
-        let times = if stream.is_steady { times(path)? } else { Vec::new() };
-        let count = if times.is_empty() { stream.frames.max(1) } else { times.len() } as i64;
+        let stream = probe(path)?;
+        let times = if stream.is_steady { Packets::of(path, &stream)?.times() } else { Vec::new() };
+        let count = if times.is_empty() { stream.frames.max(1) } else { times.len() as u64 };
+        let count = i64::try_from(count).unwrap_or(i64::MAX);
         let is_timed = container(path).is_some_and(|kind| TIMED.contains(&kind) || kind == WEBM);
         let times = if is_timed { times } else { Vec::new() };
         Ok(Self { path: path.to_owned(), stream, times, count, decoder: None })
@@ -83,8 +87,10 @@ impl Clip {
         }
         self.decoder = None;
         let first = if can_seek { number.clamp(1, self.count) } else { 1 };
-        let decode = decode::start(&self.path, &self.stream, self.before(first));
-        let mut process = at(decode, &self.path, FIX)?;
+        // Whoever looks at a damaged video wants to see what there is.
+        let origin = Origin::File(&self.path);
+        let mut decoder = decode::decoder(origin, &self.stream, self.before(first), OnError::Skip);
+        let mut process = at(Process::start(&mut decoder), &self.path, FIX)?;
         if let Some(from) = process.child().stdout.take() {
             self.decoder = Some(Decoder { process, from, next: first });
         }
@@ -116,21 +122,4 @@ impl Clip {
         let at = usize::try_from(number - 1).ok().filter(|at| *at > 0)?;
         Some((self.times.get(at - 1)? + self.times.get(at)?) / 2.0)
     }
-}
-
-/// When the frames of a file are shown, in order; nothing where the file does not tell.
-fn times(path: &Path) -> Result<Vec<f64>> {
-    let mut command = command("ffprobe");
-    command.args(["-v", "error", "-select_streams", "v:0", "-of", "csv"]);
-    command.args(["-show_entries", "packet=pts_time,flags:format=start_time", "-i"]).arg(file(path));
-    let text = at(Process::output(&mut command), path, FIX)?;
-    let start = text.lines().find_map(|line| line.strip_prefix("format,")?.trim().parse().ok());
-    let start: f64 = start.unwrap_or(0.0);
-    // What is marked by D is decoded and not shown.
-    let packets =
-        text.lines().filter_map(|line| line.strip_prefix("packet,")).filter(|line| !line.contains('D'));
-    let time = |line: &str| Some(line.split(',').next()?.trim().parse::<f64>().ok()? - start);
-    let mut times = packets.map(time).collect::<Option<Vec<f64>>>().unwrap_or_default();
-    times.sort_unstable_by(f64::total_cmp);
-    Ok(times)
 }

@@ -2,32 +2,57 @@
 
 use std::io::Read;
 use std::path::Path;
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 
-use super::container::{Y4M, is_pipe};
-use super::process::{Problem, Process, command, file};
+use clap::ValueEnum;
+
+use super::container::Y4M;
+use super::process::{self, PROTOCOLS, command};
 use super::stream::Stream;
 use crate::pixels::{Pixels, Samples};
 
 /// How ffmpeg changes between RGB and what videos hold.
 pub const EXACT: &str = "flags=bicubic+accurate_rnd+full_chroma_int+full_chroma_inp";
 
-/// Starts to decode `input`, which may be `-`, to its standard output: all of it, or from the first frame that is shown at
-/// `from` seconds or later, counted from where the file begins.
-///
-/// # Errors
-/// [`Problem::Missing`].
-pub fn start(input: &Path, stream: &Stream, from: Option<f64>) -> Result<Process, Problem> {
+/// What becomes of a video that is damaged or cut short.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum OnError {
+    /// Nothing is written.
+    Fail,
+    /// What can be read of it is written.
+    Skip,
+}
+
+/// Where a video comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum Origin<'a> {
+    /// A file.
+    File(&'a Path),
+    /// YUV4MPEG on the decoder's standard input.
+    Piped,
+}
+
+/// The command that decodes a video to its standard output: all of it, or from the first frame that is shown at `from`
+/// seconds or later, counted from where the file begins. It ends at the first error that ffmpeg counts as one unless
+/// errors are skipped.
+pub fn decoder(origin: Origin<'_>, stream: &Stream, from: Option<f64>, on_error: OnError) -> Command {
     let mut command = command("ffmpeg");
     command.args(["-v", "error"]);
-    if is_pipe(input) {
-        command.args(["-f", Y4M, "-i", "pipe:0"]).stdin(Stdio::piped());
-    } else {
-        command.arg("-nostdin");
-        if let Some(seconds) = from {
-            command.args(["-ss", &format!("{seconds:.6}")]);
+    if on_error == OnError::Fail {
+        command.arg("-xerror");
+    }
+    match origin {
+        Origin::Piped => {
+            command.args(PROTOCOLS).args(["-f", Y4M, "-i", "pipe:0"]).stdin(Stdio::piped());
         }
-        command.arg("-i").arg(file(input)).stdin(Stdio::null());
+        Origin::File(path) => {
+            command.arg("-nostdin");
+            if let Some(seconds) = from {
+                command.args(["-ss", &format!("{seconds:.6}")]);
+            }
+            process::read(&mut command, path);
+            command.stdin(Stdio::null());
+        }
     }
     let Stream { rate, range, matrix, .. } = stream;
     let change = format!("scale=in_color_matrix={matrix}:in_range={range}:out_range=pc:{EXACT}");
@@ -35,27 +60,19 @@ pub fn start(input: &Path, stream: &Stream, from: Option<f64>) -> Result<Process
     // Frames of unequal length are repeated or left out to last equally long.
     match stream.is_steady {
         true => command.args(["-fps_mode", "passthrough"]),
-        false => command.args(["-fps_mode", "cfr", "-r", rate]),
+        false => command.args(["-fps_mode", "cfr", "-r", &rate.to_string()]),
     };
-    command.args(["-pix_fmt", rgb(channels(stream)), "-f", "rawvideo", "pipe:1"]);
-    Process::start(command.stdout(Stdio::piped()))
+    command.args(["-pix_fmt", rgb(stream.channels()), "-f", "rawvideo", "pipe:1"]);
+    command.stdout(Stdio::piped());
+    command
 }
 
 /// The next frame of a decoder; nothing at its end. A last frame that is cut short is one of a decoder that failed, which
 /// says why.
 pub fn frame(stream: &Stream, from: &mut impl Read) -> Option<Pixels> {
-    let channels = channels(stream);
-    let length = stream.width as usize * stream.height as usize * channels as usize;
-    let mut samples = vec![0u16; length];
+    let mut samples = vec![0u16; stream.samples()];
     from.read_exact(bytemuck::cast_slice_mut(&mut samples)).ok()?;
-    Pixels::new(stream.width, stream.height, channels, Samples::U16(samples))
-}
-
-/// Channels of a stream's frames: with alpha or without.
-pub fn channels(stream: &Stream) -> u32 {
-    let has_alpha =
-        ["yuva", "rgba", "bgra", "argb", "abgr", "gbrap", "ya"].iter().any(|a| stream.pixels.starts_with(a));
-    if has_alpha { 4 } else { 3 }
+    Pixels::new(stream.width, stream.height, stream.channels(), Samples::U16(samples))
 }
 
 /// The raw form of frames of so many channels of 16 bits.

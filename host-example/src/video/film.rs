@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::closed::Ratio;
 use super::encode::{Encoder, Encoding};
 use super::stream::Stream;
 use crate::apply::space::srgb_encode;
@@ -37,6 +38,8 @@ impl<'a> Film<'a> {
             return Err(Error::file(output, "has frames of a single row or column", "use a larger size"));
         }
         let channels = if first.channels() == 1 { 1 } else { 3 };
+        let rate = Ratio::of_rate(rate)
+            .ok_or_else(|| Error::file(output, format!("cannot have {rate} frames a second"), "use 24"))?;
         let stream = Stream::of_frames((size.0 & !1, size.1 & !1), rate);
         let encoding = Encoding { stream: &stream, channels, more: None, output, options };
         Ok(Self { output, size, channels, encoder: Encoder::start(&encoding, place)? })
@@ -60,12 +63,15 @@ impl<'a> Film<'a> {
         Ok(self.encoder.put(&opaque(frame)))
     }
 
-    /// Waits for the end of the video.
+    /// Waits for the end of a video, and makes sure that it holds every frame.
     ///
     /// # Errors
-    /// [`Error::Input`] with what ffmpeg complains of.
-    pub fn end(self) -> Result<()> {
-        self.encoder.end()
+    /// [`Error::Input`] where ffmpeg refuses to begin or there was no frame, [`Error::Failure`] for a video that is not whole.
+    pub fn end(film: Option<Self>, output: &Path) -> Result<()> {
+        match film {
+            Some(film) => film.encoder.end(),
+            None => Err(Error::file(output, "would have no frames", "choose frames that are there")),
+        }
     }
 }
 

@@ -1,16 +1,25 @@
 //! Videos, frame by frame through the `ffmpeg` program of the system: raw pictures come from one process of it and go to
-//! another, which takes sound, subtitles and metadata from the input.
+//! another, which takes sound, subtitles and metadata from the input. Files and streams are not trusted; `closed.rs` says how.
 
 mod clip;
+mod closed;
 mod container;
 mod decode;
 mod encode;
 mod film;
+#[cfg(test)]
+mod hostile;
+mod input;
+mod packets;
+mod probe;
 mod process;
+mod recount;
 mod run;
 mod stream;
+mod y4m;
 
 pub use self::clip::Clip;
 pub use self::container::is_video;
+pub use self::decode::OnError;
 pub use self::film::{Film, shown};
 pub use self::run::{Job, run};
