@@ -183,7 +183,8 @@ fn the_help_names_the_keys() {
         "  l  ",
         "  w  ",
         "hold",
-        "q, Escape",
+        "Escape",
+        "Ctrl+Q",
     ] {
         assert!(help.contains(key), "'{key}' is not in the help:\n{help}");
     }

@@ -15,7 +15,7 @@ use isophote_host::view::session::Session;
 use isophote_host::view::settings::Settings;
 use isophote_loader::Library;
 
-use support::others::{self, Cover, drop_files};
+use support::others::{Cover, drop_files};
 use support::places::{places, tabs_to};
 use support::window::{Display, Part, Window, screen, view};
 use support::{folder, listing, picture};
@@ -121,42 +121,6 @@ fn a_window_lives_on_when_it_is_hidden_covered_and_as_small_as_a_pixel() {
     assert_eq!(window.said(), "");
 }
 
-/// Command lines of processes that name a folder.
-fn processes(folder: &Path) -> Vec<String> {
-    let folder = folder.to_str().unwrap();
-    let lines = fs::read_dir("/proc").unwrap().flatten().filter_map(|process| {
-        let line = fs::read(process.path().join("cmdline")).ok()?;
-        let line = String::from_utf8_lossy(&line).replace('\0', " ");
-        (line.contains("--json") && line.contains(folder)).then_some(line)
-    });
-    lines.collect()
-}
-
-#[test]
-fn a_window_that_is_closed_during_an_export_ends_it_and_leaves_nothing() {
-    let Some(display) = Display::open("1000x700") else { return };
-    let folder = folder();
-    let at = |name: &str| folder.path().join(name);
-    picture(2400, 1800).save(at("photo.png")).unwrap();
-    fs::write(at("mine.json"), r#"{"style": "oil_paint"}"#).unwrap();
-    let mut command = view(folder.path(), &size());
-    let mut window = Window::open(&display, command.arg("--style").arg(at("mine.json")).arg(at("photo.png")));
-    window.wait_for("the picture", |window| window.title().starts_with("photo.png"));
-    let mut asking = session(&at("mine.json"), &at("photo.png"));
-    asking.plan_export();
-    let start = places(asking, SIZE)("Start the export", Role::Button).center();
-    window.key("ctrl+e");
-    window.wait_for("the export", |window| {
-        window.click([start.x as i32, start.y as i32]);
-        !processes(folder.path()).is_empty()
-    });
-    others::close(&display.name, &window.id);
-    let (status, _) = window.ended();
-    assert!(status.success(), "{status}: {}", window.said());
-    assert_eq!(processes(folder.path()), [""; 0], "no process outlives it");
-    assert_eq!(listing(folder.path()), ["mine.json", "photo.png", "view.json"]);
-}
-
 /// The most memory that a process has held, in bytes.
 fn peak(process: u32) -> u64 {
     let text = fs::read_to_string(format!("/proc/{process}/status")).unwrap();
@@ -191,7 +155,7 @@ fn a_picture_in_8k_opens_and_its_sliders_answer_within_a_bound_of_memory() {
     window.settled(CANVAS);
     let most = peak(window.process());
     eprintln!("8K: {} MiB", most >> 20);
-    eprintln!("{}", window.close());
+    eprintln!("{}", window.discard());
     assert!(most < MOST, "{} MiB", most >> 20);
     assert_eq!(window.said(), "");
 }

@@ -24,6 +24,8 @@ use support::{folder, isophote, picture, succeeds};
 const SIZE: (u32, u32) = (1000, 640);
 /// The canvas, above what is said at its lower border and beside the pointer.
 const CANVAS: Part = [40, 60, 650, 520];
+/// The left of the bar at the bottom, where an export tells how far it is.
+const BAR: Part = [4, 616, 160, 636];
 /// Time after which a drag that has changed nothing is made once more.
 const AGAIN: Duration = Duration::from_secs(15);
 /// A part of its left half.
@@ -75,10 +77,12 @@ fn a_photograph_is_dropped_looked_at_saved_reopened_and_exported() {
     let mut session = session();
     session.plan_export();
     let start = places(session, SIZE)("Start the export", Role::Button).center();
+    let bar = again.settled(BAR);
     again.key("ctrl+e");
     again.changes("the question what to export", CANVAS, &seen);
     again.click([start.x as i32, start.y as i32]);
     again.wait_for("the picture that is exported", |_| at("photo-look.png").exists());
+    again.becomes("the end of the export", BAR, &bar);
     again.close();
     assert_eq!(again.said(), "");
 

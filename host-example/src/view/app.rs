@@ -1,5 +1,6 @@
 //! The window: its events, and when a frame is drawn.
 
+mod keys;
 mod opening;
 
 use std::sync::Arc;
@@ -7,13 +8,14 @@ use std::time::{Duration, Instant};
 
 use egui_winit::State;
 use winit::application::ApplicationHandler;
-use winit::event::{ElementState, KeyEvent, WindowEvent};
+use winit::event::{ElementState, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
-use winit::keyboard::{Key, ModifiersState, NamedKey};
+use winit::keyboard::ModifiersState;
 use winit::window::{Window, WindowId};
 
 use super::background::Background;
 use super::clicks;
+use super::leaving::Leaving;
 use super::pace::Pace;
 use super::panel::Textures;
 use super::record::Hold;
@@ -247,6 +249,17 @@ impl App {
         self.entitle();
     }
 
+    /// Follows the export that the window waits for before it closes; says whether it closes now.
+    fn is_leaving(&mut self) -> bool {
+        if self.session.leaving == Leaving::Waits {
+            self.background.collect(&mut self.session);
+            if self.session.leaving != Leaving::Waits {
+                self.due = Some(Instant::now());
+            }
+        }
+        self.session.leaving == Leaving::Closes && self.background.end_export()
+    }
+
     /// Lets the title tell what is shown: at once, or with a later frame where it did so a moment ago.
     fn entitle(&mut self) {
         let (Some(window), title) = (&self.window, self.session.title()) else { return };
@@ -258,54 +271,6 @@ impl App {
                 window.set_title(&title);
                 self.titled = Some((Instant::now(), title));
             }
-        }
-    }
-
-    /// What a key does, unless something is being typed.
-    fn key(&mut self, event: &KeyEvent) {
-        let session = &mut self.session;
-        let pressed = event.state == ElementState::Pressed;
-        if event.logical_key.as_ref() == Key::Character("\\") {
-            session.viewport.peek = pressed;
-            return;
-        }
-        if !pressed {
-            return;
-        }
-        if self.modifiers.control_key() || self.modifiers.super_key() {
-            match event.logical_key.as_ref() {
-                Key::Character("z") if !self.modifiers.shift_key() => session.undo(),
-                Key::Character("z" | "Z" | "y") => session.redo(),
-                Key::Character("e") => session.plan_export(),
-                Key::Character("o") => session.wishes.push(Wish::ChooseFile),
-                Key::Character("s") => session.save_look(self.modifiers.shift_key()),
-                Key::Character("S") => session.save_look(true),
-                Key::Character("q") => session.wishes.push(Wish::Quit),
-                _ => {}
-            }
-            return;
-        }
-        ui::keys::press(session, &event.logical_key);
-    }
-
-    /// Whether something is being typed or a menu is open, which keys belong to then.
-    fn is_typing(&self) -> bool {
-        let context = self.input.as_ref().map(State::egui_ctx);
-        context.is_some_and(|context| context.text_edit_focused() || egui::Popup::is_any_open(context))
-    }
-
-    /// Lets the controls see an event first.
-    fn pass_on(&mut self, event: &WindowEvent) {
-        let (Some(window), Some(input)) = (&self.window, &mut self.input) else { return };
-        let tab = matches!(event, WindowEvent::KeyboardInput { event, .. }
-            if event.logical_key == Key::Named(NamedKey::Tab));
-        // Tab goes from style to style, unless nothing is open or something is being typed or chosen.
-        let switches = self.session.has_picture() && !self.session.is_covered();
-        if tab && switches && !input.egui_ctx().text_edit_focused() {
-            return;
-        }
-        if input.on_window_event(window, event).repaint && !matches!(event, WindowEvent::RedrawRequested) {
-            self.due = Some(Instant::now());
         }
     }
 }
@@ -336,12 +301,10 @@ impl ApplicationHandler<Event> for App {
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
-        let typing = self.is_typing();
         self.pass_on(&event);
         let result = match event {
             WindowEvent::CloseRequested => {
-                self.session.wishes.push(Wish::Quit);
-                self.background.grant(&mut self.session);
+                self.leave();
                 Ok(())
             }
             WindowEvent::Resized(size) => {
@@ -360,9 +323,8 @@ impl ApplicationHandler<Event> for App {
             }
             WindowEvent::KeyboardInput { event, is_synthetic, .. } => {
                 let is_real = !is_synthetic || event.state == ElementState::Released;
-                if is_real && !typing {
+                if is_real {
                     self.key(&event);
-                    self.due = Some(Instant::now());
                 }
                 Ok(())
             }
@@ -375,7 +337,9 @@ impl ApplicationHandler<Event> for App {
                 Ok(())
             }
             WindowEvent::DroppedFile(path) => {
-                self.session.wishes.push(Wish::Open(path));
+                if !self.session.leaving.is_shown() {
+                    self.session.wishes.push(Wish::Open(path));
+                }
                 Ok(())
             }
             WindowEvent::RedrawRequested => self.draw(),
@@ -385,7 +349,7 @@ impl ApplicationHandler<Event> for App {
     }
 
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
-        if self.session.record.is_finished() || self.background.is_over() {
+        if self.session.record.is_finished() || self.is_leaving() {
             event_loop.exit();
             return;
         }
@@ -406,7 +370,8 @@ impl ApplicationHandler<Event> for App {
             }
             return;
         }
-        let closing = self.background.is_closing().then(|| Instant::now() + CLOSING);
+        let waits = matches!(self.session.leaving, Leaving::Waits | Leaving::Closes);
+        let closing = waits.then(|| Instant::now() + CLOSING);
         // A picture that stands still costs nothing.
         let unseen = self.due.filter(|_| self.hidden);
         let next = [due, unseen, revival, closing].into_iter().flatten().min();

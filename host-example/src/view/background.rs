@@ -96,7 +96,6 @@ pub struct Background {
     /// Whether a dialog is open.
     choosing: bool,
     wake: Wake,
-    over: bool,
 }
 
 impl Background {
@@ -122,27 +121,14 @@ impl Background {
             export: None,
             choosing: false,
             wake: Arc::clone(wake),
-            over: false,
         })
     }
 
-    /// Whether the window is to be closed as soon as what is exported has ended.
-    pub fn is_closing(&self) -> bool {
-        self.over
-    }
-
-    /// Whether the window is to be closed now. An export is ended before, so that nothing of it is left.
-    pub fn is_over(&self) -> bool {
-        let is_running = |export: &Export| export.poll().state == State::Running;
-        self.over && !self.export.as_ref().is_some_and(is_running)
-    }
-
-    /// Ends what is being exported, and then the window.
-    fn close(&mut self) {
-        self.over = true;
-        if let Some(export) = &mut self.export {
-            export.cancel();
-        }
+    /// Ends what is being exported; says whether it has ended, so that nothing of it is left.
+    pub fn end_export(&mut self) -> bool {
+        let Some(export) = &mut self.export else { return true };
+        export.cancel();
+        export.poll().state != State::Running
     }
 
     /// What is being done.
@@ -259,7 +245,6 @@ impl Background {
                     copied = Some(command::line(session));
                     session.notes.say("Copied the command line of this picture");
                 }
-                Wish::Quit => self.close(),
             }
         }
         if !files.is_empty() {
@@ -314,7 +299,7 @@ impl Background {
             Export::start(job)
         });
         match started {
-            Ok(export) => self.export = Some(export),
+            Ok(export) => (self.export, session.exported) = (Some(export), Some(0.0)),
             Err(error) => session.notes.complain(&error),
         }
     }
@@ -324,6 +309,7 @@ impl Background {
         let Some(export) = &self.export else { return };
         let Progress { done, total, state } = export.poll();
         session.exported = Some((done / total.max(1.0)) as f32);
+        let is_done = state == State::Done;
         match state {
             State::Running => return,
             State::Done => session.notes.say("Exported"),
@@ -332,7 +318,8 @@ impl Background {
                 session.notes.complain(&Error::failure(problem, "export again"));
             }
         }
-        (self.export, session.exported) = (None, None);
+        self.export = None;
+        session.end_export(is_done);
     }
 
     /// Asks for a file on a thread of its own: dialogs of the system may stay open for long.

@@ -19,7 +19,7 @@ use super::document::kind::Kind;
 use crate::apply::exr::Selection;
 use crate::apply::read;
 use crate::error::{Error, Result};
-use crate::files;
+use crate::files::{self, Existing};
 use crate::frames::Pattern;
 use crate::video::{self, Film};
 
@@ -101,13 +101,18 @@ impl Job {
             }
             _ => {
                 command.arg("apply").arg("--preset").arg(&preset);
+                // Whoever chose the document itself was asked; of a video the sound is read to the end.
+                if self.kind != Kind::Video {
+                    command.arg("--in-place");
+                }
             }
         }
         if let Some(frames) = &self.frames {
             command.arg("--frames").arg(frames);
         }
         let output = if self.is_in_two_steps() { folder.join(FRAMES) } else { self.output.clone() };
-        command.args(&self.arguments).args(["--json", "--"]).arg(&self.input).arg(output);
+        // What is there may go: the dialog has asked.
+        command.args(&self.arguments).args(["--force", "--json", "--"]).arg(&self.input).arg(output);
         Ok(command)
     }
 }
@@ -316,8 +321,8 @@ impl Shared {
             || Error::file(pictures, "has no place for a frame number", "report this mistake in the program");
         let pattern = Pattern::new(pictures)?.ok_or_else(none)?;
         let frames = pattern.on_disk()?;
-        files::check_writable(&job.output)?;
-        files::write_by_path(&job.output, |place| {
+        files::check_writable(&job.output, Existing::Replace)?;
+        files::write_by_path(&job.output, Existing::Replace, |place| {
             let mut film = None::<Film<'_>>;
             for number in frames {
                 if self.is_cancelled() {
@@ -333,7 +338,7 @@ impl Shared {
                     break;
                 }
             }
-            film.map_or(Ok(()), Film::end)
+            Film::end(film, &job.output)
         })
     }
 }

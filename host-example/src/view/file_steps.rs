@@ -2,11 +2,11 @@
 //! kept until the window is closed.
 
 use std::fs;
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
-use crate::files;
+use crate::files::{self, Existing};
 
 /// Most bytes of a file that is kept; looks have some kilobytes.
 const MOST_BYTES: u64 = 16 << 20;
@@ -93,7 +93,7 @@ fn restore(file: &Path, expected: &Content, wanted: &Content) -> Result<()> {
         return Err(Error::file(file, problem, "change it by hand"));
     }
     match wanted {
-        Some(bytes) => files::write(file, |out| out.write_all(bytes).map_err(|e| e.to_string())),
+        Some(bytes) => files::write_bytes(file, Existing::Replace, bytes),
         None => fs::remove_file(file)
             .map_err(|e| Error::file(file, format!("cannot be deleted: {e}"), "delete it in a file manager")),
     }

@@ -8,7 +8,7 @@ use serde_json::Value as Json;
 use super::chain::{Chain, Watched};
 use super::value::Value;
 use crate::error::{AtPlace, Error, Result};
-use crate::files;
+use crate::files::{self, Existing};
 use crate::stylize::preset::{self, Preset, Track};
 use crate::stylize::source;
 use crate::stylize::style::{Setting, Style};
@@ -192,6 +192,11 @@ impl Look {
         }
     }
 
+    /// What it was opened or saved as.
+    pub fn opened(&self) -> &Preset {
+        &self.opened
+    }
+
     /// Whether it is not what it was opened or saved as.
     pub fn is_changed(&self) -> bool {
         self.preset != self.opened
@@ -353,7 +358,7 @@ impl Look {
             preset.style = self.whole()?.style;
         }
         let text = preset.to_json();
-        files::write(file, |out| std::io::Write::write_all(out, text.as_bytes()).map_err(|e| e.to_string()))?;
+        files::write_bytes(file, Existing::Replace, text.as_bytes())?;
         self.opened = preset.clone();
         self.preset = preset;
         self.source = file.to_owned();

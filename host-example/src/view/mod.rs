@@ -3,7 +3,7 @@
 //! | what | where |
 //! |---|---|
 //! | the window's events, and when a frame is drawn | `app`, `clicks`, `pace` |
-//! | all that is known of what is shown, and steps back | `session`, `history`, `file_steps`, `look`, `chain`, `value`, `scenery`, `reel`, `viewport` |
+//! | all that is known of what is shown, steps back, and the window's end | `session`, `leaving`, `history`, `file_steps`, `look`, `chain`, `value`, `scenery`, `reel`, `viewport` |
 //! | what comes with the program to try looks on | `demo`, `samples` |
 //! | looks to choose from | `browser`, `preview`, `comparison`, `saving` |
 //! | work beside the window | `worker`, `background`, `dialogs`, `look_work`, `watch`, `idle`, `document`, `export` |
@@ -25,6 +25,7 @@ pub mod export;
 mod file_steps;
 mod history;
 mod idle;
+pub mod leaving;
 mod live_look;
 pub mod look;
 mod look_work;

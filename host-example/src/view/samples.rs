@@ -2,14 +2,13 @@
 //! chores, rendered by the program itself (`cargo xtask samples`).
 
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
 
 use crate::error::{Error, Result};
-use crate::files;
+use crate::files::{self, Existing};
 
 /// Pixels across and down of the small pictures, whose shape is that of the large ones.
 const SMALL: (u32, u32) = (360, 240);
@@ -49,7 +48,7 @@ impl Sample {
             fs::create_dir_all(folder).map_err(|e| {
                 Error::file(folder, format!("cannot be made: {e}"), "open a file of your own")
             })?;
-            files::write(&file, |out| out.write_all(self.bytes).map_err(|e| e.to_string()))?;
+            files::write_bytes(&file, Existing::Replace, self.bytes)?;
         }
         Ok(file)
     }

@@ -1,11 +1,12 @@
 //! What the window shows and what was done to it. All of it outlives a lost device.
 
 mod browsing;
+mod leaving;
 mod looks;
 mod steps;
 
 use std::borrow::Cow;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -15,6 +16,7 @@ use super::comparison::Comparison;
 use super::document::kind::Kind;
 use super::file_steps::FileSteps;
 use super::history::History;
+use super::leaving::Leaving;
 use super::look::{Knob, Look};
 use super::notes::Notes;
 use super::plan::Plan;
@@ -29,8 +31,10 @@ use super::viewport::{Compare, Overlay, Viewport};
 use crate::apply::exr::{Guide, Layer};
 use crate::error::Result;
 use crate::stylize::precision::Precision;
+use crate::stylize::preset::Preset;
 use isophote_loader::Library;
 use isophote_loader::catalogue::Node;
+use isophote_loader::printable;
 
 /// What only the window itself can do, asked for by its controls.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,8 +65,6 @@ pub enum Wish {
     CancelExport,
     /// Put the command line of the present picture on the clipboard.
     CopyCommand,
-    /// Close the window.
-    Quit,
 }
 
 /// What undo brings back.
@@ -144,7 +146,9 @@ pub struct Session {
     pub busy: Option<&'static str>,
     /// What is to be exported, while that is asked.
     pub plan: Option<Plan>,
-    /// The share of an export that is done.
+    /// Whether the window is to be closed.
+    pub leaving: Leaving,
+    /// The share of an export that is done, while there is one.
     pub exported: Option<f32>,
     /// Where the pointer is on the picture, in pixels of the window.
     pub pointer: Option<[f32; 2]>,
@@ -153,6 +157,9 @@ pub struct Session {
     /// Whether the scene was opened before its place in the window was known.
     is_unframed: bool,
     current: usize,
+    /// What looks are in their files, or as the command line has made them: that much is not lost with the window. Others are as
+    /// they were opened.
+    kept: HashMap<PathBuf, Preset>,
     edits: History<State>,
     files: FileSteps,
 }
@@ -193,11 +200,13 @@ impl Session {
             shows_help: false,
             busy: None,
             plan: None,
+            leaving: Leaving::default(),
             exported: None,
             pointer: None,
             probed: None,
             is_unframed: false,
             current: 0,
+            kept: HashMap::new(),
             edits: History::default(),
             files: FileSteps::default(),
         })
@@ -360,7 +369,9 @@ impl Session {
 
     /// Title of the window: what is open, the look, frames shown since the last switch, time of the last one.
     pub fn title(&self) -> String {
+        // Programs that list windows print their titles.
         let style = self.look().source.file_stem().unwrap_or_default().to_string_lossy();
+        let style = printable(&style);
         if !self.has_picture() {
             return "Isophote".into();
         }
@@ -368,12 +379,13 @@ impl Session {
             Precision::Exact => String::new(),
             precision => format!(" - {} precision", precision.name()),
         };
+        let name = printable(&self.name);
         match self.record.present() {
             Some((frames, time)) => {
                 let time = time.as_secs_f64() * 1e3;
-                format!("{} - {style} - frame {frames} - {time:.1} ms{precision}", self.name)
+                format!("{name} - {style} - frame {frames} - {time:.1} ms{precision}")
             }
-            None => format!("{} - {style}{precision}", self.name),
+            None => format!("{name} - {style}{precision}"),
         }
     }
 }

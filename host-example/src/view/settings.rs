@@ -6,7 +6,7 @@ use std::{env, fs};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::files;
+use crate::files::{self, Existing};
 
 /// Names the file instead of the usual place.
 const PLACE: &str = "ISOPHOTE_SETTINGS";
@@ -78,7 +78,7 @@ impl Settings {
                 .map_err(|e| Error::file(folder, format!("cannot be made: {e}"), "make the folder"))?;
         }
         let text = serde_json::to_string_pretty(self).unwrap_or_default();
-        files::write(place, |out| std::io::Write::write_all(out, text.as_bytes()).map_err(|e| e.to_string()))
+        files::write_bytes(place, Existing::Replace, text.as_bytes())
     }
 
     /// Offers the looks of a folder from now on.

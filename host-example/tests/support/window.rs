@@ -12,6 +12,8 @@ use tempfile::TempDir;
 /// Software rendering on a busy machine takes its time; this only ends a test that hangs.
 const PATIENCE: Duration = Duration::from_secs(240);
 const TICK: Duration = Duration::from_millis(50);
+/// A corner of the window's menu, which is darker while it is asked whether the window may be closed.
+const CORNER: Part = [0, 0, 60, 24];
 
 /// A child that does not outlive its test.
 pub struct Running(pub Child);
@@ -245,12 +247,39 @@ impl<'d> Window<'d> {
         (status, report)
     }
 
-    /// Closes it, which must succeed; returns what it printed.
+    /// Closes it, which must succeed without a question, as nothing is lost; returns what it printed.
     pub fn close(&mut self) -> String {
-        self.key("q");
+        self.key("ctrl+q");
+        self.closed()
+    }
+
+    /// Closes it although something is lost, which is asked; returns what it printed.
+    pub fn discard(&mut self) -> String {
+        self.asks(|window| window.key("ctrl+q"));
+        self.key("Tab");
+        self.key("Return");
+        self.closed()
+    }
+
+    /// Waits until it has closed, which must succeed; returns what it printed.
+    pub fn closed(&mut self) -> String {
         let (status, report) = self.ended();
         assert!(status.success(), "{status}: {}", self.said());
         report
+    }
+
+    /// Does something that lets it ask whether it may be closed; returns what a corner of it was like before.
+    pub fn asks(&mut self, act: impl FnOnce(&mut Self)) -> Vec<u8> {
+        let before = screen(self.display.folder(), CORNER);
+        act(self);
+        self.changes("a question", CORNER, &before);
+        self.settled(CORNER);
+        before
+    }
+
+    /// Waits until the corner is as it was, since nothing is asked any more.
+    pub fn goes_on(&mut self, before: &[u8]) {
+        self.becomes("the window of before", CORNER, before);
     }
 }
 

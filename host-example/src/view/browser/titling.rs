@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
-use crate::files;
+use crate::files::{self, Existing};
 use crate::stylize::preset::{self, Preset};
 use crate::stylize::source;
 use crate::stylize::title::{Title, is_line};
@@ -60,7 +60,7 @@ pub fn write(file: &Path, title: &Title) -> Result<()> {
     }
     let preset = Preset { title: title.clone(), ..Preset::parse(file, &text)? };
     let text = preset.to_json();
-    files::write(file, |out| std::io::Write::write_all(out, text.as_bytes()).map_err(|e| e.to_string()))
+    files::write_bytes(file, Existing::Replace, text.as_bytes())
 }
 
 #[cfg(test)]

@@ -219,6 +219,7 @@ impl Session {
                 }
                 self.notes.say(format!("Saved {}", look.source.display()));
                 self.browser.is_outdated = true;
+                self.keep(&look);
                 if saving.is_present {
                     self.saved(look);
                 }

@@ -20,6 +20,11 @@ impl Session {
         self.turn_to(current);
     }
 
+    /// A file has what this look was opened as.
+    pub(super) fn keep(&mut self, look: &Look) {
+        self.kept.insert(look.source.clone(), look.opened().clone());
+    }
+
     pub(super) fn turn_to(&mut self, index: usize) {
         if index != self.current {
             self.record.begin();
@@ -94,6 +99,7 @@ impl Session {
         let before = self.state();
         let known = self.looks.iter().position(|known| known.source == look.source);
         let index = known.unwrap_or(self.looks.len());
+        self.keep(&look);
         match known {
             Some(index) => self.looks[index] = look,
             None => self.looks.push(look),
@@ -111,8 +117,9 @@ impl Session {
         let name = source.file_name().unwrap_or_default().to_string_lossy();
         match read {
             // What the window has written itself is known.
-            Ok(look) if look.has_origin_of(self.look()) => {}
+            Ok(look) if look.has_origin_of(self.look()) => self.keep(&look),
             Ok(look) => {
+                self.keep(&look);
                 let lost = self.look().is_changed();
                 self.let_go();
                 self.edit("file", |old| *old = look);
@@ -134,6 +141,7 @@ impl Session {
             }
             let knobs = look.knobs(&self.library).unwrap_or_default();
             settings.iter().for_each(|setting| look.take(&knobs, setting));
+            self.kept.insert(look.source.clone(), look.preset.clone());
         }
     }
 

@@ -3,11 +3,11 @@
 use winit::keyboard::{Key, NamedKey};
 
 use crate::view::browser::Step;
-use crate::view::session::{Session, Wish};
+use crate::view::session::Session;
 use crate::view::viewport::Compare;
 
 /// Keys and what they do, for the help of the program and of the window.
-pub const KEYS: [(&str, &str); 27] = [
+pub const KEYS: [(&str, &str); 28] = [
     ("drag", "turns the scene; moves a picture"),
     ("Shift+drag", "pans, as other buttons do"),
     ("wheel", "zooms"),
@@ -34,18 +34,21 @@ pub const KEYS: [(&str, &str); 27] = [
     ("Ctrl+S", "saves the look; with Shift under another name"),
     ("r", "sets everything back to the style's defaults"),
     ("?", "shows and hides the help"),
-    ("q, Escape", "close the window"),
+    ("Escape", "closes what is open in front: a dialog, the help, the looks"),
+    ("Ctrl+Q", "closes the window, and asks before if something would be lost"),
 ];
 
 /// A key was pressed, without Ctrl.
 pub fn press(session: &mut Session, key: &Key) {
-    if session.is_covered() && cover(session, key) {
+    if *key == Key::Named(NamedKey::Escape) {
+        return session.close_front();
+    }
+    let is_elsewhere = session.leaving.is_shown() || session.has_dialog();
+    if is_elsewhere || session.is_covered() && cover(session, key) {
         return;
     }
     let toggled = |now: Compare, wanted: Compare| if now == wanted { Compare::Off } else { wanted };
     match key.as_ref() {
-        Key::Named(NamedKey::Escape) if session.shows_help => session.shows_help = false,
-        Key::Named(NamedKey::Escape) | Key::Character("q") => session.wishes.push(Wish::Quit),
         Key::Named(NamedKey::Space) => session.toggle_playing(),
         // Before anything is open it goes from control to control.
         Key::Named(NamedKey::Tab) if session.has_picture() => session.choose_next(),
@@ -82,15 +85,7 @@ fn cover(session: &mut Session, key: &Key) -> bool {
     if session.shows_help {
         return false;
     }
-    let is_asked =
-        session.saving.is_some() || session.browser.titling.is_some() || session.browser.deleting.is_some();
     match key.as_ref() {
-        Key::Named(NamedKey::Escape) if is_asked => {
-            (session.saving, session.browser.titling, session.browser.deleting) = (None, None, None);
-        }
-        _ if is_asked => {}
-        Key::Named(NamedKey::Escape) if session.comparison.is_some() => session.end_comparison(),
-        Key::Named(NamedKey::Escape) => session.browser.is_open = false,
         Key::Named(NamedKey::Tab) => {}
         Key::Character("c") if session.comparison.is_none() => session.compare_marked(),
         _ if session.comparison.is_some() => return false,

@@ -14,6 +14,7 @@ mod export;
 mod help;
 pub mod keys;
 mod layers;
+mod leaving;
 mod lighting;
 mod notes;
 mod panel;
@@ -82,6 +83,8 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     export::show(ui.ctx(), session);
     dialogs::show(ui.ctx(), session);
     help::show(ui.ctx(), session);
+    session.follow_saving();
+    leaving::show(ui.ctx(), session);
 }
 
 fn bar(panel: Panel) -> Panel {

@@ -79,8 +79,9 @@ fn file_menu(ui: &mut Ui, session: &mut Session) {
         if !session.settings.recent.is_empty() {
             ui.separator();
         }
-        if ui.add(Button::new("Close the window").shortcut_text("q")).clicked() {
-            session.wishes.push(Wish::Quit);
+        if ui.add(Button::new("Close the window").shortcut_text("Ctrl+Q")).clicked() {
+            session.leave();
+            ui.close();
         }
     });
 }
