@@ -3,6 +3,7 @@
 use isophote::engine;
 use isophote_abi::*;
 use std::any::Any;
+use std::fmt::Write as _;
 
 /// Why a call failed: the status and the line that a person reads.
 #[derive(Debug)]
@@ -19,7 +20,7 @@ pub type Outcome<T> = Result<T, Failure>;
 impl Failure {
     /// A failure of this status.
     pub fn new(status: IsophoteStatus, message: impl Into<String>) -> Self {
-        Self { status, message: message.into() }
+        Self { status, message: one_line(message.into()) }
     }
 
     /// An argument that is null, not text, or none of the listed numbers.
@@ -70,5 +71,39 @@ impl From<isophote::Error> for Failure {
             _ => ISOPHOTE_ERROR_INTERNAL,
         };
         Self::new(status, error.to_string())
+    }
+}
+
+/// A message on one line, as hosts print it on terminals: names in graph files may hold what moves a cursor or turns the
+/// direction of text, which is shown as `\u001b`, as in JSON.
+fn one_line(message: String) -> String {
+    let acts = |c: char| c.is_control() || matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    if !message.contains(acts) {
+        return message;
+    }
+    let mut line = String::with_capacity(message.len());
+    for c in message.chars() {
+        match c {
+            // Devices tell what is wrong with a shader on several lines.
+            '\n' | '\r' | '\t' => line.push(' '),
+            c if acts(c) => {
+                let _ = write!(line, "\\u{:04x}", u32::from(c));
+            }
+            c => line.push(c),
+        }
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_are_lines_that_terminals_show_as_they_are() {
+        let shown = |message: &str| Failure::argument(message).message;
+        assert_eq!(shown("no node 'größer 絵'"), "no node 'größer 絵'");
+        assert_eq!(shown("no 'a\x1b]0;b\x07\u{9b}\u{202e}\0'"), r"no 'a\u001b]0;b\u0007\u009b\u202e\u0000'");
+        assert_eq!(shown("a shader:\n\tno such function"), "a shader:  no such function");
     }
 }

@@ -13,6 +13,14 @@ _LOOK_ITEMS = [(id, look.name, look.about) for id, look in _LOOKS.items()]
 _FAILURES = (isophote.IsophoteError, passes.NoRender, OSError, RuntimeError)
 
 
+def shown(text: object) -> str:
+    """Text for people, which Blender prints on the terminal, too.
+
+    Paths and names of a scene's file may hold what acts on a terminal; it is written as Python writes it.
+    """
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in str(text))
+
+
 class ISOPHOTE_OT_stylize(bpy.types.Operator):
     """Stylize the finished render; the result is the image 'Stylized Render'"""
 
@@ -24,7 +32,7 @@ class ISOPHOTE_OT_stylize(bpy.types.Operator):
         try:
             image = stylize.still(context)
         except _FAILURES as failure:
-            self.report({"ERROR"}, str(failure))
+            self.report({"ERROR"}, shown(failure))
             return {"CANCELLED"}
         _show(context, image)
         return {"FINISHED"}
@@ -40,9 +48,9 @@ class ISOPHOTE_OT_stylize_animation(bpy.types.Operator):
         """Does it at once, as scripts and Blender without a window want it."""
         try:
             for done, count, file in stylize.animation(context):
-                print(f"Isophote: {done} of {count}: {file}")
+                print(shown(f"Isophote: {done} of {count}: {file}"))
         except _FAILURES as failure:
-            self.report({"ERROR"}, str(failure))
+            self.report({"ERROR"}, shown(failure))
             return {"CANCELLED"}
         return {"FINISHED"}
 
@@ -65,7 +73,7 @@ class ISOPHOTE_OT_stylize_animation(bpy.types.Operator):
         except StopIteration:
             return self._end(context, "FINISHED")
         except _FAILURES as failure:
-            self.report({"ERROR"}, str(failure))
+            self.report({"ERROR"}, shown(failure))
             return self._end(context, "CANCELLED")
         context.window_manager.progress_update(done / count)
         _show(context, bpy.data.images[stylize.IMAGE])

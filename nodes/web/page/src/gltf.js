@@ -88,10 +88,10 @@ function forget(json, isLost) {
 }
 
 /**
- * Puts addresses within the page where a document names files.
+ * Puts addresses within the page where a document names files. No other address is left in it: loaders would follow it.
  * @returns {{urls: string[], warnings: string[]}} to be given back, and what is missing
  */
-function connect(json, bin, find, name) {
+export function connect(json, bin, find, name) {
   const urls = [];
   const warnings = [];
   const url = (blob) => {
@@ -128,23 +128,28 @@ function connect(json, bin, find, name) {
 /** Addresses of images; the names of those that cannot be had, whose textures are taken out. */
 function images(json, find, url) {
   const lost = new Map();
+  const lose = (index, label, image) => {
+    lost.set(index, label);
+    delete image.uri;
+  };
   (json.images ?? []).forEach((image, index) => {
     const label = image.uri?.startsWith("data:") === false ? image.uri : image.name ?? `image ${index + 1}`;
     if (/\.ktx2$/i.test(image.uri ?? "") || image.mimeType === "image/ktx2") {
-      lost.set(index, label);
+      lose(index, label, image);
     } else if (image.uri !== undefined && !image.uri.startsWith("data:")) {
       const file = find(image.uri);
       if (file === undefined) {
-        lost.set(index, label);
+        lose(index, label, image);
       } else {
         image.uri = url(file);
       }
     }
   });
-  const source = ({ source: plain, extensions = {} }) => extensions.EXT_texture_webp?.source ?? plain ?? extensions.KHR_texture_basisu?.source;
+  // In the order in which the loader looks.
+  const source = ({ source: plain, extensions = {} }) => extensions.EXT_texture_webp?.source ?? extensions.EXT_texture_avif?.source ?? plain;
   for (const texture of json.textures ?? []) {
     delete texture.extensions?.KHR_texture_basisu;
-    if (texture.source === undefined && texture.extensions?.EXT_texture_webp === undefined) {
+    if (source(texture) === undefined) {
       texture.isLost = true;
     }
   }
