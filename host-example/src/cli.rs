@@ -5,9 +5,12 @@ use clap::{CommandFactory, Parser, Subcommand};
 use crate::error::Result;
 use crate::verbs::{apply, bench, documents, farm, nodes, preset, render, sheet, view};
 
+const AFTER_HELP: &str = "Files that are there already stay unless --force is given, and no result takes the place of a file \
+    that is read; a picture gives way to its own result with --in-place.";
+
 /// Renders scenes and stylizes them; stylizes pictures and sequences of frames.
 #[derive(Debug, Parser)]
-#[command(name = "isophote", version, about)]
+#[command(name = "isophote", version, about, after_help = AFTER_HELP)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]

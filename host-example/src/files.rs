@@ -1,30 +1,25 @@
 //! Files that appear under their names only when they are whole.
 //!
-//! A file is written under another name in its folder and renamed. It is locked meanwhile, by which [`sweep`] tells
-//! what is being written from what a killed program left.
+//! A file is written under another name in its folder and renamed.
 
-use std::fs::{self, File, OpenOptions, TryLockError};
+use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
-
-use tempfile::NamedTempFile;
 
 use crate::error::{Error, Result};
-
-/// How the names of temporary files begin; [`kernel`] follows.
-const TEMPORARY: &str = ".isophote-";
-
-/// Age after which a temporary file that nobody locks was left behind, whoever wrote it: locks of other machines may
-/// not show.
-const LEFT_BEHIND: Duration = Duration::from_secs(24 * 3600);
+use crate::temporary::{self, Temporary};
 
 /// Most symbolic links that are followed from one to the next, as many as Linux does.
 const MOST_LINKS: usize = 40;
 
-/// Temporary files of this process.
-static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+/// What becomes of a file that has the name of a new one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Existing {
+    /// It stays, and the new one is refused.
+    Keep,
+    /// It gives way to the new one.
+    Replace,
+}
 
 /// What a file is written to by [`write()`].
 #[derive(Debug)]
@@ -68,183 +63,119 @@ impl Seek for Sink<'_> {
 /// leaves its permissions to the new one; a symbolic link stays, and what it points to is replaced.
 ///
 /// # Errors
-/// [`Error::Input`] when the folder is missing or cannot be written; [`Error::Failure`] when the disk is full.
+/// [`Error::Input`] when the folder is missing or cannot be written, and when a file is there that is to be kept, even one
+/// that has come meanwhile; [`Error::Failure`] when the disk is full.
 pub fn write(
     path: &Path,
+    existing: Existing,
     content: impl FnOnce(&mut BufWriter<Sink<'_>>) -> std::result::Result<(), String>,
 ) -> Result<()> {
-    let fail = |problem: io::Error| unwritable(path, problem.kind(), problem);
-    let target = target(path)?;
-    let mut temporary = Temporary::in_folder(folder(&target)).map_err(fail)?;
-    let mut writer = BufWriter::new(Sink { file: temporary.file.as_file_mut(), failure: None });
-    if let Err(problem) = content(&mut writer) {
-        return Err(unwritable(path, writer.get_ref().failure.unwrap_or(ErrorKind::Other), problem));
-    }
-    writer.flush().map_err(fail)?;
-    drop(writer);
-    temporary.take_permissions(&target);
-    // A name must not appear before what it names is on the disk.
-    temporary.file.as_file().sync_all().map_err(fail)?;
-    temporary.file.persist(&target).map_err(|e| fail(e.error))?;
-    Ok(())
+    let (target, mut temporary) = begin(path, existing)?;
+    fill(temporary.file(), path, content)?;
+    finish(temporary, path, &target, existing)
+}
+
+/// Writes bytes as [`write()`] does.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_bytes(path: &Path, existing: Existing, bytes: &[u8]) -> Result<()> {
+    write(path, existing, |file| file.write_all(bytes).map_err(|e| e.to_string()))
 }
 
 /// As [`write()`], by another program that is told the path of the file for the time being.
 ///
 /// # Errors
 /// As [`write()`], and what `content` says.
-pub fn write_by_path(path: &Path, content: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
-    let fail = |problem: io::Error| unwritable(path, problem.kind(), problem);
+pub fn write_by_path(
+    path: &Path,
+    existing: Existing,
+    content: impl FnOnce(&Path) -> Result<()>,
+) -> Result<()> {
+    let (target, temporary) = begin(path, existing)?;
+    content(temporary.path())?;
+    finish(temporary, path, &target, existing)
+}
+
+/// The place of a file, and another one beside it that is to be written.
+fn begin(path: &Path, existing: Existing) -> Result<(PathBuf, Temporary)> {
     let target = target(path)?;
-    let temporary = Temporary::in_folder(folder(&target)).map_err(fail)?;
-    content(temporary.file.path())?;
-    temporary.take_permissions(&target);
-    temporary.file.as_file().sync_all().map_err(fail)?;
-    temporary.file.persist(&target).map_err(|e| fail(e.error))?;
-    Ok(())
+    refuse_existing(path, &target, existing)?;
+    let temporary = Temporary::in_folder(folder(&target))
+        .map_err(|problem| unwritable(path, Some(problem.kind()), problem))?;
+    Ok((target, temporary))
+}
+
+/// Writes the content of the file that will be `path`.
+fn fill(
+    file: &mut File,
+    path: &Path,
+    content: impl FnOnce(&mut BufWriter<Sink<'_>>) -> std::result::Result<(), String>,
+) -> Result<()> {
+    let mut writer = BufWriter::new(Sink { file, failure: None });
+    let written = content(&mut writer).and_then(|()| writer.flush().map_err(|e| e.to_string()));
+    // Encoders may keep to themselves what failed at the very end.
+    match (written, writer.get_ref().failure) {
+        (Ok(()), None) => Ok(()),
+        (Ok(()), Some(kind)) => Err(unwritable(path, Some(kind), kind)),
+        (Err(problem), kind) => Err(unwritable(path, kind, problem)),
+    }
+}
+
+/// Gives a file its name.
+fn finish(temporary: Temporary, path: &Path, target: &Path, existing: Existing) -> Result<()> {
+    temporary.rename(target, existing == Existing::Replace).map_err(|problem| match problem.kind() {
+        ErrorKind::AlreadyExists => exists(path),
+        kind => unwritable(path, Some(kind), problem),
+    })
+}
+
+/// Refuses a file that is there and to be kept. `target` is where `path` leads.
+fn refuse_existing(path: &Path, target: &Path, existing: Existing) -> Result<()> {
+    match existing {
+        Existing::Keep if target.exists() => Err(exists(path)),
+        _ => Ok(()),
+    }
+}
+
+/// The error of a file that is there and to be kept.
+pub fn exists(path: &Path) -> Error {
+    Error::file(
+        path,
+        "is there already, and would be replaced",
+        "name another file, or add --force to replace it",
+    )
 }
 
 /// Whether a file could be written at this place, as far as can be told without touching anything.
 ///
 /// # Errors
-/// [`Error::Input`] when the folder is missing or may not be written, or the place is no file.
-pub fn check(path: &Path) -> Result<()> {
-    let fail = |problem: io::Error| unwritable(path, problem.kind(), problem);
+/// [`Error::Input`] when the folder is missing or may not be written, or the place is no file or has one that is to be kept.
+pub fn check(path: &Path, existing: Existing) -> Result<()> {
+    let fail = |problem: io::Error| unwritable(path, Some(problem.kind()), problem);
     let target = target(path)?;
     let folder = folder(&target);
     if !fs::metadata(folder).map_err(fail)?.is_dir() {
         return Err(fail(ErrorKind::NotADirectory.into()));
     }
-    may_write(folder).map_err(fail)
+    may_write(folder).map_err(fail)?;
+    refuse_existing(path, &target, existing)
 }
 
 /// Whether a file can be written at this place; asked before any work is done.
 ///
 /// # Errors
 /// As [`check`]; also when a file cannot be made there.
-pub fn check_writable(path: &Path) -> Result<()> {
-    check(path)?;
-    let made = Temporary::in_folder(folder(&target(path)?));
-    made.map(drop).map_err(|problem| unwritable(path, problem.kind(), problem))
+pub fn check_writable(path: &Path, existing: Existing) -> Result<()> {
+    check(path, existing)?;
+    begin(path, existing).map(drop)
 }
 
-/// Removes temporary files from the folder of `path` that nobody writes any more: those that nobody locks, at once
-/// where locks are certain to show and else after a day.
+/// Removes from the folder of `path` what nobody writes any more.
 pub fn sweep(path: &Path) {
-    let Ok(target) = target(path) else { return };
-    let kernel = kernel();
-    let own = format!("{TEMPORARY}{kernel}-");
-    for entry in fs::read_dir(folder(&target)).into_iter().flatten().flatten() {
-        let name = entry.file_name();
-        let Some(name) = name.to_str().filter(|n| n.starts_with(TEMPORARY)) else { continue };
-        if !entry.file_type().is_ok_and(|kind| kind.is_file()) {
-            continue;
-        }
-        let path = entry.path();
-        // Held until the file is removed, so that its writer notices; see `Temporary::in_folder`.
-        let file = OpenOptions::new().write(true).open(&path);
-        let locked = file.as_ref().ok().map(File::try_lock);
-        if matches!(locked, Some(Err(TryLockError::WouldBlock))) {
-            continue;
-        }
-        let shows = !kernel.is_empty() && name.starts_with(&own) && matches!(locked, Some(Ok(())));
-        let modified = entry.metadata().and_then(|m| m.modified());
-        let is_old = modified.is_ok_and(|at| at.elapsed().is_ok_and(|age| age > LEFT_BEHIND));
-        if shows || is_old {
-            // Another process may have been faster.
-            let _ = fs::remove_file(path);
-        }
+    if let Ok(target) = target(path) {
+        temporary::sweep(folder(&target));
     }
-}
-
-/// Removes what is being written, and ends the process at once.
-pub fn abandon(code: u8) -> ! {
-    // Held to the end, so that nothing new is begun.
-    let unfinished = unfinished();
-    for path in unfinished.iter() {
-        // It may have got its final name just now.
-        let _ = fs::remove_file(path);
-    }
-    signal_hook::low_level::exit(code.into())
-}
-
-/// A file that is being written: locked, and deleted unless it is renamed.
-struct Temporary {
-    file: NamedTempFile,
-    /// Dropped after the file is gone.
-    _listed: Listed,
-}
-
-impl Temporary {
-    fn in_folder(folder: &Path) -> io::Result<Self> {
-        // A sweep may take a file between its making and its locking, over and over only where locks do not work.
-        const ATTEMPTS: u32 = 16;
-        let mut attempt = 1;
-        loop {
-            let temporary = Self::unlocked(folder)?;
-            let is_swept = match temporary.file.as_file().try_lock() {
-                Err(TryLockError::WouldBlock) => true,
-                Ok(()) => !temporary.file.path().exists(),
-                // Where files cannot be locked their age protects them.
-                Err(TryLockError::Error(_)) => false,
-            };
-            if !is_swept || attempt == ATTEMPTS {
-                return Ok(temporary);
-            }
-            attempt += 1;
-        }
-    }
-
-    fn unlocked(folder: &Path) -> io::Result<Self> {
-        let mut builder = tempfile::Builder::new();
-        let prefix = format!("{TEMPORARY}{}-", kernel());
-        builder.prefix(&prefix);
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // Temporary files are private by default; pictures are as public as the umask lets them be.
-            builder.permissions(fs::Permissions::from_mode(0o666));
-        }
-        let mut unfinished = unfinished();
-        let file = builder.tempfile_in(folder)?;
-        unfinished.push(file.path().to_owned());
-        let listed = Listed(file.path().to_owned());
-        Ok(Self { file, _listed: listed })
-    }
-
-    /// Gives the file the permissions and the owner of the one that it will replace.
-    #[cfg(unix)]
-    fn take_permissions(&self, target: &Path) {
-        use std::os::unix::fs::{MetadataExt, fchown};
-        let Ok(old) = fs::metadata(target) else { return };
-        // Not every disk knows permissions, and not everybody may give files away: the picture counts more.
-        let _ = fchown(self.file.as_file(), Some(old.uid()), Some(old.gid()));
-        let _ = self.file.as_file().set_permissions(old.permissions());
-    }
-
-    /// Folders decide who may use the files in them.
-    #[cfg(not(unix))]
-    fn take_permissions(&self, _target: &Path) {}
-}
-
-/// An entry of [`UNFINISHED`].
-struct Listed(PathBuf);
-
-impl Drop for Listed {
-    fn drop(&mut self) {
-        unfinished().retain(|path| *path != self.0);
-    }
-}
-
-fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
-    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// The kernel that runs, whose processes see each other's locks in whatever container they are; empty where it does
-/// not tell.
-fn kernel() -> String {
-    let id = fs::read_to_string("/proc/sys/kernel/random/boot_id").unwrap_or_default();
-    id.chars().filter(char::is_ascii_hexdigit).take(32).collect()
 }
 
 fn folder(path: &Path) -> &Path {
@@ -282,28 +213,38 @@ fn may_write(_folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// The error of a file; a disk that is full is not the caller's fault.
-fn unwritable(path: &Path, kind: ErrorKind, problem: impl std::fmt::Display) -> Error {
+/// The error of a file. A name is the caller's fault, and so is what an encoder refuses, which is of no kind; a disk that is full or
+/// fails is not.
+pub fn unwritable(path: &Path, kind: Option<ErrorKind>, problem: impl std::fmt::Display) -> Error {
+    use ErrorKind as K;
     let failure = |problem: &str, fix: &str| {
         Error::failure(format!("{}: cannot be written: {problem}", path.display()), fix)
     };
+    let input =
+        |problem| Error::file(path, format!("cannot be written: {problem}"), "name a writable folder");
     match kind {
-        ErrorKind::StorageFull => failure("the disk is full", "make room on it, or name a place on another"),
-        ErrorKind::QuotaExceeded => {
+        Some(K::StorageFull) => failure("the disk is full", "make room on it, or name a place on another"),
+        Some(K::QuotaExceeded) => {
             failure("your share of the disk is used up", "make room on it, or name a place on another")
         }
-        ErrorKind::FileTooLarge => failure(
+        Some(K::FileTooLarge) => failure(
             "it is too large for the disk or the limit of files",
             "name a place on another disk, or raise the limit (ulimit -f)",
         ),
-        _ => Error::file(path, format!("cannot be written: {problem}"), "name a writable folder"),
+        None | Some(K::NotFound | K::PermissionDenied | K::ReadOnlyFilesystem | K::InvalidFilename) => {
+            input(problem.to_string())
+        }
+        Some(K::NotADirectory | K::IsADirectory | K::InvalidInput) => input(problem.to_string()),
+        Some(_) => {
+            failure(&problem.to_string(), "see whether the disk is in order, or name a place on another")
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::fs::OpenOptions;
     use std::sync::atomic::{AtomicBool, Ordering};
-    use std::time::SystemTime;
 
     use super::*;
 
@@ -320,38 +261,6 @@ mod tests {
     }
 
     #[test]
-    fn only_what_nobody_writes_is_swept() {
-        let folder = tempfile::tempdir().unwrap();
-        let make = |name: &str, days: u64| {
-            let file = File::create(folder.path().join(name)).unwrap();
-            file.set_modified(SystemTime::now() - Duration::from_secs(days * 24 * 3600)).unwrap();
-            file
-        };
-        // Hosts of one name in two containers, of names that look alike without their signs, and of other kernels.
-        let others = ["-node11-4194304-a", "-node111-4194304-b", "-00000000000000000000000000000000-c"];
-        for name in others {
-            drop(make(&format!(".isophote{name}"), 0));
-            drop(make(&format!(".isophote{name}-old"), 2));
-        }
-        let own = format!("{TEMPORARY}{}-", kernel());
-        let held = [format!("{TEMPORARY}-locked"), format!("{own}locked")].map(|name| make(&name, 2));
-        held.iter().for_each(|file| file.lock().unwrap());
-        drop(make(&format!("{own}killed"), 0));
-        drop(make("a.png", 9));
-        sweep(&folder.path().join("a.png"));
-        let mut left: Vec<String> = others.iter().map(|name| format!(".isophote{name}")).collect();
-        left.extend([format!("{TEMPORARY}-locked"), format!("{own}locked"), "a.png".into()]);
-        if kernel().is_empty() {
-            left.push(format!("{own}killed"));
-        }
-        left.sort();
-        assert_eq!(names(folder.path()), left);
-        drop(held);
-        sweep(&folder.path().join("a.png"));
-        assert!(!names(folder.path()).iter().any(|name| name.ends_with("locked")));
-    }
-
-    #[test]
     fn sweeping_disturbs_no_writer() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
@@ -364,14 +273,14 @@ mod tests {
             });
             let writers = ["a", "b"].map(|name| {
                 let path = path(name);
-                scope.spawn(move || (0..300).try_for_each(|_| write(&path, put(b"whole"))))
+                scope.spawn(move || (0..300).try_for_each(|_| write(&path, Existing::Replace, put(b"whole"))))
             });
             let results = writers.map(|writer| writer.join().unwrap());
             is_over.store(true, Ordering::Relaxed);
             results.into_iter().for_each(|result| result.unwrap());
         });
         assert_eq!(names(folder.path()), ["a", "b"]);
-        assert!(unfinished().iter().all(|file| !file.starts_with(folder.path())));
+        assert!(temporary::unfinished().iter().all(|file| !file.starts_with(folder.path())));
     }
 
     #[cfg(unix)]
@@ -387,8 +296,8 @@ mod tests {
         symlink("link", path("second")).unwrap();
         symlink("inner/new", path("dangling")).unwrap();
         symlink("loop", path("loop")).unwrap();
-        write(&path("second"), put(b"new")).unwrap();
-        write(&path("dangling"), put(b"new")).unwrap();
+        write(&path("second"), Existing::Replace, put(b"new")).unwrap();
+        write(&path("dangling"), Existing::Keep, put(b"new")).unwrap();
         for name in ["link", "second", "dangling"] {
             assert!(path(name).is_symlink() && fs::read(path(name)).unwrap() == b"new", "{name}");
         }
@@ -396,11 +305,59 @@ mod tests {
         assert_eq!(mode("inner/file"), 0o640);
         assert_eq!(names(&path("inner")), ["file", "new"]);
         for (name, words) in [("loop", "a link to itself"), ("inner", "is a folder")] {
-            assert!(write(&path(name), put(b"new")).unwrap_err().to_string().contains(words), "{name}");
+            let refused = write(&path(name), Existing::Replace, put(b"new")).unwrap_err();
+            assert!(refused.to_string().contains(words), "{name}");
         }
         // A file that was not there is as public as others that this process makes.
         fs::write(path("usual"), "").unwrap();
         assert_eq!(mode("inner/new"), mode("usual"));
+    }
+
+    #[test]
+    fn a_file_that_is_there_stays_unless_it_is_to_be_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let refused = |result: Result<()>| {
+            let error = result.unwrap_err();
+            assert_eq!(error.exit_code(), 2);
+            assert!(error.to_string().contains("is there already") && error.to_string().contains("--force"));
+        };
+        write(&path("new"), Existing::Keep, put(b"new")).unwrap();
+        refused(write(&path("new"), Existing::Keep, |_| panic!("no work is done for it")));
+        refused(write_by_path(&path("new"), Existing::Keep, |_| panic!("no work is done for it")));
+        refused(check(&path("new"), Existing::Keep));
+        refused(check_writable(&path("new"), Existing::Keep));
+        check_writable(&path("new"), Existing::Replace).unwrap();
+        // One that comes while another one is made.
+        let come = |name: &str| fs::write(path(name), "theirs").unwrap();
+        refused(write(&path("later"), Existing::Keep, |file| {
+            come("later");
+            put(b"ours")(file)
+        }));
+        refused(write_by_path(&path("by path"), Existing::Keep, |_| {
+            come("by path");
+            Ok(())
+        }));
+        for name in ["later", "by path"] {
+            assert_eq!(fs::read(path(name)).unwrap(), b"theirs");
+        }
+        write(&path("later"), Existing::Replace, put(b"ours")).unwrap();
+        assert_eq!(fs::read(path("later")).unwrap(), b"ours");
+        assert_eq!(names(folder.path()), ["by path", "later", "new"], "nothing half-written is left");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn what_an_encoder_does_not_tell_is_a_failure_too() {
+        let mut full = OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let error = fill(&mut full, Path::new("a.png"), |file| {
+            // More than the buffer holds goes to the disk at once; what is dropped there cannot say so.
+            let _ = file.write_all(&[0; 1 << 20]);
+            Ok(())
+        });
+        let error = error.unwrap_err();
+        assert_eq!(error.exit_code(), 1);
+        assert!(error.to_string().contains("a.png: cannot be written: the disk is full"), "{error}");
     }
 
     #[cfg(target_os = "linux")]
@@ -412,9 +369,12 @@ mod tests {
         let problem = writer.flush().unwrap_err();
         let kind = writer.get_ref().failure;
         assert_eq!(kind, Some(ErrorKind::StorageFull));
-        let error = unwritable(Path::new("a.png"), ErrorKind::StorageFull, &problem);
+        let error = unwritable(Path::new("a.png"), Some(ErrorKind::StorageFull), &problem);
         assert_eq!(error.exit_code(), 1);
         assert!(error.to_string().contains("a.png: cannot be written: the disk is full"), "{error}");
-        assert_eq!(unwritable(Path::new("a.png"), ErrorKind::PermissionDenied, &problem).exit_code(), 2);
+        let code = |kind| unwritable(Path::new("a.png"), kind, &problem).exit_code();
+        assert_eq!([None, Some(ErrorKind::PermissionDenied)].map(code), [2, 2]);
+        // Numbers of Linux: the disk fails, its quota is used up, another machine lost the file.
+        assert_eq!([5, 122, 116].map(|n| code(Some(io::Error::from_raw_os_error(n).kind()))), [1; 3]);
     }
 }

@@ -1,10 +1,12 @@
 //! The sample host: renders scenes, stylizes what it renders, and stylizes pictures.
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::Parser;
 use clap::error::ErrorKind;
 use isophote_host::cli::Cli;
+use isophote_host::error::Error;
 use isophote_host::{drivers, limits, output};
 use isophote_loader::printable;
 
@@ -22,11 +24,13 @@ fn main() -> ExitCode {
     };
     match cli.run() {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            output::complain(&error);
-            ExitCode::from(error.exit_code())
-        }
+        Err(error) => failed(&error),
     }
+}
+
+fn failed(error: &Error) -> ExitCode {
+    output::complain(error);
+    ExitCode::from(error.exit_code())
 }
 
 /// Help and version as the parser prints them; what is wrong with the command line on one line, like every
@@ -38,13 +42,16 @@ fn usage(error: &clap::Error) -> ExitCode {
             | ErrorKind::DisplayVersion
             | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
     ) {
-        error.exit();
+        return match output::printed(error.print()) {
+            Ok(()) => ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)),
+            Err(error) => failed(&error),
+        };
     }
     let text = error.render().to_string();
     let wrong = text.lines().take_while(|line| !line.trim().is_empty());
     let tips = text.lines().filter(|line| line.trim_start().starts_with("tip:"));
     let words: Vec<&str> = wrong.chain(tips).flat_map(str::split_whitespace).collect();
-    // Words of the command line may be names of files.
-    eprintln!("{}; see --help", printable(&words.join(" ")));
+    // Words of the command line may be names of files. Where nobody can be told the exit code tells.
+    let _ = writeln!(std::io::stderr(), "{}; see --help", printable(&words.join(" ")));
     ExitCode::from(2)
 }

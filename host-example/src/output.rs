@@ -10,7 +10,7 @@ use isophote_loader::printable;
 
 use crate::apply::space::srgb_encode;
 use crate::error::{Error, Result};
-use crate::files;
+use crate::files::{self, Existing};
 
 /// An image of 32-bit floats, channels interleaved, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,12 +39,12 @@ pub enum Precision {
 /// grey PNG from 0 to 1, or EXR in single precision.
 ///
 /// # Errors
-/// [`Error::Input`] for other extensions and for folders that are missing or cannot be written.
-pub fn save(path: &Path, picture: &Picture) -> Result<()> {
+/// As [`files::write()`]; [`Error::Input`] for other extensions.
+pub fn save(path: &Path, existing: Existing, picture: &Picture) -> Result<()> {
     match extension(path).as_str() {
-        "png" => save_png(path, picture),
-        "exr" if picture.channels == 1 => save_exr(path, picture, &["Y"], Precision::Float),
-        "exr" => save_exr(path, picture, &["R", "G", "B", "A"], Precision::Half),
+        "png" => save_png(path, existing, picture),
+        "exr" if picture.channels == 1 => save_exr(path, existing, picture, &["Y"], Precision::Float),
+        "exr" => save_exr(path, existing, picture, &["R", "G", "B", "A"], Precision::Half),
         _ => Err(unknown_extension(path)),
     }
 }
@@ -73,7 +73,7 @@ fn extension(path: &Path) -> String {
     path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase()
 }
 
-fn save_png(path: &Path, picture: &Picture) -> Result<()> {
+fn save_png(path: &Path, existing: Existing, picture: &Picture) -> Result<()> {
     let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
     let mut bytes = Vec::with_capacity(picture.data.len());
     let mut opaque = true;
@@ -97,7 +97,7 @@ fn save_png(path: &Path, picture: &Picture) -> Result<()> {
     if color == image::ExtendedColorType::Rgb8 {
         bytes = bytes.as_chunks::<4>().0.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
     }
-    files::write(path, |file| {
+    files::write(path, existing, |file| {
         let encoder = image::codecs::png::PngEncoder::new(file);
         image::ImageEncoder::write_image(encoder, &bytes, picture.width, picture.height, color)
             .map_err(|e| e.to_string())
@@ -107,9 +107,15 @@ fn save_png(path: &Path, picture: &Picture) -> Result<()> {
 /// Saves all channels under the given names as linear EXR, compressed without loss.
 ///
 /// # Errors
-/// [`Error::Input`] when the folder is missing or cannot be written.
-pub fn save_exr(path: &Path, picture: &Picture, names: &[&str], precision: Precision) -> Result<()> {
-    save_layers(path, &[Layer { picture, names, precision }], None)
+/// As [`files::write()`].
+pub fn save_exr(
+    path: &Path,
+    existing: Existing,
+    picture: &Picture,
+    names: &[&str],
+    precision: Precision,
+) -> Result<()> {
+    save_layers(path, existing, &[Layer { picture, names, precision }], None)
 }
 
 /// Numbers of an EXR file: a picture with the full names of its channels.
@@ -127,8 +133,13 @@ pub struct Layer<'a> {
 /// for row vectors, row by row.
 ///
 /// # Errors
-/// [`Error::Input`] when the folder is missing or cannot be written, or layers do not fit together.
-pub fn save_layers(path: &Path, layers: &[Layer<'_>], world_to_camera: Option<[f32; 16]>) -> Result<()> {
+/// As [`files::write()`]; [`Error::Input`] for layers that do not fit together.
+pub fn save_layers(
+    path: &Path,
+    existing: Existing,
+    layers: &[Layer<'_>],
+    world_to_camera: Option<[f32; 16]>,
+) -> Result<()> {
     let size = layers.first().map_or((0, 0), |layer| (layer.picture.width, layer.picture.height));
     let image = create::Picture {
         width: size.0 as usize,
@@ -137,7 +148,7 @@ pub fn save_layers(path: &Path, layers: &[Layer<'_>], world_to_camera: Option<[f
         world_to_camera,
         ..create::Picture::default()
     };
-    files::write(path, |file| create::write(&image, file).map_err(|e| e.to_string()))
+    files::write(path, existing, |file| create::write(&image, file).map_err(|e| e.to_string()))
 }
 
 /// The numbers of a layer as the channels of an EXR file, as many as have names.
@@ -160,7 +171,15 @@ fn planes(layer: &Layer<'_>) -> Vec<(String, Plane)> {
 /// [`Error::Failure`] when it cannot be written.
 pub fn print(text: &str) -> Result<()> {
     let mut stdout = std::io::stdout().lock();
-    match stdout.write_all(printable(text).as_bytes()).and_then(|()| stdout.flush()) {
+    printed(stdout.write_all(printable(text).as_bytes()).and_then(|()| stdout.flush()))
+}
+
+/// The result of printing to standard output, which whoever has read enough may have closed.
+///
+/// # Errors
+/// As [`print()`].
+pub fn printed(result: std::io::Result<()>) -> Result<()> {
+    match result {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
             Err(Error::failure(format!("cannot write to standard output: {e}"), "redirect it elsewhere"))
         }
@@ -195,7 +214,7 @@ mod tests {
     fn png_is_srgb_encoded() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
-        save(&path, &gradient()).unwrap();
+        save(&path, Existing::Keep, &gradient()).unwrap();
         let read = image::open(&path).unwrap().into_rgba8();
         assert_eq!(read.dimensions(), (5, 3));
         assert_eq!(read.get_pixel(4, 2).0, [255, 137, 188, 255]);
@@ -207,7 +226,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.exr");
         let picture = Picture { width: 2, height: 1, channels: 2, data: vec![1e-7, -3.5, 70000.0, 0.1] };
-        save_exr(&path, &picture, &["motion.X", "motion.Y"], Precision::Float).unwrap();
+        save_exr(&path, Existing::Keep, &picture, &["motion.X", "motion.Y"], Precision::Float).unwrap();
         let read = exr::prelude::read_first_flat_layer_from_file(&path).unwrap();
         let channels = &read.layer_data.channel_data.list;
         assert_eq!(channels[0].name.to_string(), "motion.X");
@@ -219,7 +238,7 @@ mod tests {
     fn unwritable_places_are_input_errors() {
         let folder = tempfile::tempdir().unwrap();
         for path in ["missing/a.png", "missing/a.exr", "a.tiff"] {
-            let error = save(&folder.path().join(path), &gradient()).unwrap_err();
+            let error = save(&folder.path().join(path), Existing::Keep, &gradient()).unwrap_err();
             assert_eq!(error.exit_code(), 2);
             assert_eq!(error.to_string().lines().count(), 1);
         }

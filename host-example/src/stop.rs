@@ -8,7 +8,8 @@ use std::time::Duration;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
 use crate::error::Error;
-use crate::{files, output};
+use crate::output;
+use crate::temporary;
 
 /// Time between two looks at whether the process is to end.
 const TICK: Duration = Duration::from_millis(40);
@@ -48,7 +49,7 @@ impl Stop {
             }
             thread::sleep(GRACE);
             output::complain(&error);
-            files::abandon(error.exit_code())
+            temporary::abandon(error.exit_code())
         };
         // Without a thread to spare the run ends after what is being done.
         let _ = thread::Builder::new().name("end".into()).spawn(watch);

@@ -19,7 +19,7 @@ fn looks_right(folder: &Path, scene: &Path, more: &[&str]) -> (String, RgbImage)
             .arg("render")
             .arg(scene)
             .arg(&out)
-            .args(["--size", "320x180", "--style", style])
+            .args(["--force", "--size", "320x180", "--style", style])
             .args(IN_PIXELS)
             .args(more);
         let (_, warnings) = succeeds(&mut command);

@@ -398,7 +398,7 @@ fn names_are_no_commands_to_the_terminal() {
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("a file");
     write(&format!("{hostile}.png"), "no picture");
     write("param.json", &serde_json::json!({"style": "gaussian", "parameters": {hostile: 1}}).to_string());
-    write("name.json", &serde_json::json!({"style": "gaussian", "name": hostile}).to_string());
+    write("name.json", &serde_json::json!({"style": "gaussian", "name": "\u{202e}gnp.exe"}).to_string());
     picture(8, 8).save(folder.path().join("in.png")).expect("the picture can be written");
     let runs: [&[&str]; 5] = [
         &["apply", "gaussian", &format!("{hostile}.png"), "out.png"],

@@ -130,7 +130,7 @@ fn apply(folder: &Path, style: &str, input: &str, output: &str, more: &[&str]) -
     let mut command = isophote();
     command
         .current_dir(folder)
-        .args(["apply", style, input, output, "--backend", "cpu"])
+        .args(["apply", style, input, output, "--force", "--backend", "cpu"])
         .args(IN_PIXELS)
         .args(more);
     succeeds(&mut command).1
@@ -350,7 +350,7 @@ fn real_files_keep_everything_else() {
         let started = Instant::now();
         let mut command = isophote();
         command
-            .args(["apply", "gaussian", "--backend", "cpu", "--set", "sigma=1"])
+            .args(["apply", "gaussian", "--force", "--backend", "cpu", "--set", "sigma=1"])
             .args(IN_PIXELS)
             .arg(&path)
             .arg(&out);

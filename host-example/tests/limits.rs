@@ -1,4 +1,4 @@
-//! What the system refuses: memory and threads. The program ends in order or does with less.
+//! What the system refuses: memory, threads and room on a disk. The program ends in order or does with less.
 
 #![cfg(target_os = "linux")]
 
@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use support::{cube, errors, folder, isophote, library, picture, succeeds};
+use support::{cube, errors, fails, folder, isophote, library, picture, succeeds};
 
 /// Says where the program lies.
 const PROGRAM: &str = env!("CARGO_BIN_EXE_isophote");
@@ -61,7 +61,7 @@ fn sweep(limits: impl Iterator<Item = u64>, command: &Command) -> [usize; 2] {
 
 fn apply(folder: &Path, input: &str, output: &str) -> Command {
     let mut command = isophote();
-    command.current_dir(folder).args(["apply", "cartoon", input, output, "--backend", "cpu"]);
+    command.current_dir(folder).args(["apply", "cartoon", input, output, "--force", "--backend", "cpu"]);
     command
 }
 
@@ -84,7 +84,14 @@ fn render_ends_in_order_without_memory() {
     let folder = folder();
     cube(folder.path());
     let mut command = isophote();
-    command.current_dir(folder.path()).args(["render", "cube.gltf", "out.exr", "--size", "160x90"]);
+    command.current_dir(folder.path()).args([
+        "render",
+        "cube.gltf",
+        "out.exr",
+        "--force",
+        "--size",
+        "160x90",
+    ]);
     let [well, refused] = sweep((60..1200).step_by(100).chain([8192]), &command);
     assert!(well > 0 && refused > 0, "{well} ended well, {refused} were refused");
 }
@@ -119,11 +126,86 @@ fn nothing_but_ours_is_said_where_nobody_is_logged_in() {
     picture(40, 30).save(folder.path().join("in.png")).expect("the picture can be written");
     for arguments in [
         ["render", "cube.gltf", "out.png", "--size", "64x36"],
-        ["apply", "gaussian", "in.png", "out.png", "--backend=auto"],
+        ["apply", "gaussian", "in.png", "other.png", "--backend=auto"],
     ] {
         let mut command = Command::new(PROGRAM);
         command.current_dir(folder.path()).args(arguments).env_clear().env("ISOPHOTE_LIBRARY", library());
         let (printed, said) = succeeds(&mut command);
         assert_eq!((printed.as_str(), said.as_str()), ("", ""), "{arguments:?}");
+    }
+}
+
+/// Every writer but that of videos, which other programs fill.
+#[test]
+fn a_full_disk_leaves_no_half_of_any_file() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    cube(folder.path());
+    fs::create_dir(at("small")).expect("the folder is writable");
+    picture(64, 48).save(at("in.1.png")).expect("the picture can be written");
+    fs::write(at("old"), "old").expect("the folder is writable");
+    let bench =
+        ["bench", "--backend", "cpu", "--size", "16x16", "--runs", "1", "--node", "gaussian", "--save"];
+    let job = ["--", "apply", "gaussian", "in.#.png", "o.#.png"];
+    let apply = ["apply", "gaussian", "in.1.png", "--backend", "cpu"];
+    for (verb, name, more) in [
+        (&apply[..], "a.png", &[][..]),
+        (&apply, "a.jpg", &[]),
+        (&apply, "a.tif", &[]),
+        (&apply, "a.exr", &[]),
+        (&["render", "cube.gltf", "--size", "32x24"], "a.png", &[]),
+        (&["render", "cube.gltf", "--size", "32x24"], "a.exr", &[]),
+        (&["sheet"], "a.png", &["in.1.png"]),
+        (&["preset", "save", "ink"], "a.json", &["--all"]),
+        (&["farm", "openjd", "-o"], "a.json", &job),
+        (&bench, "a.json", &[]),
+        (&["documents"], "share", &[]),
+    ] {
+        let place = format!("small/{name}");
+        // The disk has room for names alone. What was there stays, whole.
+        for (force, kept) in [(&[][..], "filler\n"), (&["--force"], "filler\nold\n")] {
+            if verb == ["documents"] && !force.is_empty() {
+                continue;
+            }
+            let old = if force.is_empty() { String::new() } else { format!("echo old > {place}") };
+            let before = format!("{old}\ncat /dev/zero > small/filler 2> /dev/null");
+            let after =
+                format!("(cd small; find . -type f -printf '%P\\n' | sort; cat {name} 2> /dev/null) > left");
+            let arguments = [verb, &[place.as_str()], force, more].concat();
+            let lines = [before.as_str(), after.as_str()];
+            let Some(mut command) = support::on_a_small_disk(folder.path(), lines, &arguments) else {
+                return;
+            };
+            let output = command.output().expect("the shell can be started");
+            let said = errors(&output);
+            assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
+            assert!(said.lines().count() == 1 && said.starts_with("error: small/"), "{arguments:?}: {said}");
+            assert!(said.contains("cannot be written: the disk is full; make room on it"), "{said}");
+            let left = fs::read_to_string(at("left")).expect("a list").replace(&format!("{name}\n"), "");
+            assert_eq!(left, kept, "{arguments:?}");
+        }
+    }
+}
+
+/// What is printed is a result, too.
+#[test]
+fn a_full_disk_takes_no_result_from_standard_output() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    picture(24, 16).save(at("in.1.png")).expect("the picture can be written");
+    fs::write(at("look.json"), r#"{"style": "gaussian"}"#).expect("the folder is writable");
+    for arguments in [
+        &["preset", "show", "look.json"][..],
+        &["preset", "check", "look.json"],
+        &["preset", "list", "--json"],
+        &["nodes", "gaussian"],
+        &["farm", "openjd", "--", "apply", "gaussian", "in.#.png", "out.#.png"],
+        &["apply", "--help"],
+        &["--version"],
+    ] {
+        let mut command = isophote();
+        let full = fs::File::options().write(true).open("/dev/full").expect("/dev/full");
+        command.current_dir(folder.path()).args(arguments).stdout(full);
+        fails(&mut command, 1, &["cannot write to standard output", "No space left"]);
     }
 }

@@ -17,7 +17,7 @@ fn apply(folder: &Path, input: &str, output: &str, more: &[&str]) -> String {
     let mut command = isophote();
     command
         .current_dir(folder)
-        .args(["apply", "gaussian", input, output, "--backend", "cpu"])
+        .args(["apply", "gaussian", input, output, "--force", "--backend", "cpu"])
         .args(IN_PIXELS)
         .args(more);
     succeeds(&mut command).1
@@ -214,7 +214,7 @@ fn looks_are_laid_over_each_other() {
         rgb(&at(output))
     };
     let layered = || {
-        run(&["--layered", "looks.json", "in.exr", "out.exr", "--backend", "cpu"]);
+        run(&["--layered", "looks.json", "in.exr", "out.exr", "--force", "--backend", "cpu"]);
         rgb(&at("out.exr"))
     };
     let before = rgb(&at("in.exr"));
@@ -248,9 +248,9 @@ fn looks_are_laid_over_each_other() {
             {"preset": "soft.json", "params": {"sigma": 3}, "mask": "left.png"}]"#,
     )
     .expect("the folder is writable");
-    run(&["--layered", "looks/looks.json", "in.exr", "out.exr", "--backend", "cpu"]);
+    run(&["--layered", "looks/looks.json", "in.exr", "beside.exr", "--backend", "cpu"]);
     let any = coverage(&["bunny", "hero", "props/barrel", "props/box", "a,b*"]);
-    for (pixel, out) in rgb(&at("out.exr")).iter().enumerate() {
+    for (pixel, out) in rgb(&at("beside.exr")).iter().enumerate() {
         match (pixel % SIZE.0 < 12, any[pixel]) {
             (true, _) => assert_eq!(*out, soft[pixel]),
             (_, 1.0) => assert_eq!(*out, drawn[pixel]),
@@ -357,7 +357,7 @@ fn frames_that_lack_a_thing_fail_by_themselves() {
     // Its neighbours depend on its picture all the same.
     let bytes = |frame: u32| fs::read(at(&format!("out.{frame:04}.exr"))).expect("a result");
     let before = [bytes(1), bytes(3)];
-    let (_, warned) = succeeds(&mut run(&["--on-unknown", "empty"]));
+    let (_, warned) = succeeds(&mut run(&["--on-unknown", "empty", "--force"]));
     assert!(warned.contains("in.0002.exr: has no 'hero'"), "{warned}");
     assert_eq!([bytes(1), bytes(3)], before);
     assert_eq!(rgb(&at("out.0002.exr")), rgb(&at("in.0002.exr")));

@@ -50,7 +50,7 @@ fn dry_runs_touch_nothing() {
     for (input, output) in
         [("in.####.png", "out.####.png"), ("in.0001.png", "out.png"), ("in.0001.png", "in.0001.png")]
     {
-        let (text, _) = succeeds(&mut apply(folder.path(), &[input, output, "--dry-run"]));
+        let (text, _) = succeeds(&mut apply(folder.path(), &[input, output, "--dry-run", "--in-place"]));
         assert!(text.contains("1 frames to be written"), "{text}");
         assert_eq!(state(folder.path()), before);
     }
@@ -81,7 +81,7 @@ fn results_go_through_links_and_keep_modes() {
     picture(8, 8).save(at("disk/out.png")).expect("the picture can be written");
     fs::set_permissions(at("disk/out.png"), fs::Permissions::from_mode(0o604)).expect("the file is ours");
     symlink("disk/out.png", at("out.png")).expect("the folder is writable");
-    succeeds(&mut apply(folder.path(), &["in.png", "out.png"]));
+    succeeds(&mut apply(folder.path(), &["in.png", "out.png", "--force"]));
     assert!(at("out.png").is_symlink());
     assert_eq!(image::open(at("disk/out.png")).expect("a picture").width(), 24);
     assert_eq!(fs::metadata(at("disk/out.png")).expect("a file").permissions().mode() & 0o777, 0o604);
@@ -279,6 +279,7 @@ fn an_interrupted_picture_is_given_up_within_a_second() {
             "oil_paint",
             "in.png",
             "out.png",
+            "--force",
             "--backend",
             "cpu",
         ]);

@@ -157,7 +157,7 @@ fn keyframes_beyond_the_frames_are_warned_of() {
     render.current_dir(folder.path()).arg("render").arg(&scene);
     render.args(["out.####.png", "--size", "64x48", "--style", "keys.json", "--frames"]);
     let mut apply = isophote();
-    apply.current_dir(folder.path()).args(["apply", "keys.json", "in.####.png", "out.####.png"]);
+    apply.current_dir(folder.path()).args(["apply", "keys.json", "in.####.png", "out.####.png", "--force"]);
     for (said, warning) in [
         (succeeds(render.arg("2-4")).1, "keys.json: the keyframes 1,9 are outside the frames 2 to 4"),
         (succeeds(&mut apply).1, "keys.json: the keyframes 1,9 are outside the frames 3 to 5"),

@@ -182,6 +182,7 @@ fn a_device_takes_frames_in_turn() {
     let run = |input: &str, output: &str| {
         let mut command = isophote();
         command.current_dir(folder.path()).args(["apply", "gaussian", input, output, "--backend", "gpu"]);
+        command.arg("--force");
         command.args(IN_PIXELS);
         command
     };
@@ -297,23 +298,6 @@ fn full_disks_and_read_only_folders_are_reported() {
     fails(&mut apply(folder.path(), &more), 2, &["/proc/o.0001.exr", "cannot be written"]);
 }
 
-/// Runs a command in a namespace whose folder `small` is a disk of 64 KiB; nothing where that is not allowed.
-#[cfg(target_os = "linux")]
-fn on_a_small_disk(folder: &Path, more: &[&str]) -> Option<Command> {
-    let script = "mount -t tmpfs -o size=64k none small || exit 99; exec \"$0\" \"$@\"";
-    let mut command = Command::new("unshare");
-    command.current_dir(folder).env("ISOPHOTE_LIBRARY", support::library());
-    command.args(["-rm", "sh", "-c", script]);
-    if !command.arg("true").stderr(Stdio::null()).status().is_ok_and(|status| status.success()) {
-        eprintln!("\n*** SKIPPED: no disk may be mounted here ***\n");
-        return None;
-    }
-    let mut command = Command::new("unshare");
-    command.current_dir(folder).env("ISOPHOTE_LIBRARY", support::library());
-    command.args(["-rm", "sh", "-c", script, env!("CARGO_BIN_EXE_isophote")]).args(more);
-    Some(command)
-}
-
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_has_its_own_sentence() {
@@ -328,7 +312,7 @@ fn a_full_disk_has_its_own_sentence() {
         [("in.####.exr", "small/o.####.exr"), ("in.png", "small/o.png"), ("in.png", "small/o.tif")]
     {
         let more = ["apply", "gaussian", input, output, "--set", "mix=0", "--backend", "cpu"];
-        let Some(mut command) = on_a_small_disk(folder.path(), &more) else { return };
+        let Some(mut command) = support::on_a_small_disk(folder.path(), [""; 2], &more) else { return };
         fails(&mut command, 1, &["small/o.", "cannot be written: the disk is full", "make room"]);
     }
 }
@@ -345,7 +329,7 @@ fn keyframes_follow_the_frames() {
     let bytes = |name: &str| fs::read(at(name)).expect("a result");
     for (frame, sigma) in [(1, "1"), (2, "2.5"), (3, "4")] {
         let (input, set) = (format!("in.{frame:04}.exr"), format!("sigma={sigma}"));
-        succeeds(&mut apply(folder.path(), &["gaussian", &input, "one.exr", "--set", &set]));
+        succeeds(&mut apply(folder.path(), &["gaussian", &input, "one.exr", "--set", &set, "--force"]));
         assert_eq!(bytes("one.exr"), bytes(&format!("key.{frame:04}.exr")), "frame {frame}");
         assert_eq!(bytes("one.exr"), bytes(&format!("too.{frame:04}.exr")), "frame {frame}");
     }

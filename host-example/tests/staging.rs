@@ -13,7 +13,7 @@ use support::{fails, folder, isophote, succeeds};
 fn render(scene: &Path, out: &str, more: &[&str]) -> PathBuf {
     let out = scene.parent().expect("a folder").join(out);
     let mut command = isophote();
-    command.arg("render").arg(scene).arg(&out).args(["--size", "96x64"]).args(more);
+    command.arg("render").arg(scene).arg(&out).args(["--force", "--size", "96x64"]).args(more);
     succeeds(&mut command);
     out
 }

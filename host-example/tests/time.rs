@@ -148,7 +148,7 @@ fn what_cannot_be_steady_is_refused() {
         &["mv.####.exr", "none of the frames"],
     );
     refused(&with(&["--steadiness", "0.5", "--motion-convention", "maya"]), &["arnold"]);
-    refused(&["cartoon", INPUT, INPUT, "--steadiness", "0.5"], &["would take the place"]);
+    refused(&["cartoon", INPUT, INPUT, "--steadiness", "0.5", "--in-place"], &["would take the place"]);
     let one = ["cartoon", "in.0001.exr", "no.exr", "--steadiness", "0.5", "--motion", INPUT];
     refused(&one, &["--motion", "no neighbours"]);
     refused(&with(&["--steadiness", "0.5", "--memory", "1MiB"]), &["depend on each other", "--memory"]);

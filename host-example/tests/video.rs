@@ -93,7 +93,7 @@ fn sound_rate_range_and_matrix_are_kept() {
     }
     // A style is one, and lines are grey.
     for style in ["cartoon", "flow_dog"] {
-        succeeds(&mut apply(at, &[style, "video.mp4", "styled.mp4"]));
+        succeeds(&mut apply(at, &[style, "video.mp4", "styled.mp4", "--force"]));
         assert!(difference(at, "video.mp4", "styled.mp4") > 3.0, "{style} does nothing");
     }
 }

@@ -67,7 +67,7 @@ pub fn run(options: &Options) -> Result<()> {
     let pictures = (1..=options.frames)
         .flat_map(|frame| STYLES.map(|(name, _)| turntable.join(format!("{name}.{frame:04}.png"))));
     let mut command = host("debug");
-    command.arg("sheet").arg(&sheet).args(&panels).args(pictures);
+    command.args(["sheet", "--force"]).arg(&sheet).args(&panels).args(pictures);
     run_command(command.args(["--columns", &columns, "--width", THUMBNAIL]))?;
     println!("{}", sheet.display());
     Ok(())
@@ -75,6 +75,6 @@ pub fn run(options: &Options) -> Result<()> {
 
 fn render(scene: &Path, out: &Path, style: &str, size: &str, more: &[&str]) -> Result<()> {
     let mut command = host("debug");
-    command.current_dir(root()).arg("render").arg(scene).arg(out);
+    command.current_dir(root()).args(["render", "--force"]).arg(scene).arg(out);
     run_command(command.args(["--style", style, "--size", size]).args(more))
 }

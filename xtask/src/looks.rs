@@ -37,20 +37,20 @@ pub fn run(options: &Options) -> Result<()> {
     heading("scene");
     let frame = out.join("scene.exr");
     let city = scene::write(&out.join("scene"))?;
-    run_command(host("debug").arg("render").arg(city).arg(&frame).args(["--size", SIZE]))?;
+    run_command(host("debug").args(["render", "--force", "--size", SIZE]).arg(city).arg(&frame))?;
 
     heading("looks");
     let looks = list()?;
     let sources: Vec<&Path> =
         std::iter::once(frame.as_path()).chain(options.pictures.iter().map(PathBuf::as_path)).collect();
     let mut sheet = host("debug");
-    sheet.arg("sheet").arg(out.join("looks.png")).args(["--width", THUMBNAIL]);
+    sheet.args(["sheet", "--force", "--width", THUMBNAIL]).arg(out.join("looks.png"));
     sheet.args(["--columns", &(COLUMNS / sources.len() * sources.len()).max(1).to_string()]);
     for (look, name) in &looks {
         for (number, source) in sources.iter().enumerate() {
             let result = out.join(format!("{}.{number}.png", look.trim_start_matches("look:")));
             let mut apply = host("debug");
-            apply.args(["apply", look]).arg(source).arg(&result);
+            apply.args(["apply", "--force", look]).arg(source).arg(&result);
             run_command(apply.args(["--lengths", "pixels", "--backend", "cpu"]))?;
             sheet.arg(result).args(["--label", if number == 0 { name } else { " " }]);
         }

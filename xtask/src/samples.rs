@@ -37,9 +37,12 @@ pub fn run(options: &Options) -> Result<()> {
     let city = scene::write(&work.join("scene"))?;
     for (name, view) in VIEWS {
         let (whole, small) = (work.join(format!("{name}.png")), out.join(format!("{name}.jpg")));
-        run_command(host("debug").arg("render").arg(&city).arg(&whole).args(["--size", SIZE]).args(view))?;
+        let mut render = host("debug");
+        render.args(["render", "--force"]).arg(&city).arg(&whole).args(["--size", SIZE]).args(view);
+        run_command(&mut render)?;
         // Of a node that takes no part in the result, apply writes the picture itself, as JPEG.
-        run_command(host("debug").args(["apply", "gaussian", "--set", "mix=0"]).arg(whole).arg(&small))?;
+        let apply = ["apply", "--force", "gaussian", "--set", "mix=0"];
+        run_command(host("debug").args(apply).arg(whole).arg(&small))?;
         println!("{}", small.display());
     }
     Ok(())

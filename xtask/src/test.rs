@@ -327,7 +327,7 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 /// # Errors
 /// When they cannot be made.
 pub fn bless() -> Result<()> {
-    let mut command = cargo_command(&["test", "--workspace", "--test", "goldens"]);
+    let mut command = cargo_command(&["test", "--workspace", "--test", "goldens", "--test", "bits"]);
     crate::tools::run(command.env("ISOPHOTE_BLESS", "1"))
 }
 

@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use super::tasks::Task;
 use crate::error::{Error, Result};
 use crate::output;
+use crate::replacing::Consent;
 
 /// What became of a frame.
 #[derive(Debug)]
@@ -50,14 +51,12 @@ impl Counts {
     ///
     /// # Errors
     /// [`Error::Failure`] when the run was stopped before, and as [`check_failed`].
-    pub fn check(&self, input: &Path, frames: usize) -> Result<()> {
+    pub fn check(&self, input: &Path, frames: usize, consent: Consent) -> Result<()> {
         if self.done() < frames as u64 {
-            return Err(Error::failure(
-                format!("stopped after {} frames were written", self.written),
-                "start again with --skip-existing to resume",
-            ));
+            let problem = format!("stopped after {} frames were written", self.written);
+            return Err(Error::failure(problem, consent.resuming()));
         }
-        check_failed(input, self.failed, frames)
+        check_failed(input, self.failed, frames, consent)
     }
 }
 
@@ -65,13 +64,13 @@ impl Counts {
 ///
 /// # Errors
 /// [`Error::Input`] with how many did.
-pub fn check_failed(input: &Path, failed: u64, frames: usize) -> Result<()> {
+pub fn check_failed(input: &Path, failed: u64, frames: usize, consent: Consent) -> Result<()> {
     match failed {
         0 => Ok(()),
         _ => Err(Error::file(
             input,
             format!("{failed} of {frames} frames could not be done"),
-            "fix these files and start again with --skip-existing",
+            format!("fix these files and {}", consent.resuming()),
         )),
     }
 }
@@ -160,11 +159,10 @@ impl Report {
         };
         if replaced > 0 {
             let name = task.input.display();
-            let warning = format!("{name}: {replaced} samples were NaN or infinite and were replaced");
-            self.bar.suspend(|| output::warn(warning));
+            self.warn(&format!("{name}: {replaced} samples were NaN or infinite and were replaced"));
         }
         if let (Some(problem), true) = (&problem, self.sequence && !self.json) {
-            self.bar.suspend(|| output::warn(problem));
+            self.warn(problem);
         }
         if self.sequence {
             self.bar.inc(1);
@@ -179,6 +177,16 @@ impl Report {
             "error": problem,
             "seconds": self.started.elapsed().as_secs_f64(),
         }));
+    }
+
+    /// Warns, beside the bar.
+    pub fn warn(&self, warning: &str) {
+        self.bar.suspend(|| output::warn(warning));
+    }
+
+    /// What all frames were to become is not there.
+    pub fn nothing_written(&self) {
+        self.counts.lock().unwrap_or_else(PoisonError::into_inner).written = 0;
     }
 
     /// The run is over; one that failed is summed up by its error.

@@ -17,6 +17,7 @@ use super::tasks::Task;
 use super::write::{self, Format};
 use crate::error::{Error, Result};
 use crate::limits::{self, Threads};
+use crate::replacing::Consent;
 use crate::stop::Stop;
 use std::sync::Arc;
 
@@ -30,8 +31,8 @@ pub struct Run<'a> {
     pub tasks: &'a [Task],
     /// Kind of the outputs.
     pub format: Format,
-    /// Whether whole outputs stay as they are.
-    pub skip_existing: bool,
+    /// What results may replace.
+    pub consent: Consent,
     /// Whether frames are read and written beside being filtered.
     pub threads: Threads,
     /// Where progress is reported.
@@ -142,7 +143,7 @@ impl<'a> Run<'a> {
             if self.stop.is_requested() {
                 break;
             }
-            if self.skip_existing && read::is_whole(&task.output) {
+            if self.consent.skip_existing && read::is_whole(&task.output) {
                 reader.skip();
                 self.report.frame(task, &Outcome::Skipped);
                 continue;
@@ -190,9 +191,11 @@ impl<'a> Run<'a> {
 
     fn write_one(&self, Done { task, own, exr, filtered }: Done<'a>) -> Result<()> {
         let replaced = filtered.replaced;
-        write::write(&task.output, self.format, filtered.results, &own.source, exr)?;
+        let is_written = self.consent.write(task.made(), read::is_whole, |existing| {
+            write::write(&task.output, existing, self.format, filtered.results, &own.source, exr)
+        })?;
         drop(own);
-        self.report.frame(task, &Outcome::Written(replaced));
+        self.report.frame(task, &if is_written { Outcome::Written(replaced) } else { Outcome::Skipped });
         Ok(())
     }
 

@@ -7,6 +7,7 @@ use clap::ValueEnum;
 use crate::error::{Error, Result};
 use crate::frames::{self, FrameList, Pattern};
 use crate::output;
+use crate::replacing::Made;
 
 /// One frame, or a picture by itself.
 #[derive(Clone, Debug)]
@@ -17,6 +18,13 @@ pub struct Task {
     pub input: PathBuf,
     /// What is written.
     pub output: PathBuf,
+}
+
+impl Task {
+    /// The result, and what it is made from.
+    pub fn made(&self) -> Made<'_> {
+        Made { from: Some(&self.input), to: &self.output }
+    }
 }
 
 /// What becomes of a run when frames are missing.
@@ -37,8 +45,6 @@ pub struct Tasks {
     pub missing: Vec<Task>,
     /// The sequence that they are of; otherwise there is one picture.
     pub sequence: Option<Pattern>,
-    /// Whether results take the place of frames.
-    pub is_in_place: bool,
 }
 
 impl Tasks {
@@ -59,8 +65,7 @@ impl Tasks {
                 return Err(Error::file(input, "has no place for a frame number", "write shot.####.exr"));
             }
             let task = Task { frame: None, input: input.to_owned(), output: output.to_owned() };
-            let is_in_place = input == output;
-            return Ok(Self { ready: vec![task], missing: Vec::new(), sequence: None, is_in_place });
+            return Ok(Self { ready: vec![task], missing: Vec::new(), sequence: None });
         };
         let (ready, missing) = match list {
             Some(list) => list.frames().iter().partition(|frame| from.file(**frame).is_file()),
@@ -86,7 +91,6 @@ impl Tasks {
         Ok(Self {
             ready: ready.iter().map(task).collect(),
             missing: missing.iter().map(task).collect(),
-            is_in_place: from.file(0) == to.file(0),
             sequence: Some(from),
         })
     }

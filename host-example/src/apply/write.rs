@@ -7,8 +7,9 @@ use image::{ExtendedColorType, ImageEncoder, ImageResult};
 use super::exr::{ExrFile, Picture, components};
 use super::read::{ImageState, Source};
 use crate::error::{Error, Result};
+use crate::files::{self, Existing};
+use crate::output;
 use crate::pixels::{Pixels, Precision, Samples};
-use crate::{files, output};
 
 /// Quality of JPEG files, 1 to 100.
 const JPEG_QUALITY: u8 = 95;
@@ -60,9 +61,10 @@ impl Format {
 /// All of them go into `exr`, an EXR file that they came from; of other files there is one picture.
 ///
 /// # Errors
-/// [`Error::Input`] when the folder is missing or cannot be written.
+/// As [`files::write()`].
 pub fn write(
     path: &Path,
+    existing: Existing,
     format: Format,
     mut results: Vec<Pixels>,
     source: &Source,
@@ -73,13 +75,13 @@ pub fn write(
             exr.replace(at, &result)
                 .map_err(|problem| Error::file(path, problem, "choose another picture"))?;
         }
-        return files::write(path, |file| exr.write(file));
+        return files::write(path, existing, |file| exr.write(file));
     }
     let (Some(pixels), Some(picture)) = (results.into_iter().next(), source.pictures.first()) else {
         return Err(Error::file(path, "would be empty", "choose another picture"));
     };
     match format {
-        Format::Exr => write_exr(path, &pixels, picture),
+        Format::Exr => write_exr(path, existing, &pixels, picture),
         Format::Png => {
             // A float result holds more than 8 bits can.
             let precision = match picture.pixels.precision() {
@@ -89,7 +91,7 @@ pub fn write(
             let pixels = pixels.converted(precision);
             let color = color_type(&pixels);
             // PNG wants the larger byte first; the encoder takes the machine's order.
-            files::write(path, |file| {
+            files::write(path, existing, |file| {
                 let mut encoder = image::codecs::png::PngEncoder::new(file);
                 keep_profile(&mut encoder, source.profile.clone());
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
@@ -103,7 +105,7 @@ pub fn write(
             };
             let pixels = grey_as_rgb(pixels.converted(precision));
             let color = color_type(&pixels);
-            files::write(path, |file| {
+            files::write(path, existing, |file| {
                 let mut encoder = image::codecs::tiff::TiffEncoder::new(file);
                 keep_profile(&mut encoder, source.profile.clone());
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
@@ -112,7 +114,7 @@ pub fn write(
         Format::Jpeg => {
             let pixels = opaque(path, pixels.converted(Precision::U8));
             let color = color_type(&pixels);
-            files::write(path, |file| {
+            files::write(path, existing, |file| {
                 let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(file, JPEG_QUALITY);
                 keep_profile(&mut encoder, source.profile.clone());
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
@@ -132,7 +134,7 @@ fn grey_as_rgb(pixels: Pixels) -> Pixels {
 }
 
 /// EXR in the precision that the source deserves: 8 bits fit into halves, 16 do not.
-fn write_exr(path: &Path, pixels: &Pixels, picture: &Picture) -> Result<()> {
+fn write_exr(path: &Path, existing: Existing, pixels: &Pixels, picture: &Picture) -> Result<()> {
     let precision = match picture.pixels.precision() {
         Precision::U8 | Precision::F16 => output::Precision::Half,
         Precision::U16 | Precision::F32 => output::Precision::Float,
@@ -144,7 +146,7 @@ fn write_exr(path: &Path, pixels: &Pixels, picture: &Picture) -> Result<()> {
         channels: channels as usize,
         data: pixels.to_f32(),
     };
-    output::save_exr(path, &data, components(channels), precision)
+    output::save_exr(path, existing, &data, components(channels), precision)
 }
 
 fn keep_profile(encoder: &mut impl ImageEncoder, profile: Option<Vec<u8>>) {

@@ -19,9 +19,11 @@ use crate::apply::sequence::Run;
 use crate::apply::tasks::Task;
 use crate::apply::write::Format;
 use crate::error::{Error, Result};
+use crate::files::Existing;
 use crate::limits::Threads;
 use crate::output::{self, Picture, Precision};
 use crate::pixels::Pixels;
+use crate::replacing::Consent;
 use crate::stop::Stop;
 
 /// What was measured.
@@ -83,7 +85,7 @@ pub fn measure(
     let run = Run {
         tasks: &tasks,
         format: Format::Exr,
-        skip_existing: false,
+        consent: Consent::default(),
         threads: Threads::Several,
         report: &report,
         stop: &stop,
@@ -110,7 +112,7 @@ fn save(path: &Path, picture: &Pixels) -> Result<()> {
         channels: picture.channels() as usize,
         data: picture.to_f32(),
     };
-    output::save_exr(path, &data, components(picture.channels()), Precision::Half)
+    output::save_exr(path, Existing::Keep, &data, components(picture.channels()), Precision::Half)
 }
 
 /// Lets the system count the peak of this process anew, where it can.

@@ -55,6 +55,7 @@ fn scene(primitives: Vec<Primitive>, nodes: Vec<Node>, channels: Vec<Channel>) -
         animations: vec![Animation { name: String::new(), channels }],
         bounds: Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE, extremes: Vec::new() },
         warnings: Vec::new(),
+        files: Vec::new(),
     };
     scene.draws = (0..scene.nodes.len())
         .filter_map(|node| Some(crate::scene::Draw { node, mesh: scene.nodes[node].mesh?, primitive: 0 }))

@@ -1,9 +1,11 @@
 //! A bound on the memory that one scene may take while it is loaded. Files can claim far more than they hold:
 //! images expand, accessors need no data, and thousands of meshes can refer to the same bytes.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::fs::File;
 use std::io::Read;
+
+use crate::identity::Identity;
 
 const GIB: u64 = 1 << 30;
 
@@ -15,6 +17,7 @@ pub struct Budget {
     total: u64,
     left: Cell<u64>,
     exceeded: Cell<bool>,
+    files: RefCell<Vec<Identity>>,
 }
 
 impl Default for Budget {
@@ -27,7 +30,7 @@ impl Default for Budget {
 impl Budget {
     /// A budget of so many bytes.
     pub fn new(total: u64) -> Self {
-        Self { total, left: Cell::new(total), exceeded: Cell::new(false) }
+        Self { total, left: Cell::new(total), exceeded: Cell::new(false), files: RefCell::default() }
     }
 
     /// Takes the memory of `count` things of `size` bytes; to be called before it is allocated.
@@ -53,6 +56,7 @@ impl Budget {
     /// # Errors
     /// A clause saying why it cannot be read, or that it is larger than what is left.
     pub fn read(&self, file: File) -> Result<Vec<u8>, String> {
+        self.files.borrow_mut().extend(Identity::of_open(&file));
         let length = file.metadata().map_err(|e| e.to_string())?.len();
         if length > self.left.get() {
             self.take(usize::MAX, 1)?;
@@ -62,6 +66,11 @@ impl Budget {
         file.take(self.left.get().saturating_add(1)).read_to_end(&mut bytes).map_err(|e| e.to_string())?;
         self.take(bytes.len(), 1)?;
         Ok(bytes)
+    }
+
+    /// The files that were read.
+    pub fn files(&self) -> Vec<Identity> {
+        self.files.take()
     }
 
     /// [`TOO_LARGE`] if the budget refused anything, or else `otherwise`.

@@ -20,7 +20,7 @@ use gltf::json::validation::{Error as Flaw, Validate};
 use self::accessors::{Accessors, Pick};
 use self::animations::Outline;
 use super::budget::Budget;
-use super::model::{Bounds, Camera, Light, LightKind, Node, Projection, Scene, Skin, Transform};
+use super::model::{Camera, Light, LightKind, Node, Projection, Scene, Skin, Transform};
 use crate::error::{Error, Result};
 pub use sources::open;
 
@@ -59,22 +59,8 @@ pub fn load(path: &Path, budget: &Budget) -> Result<Scene> {
     let Parsed { document, channels, blob, warnings } = parse(&bytes, budget).map_err(malformed)?;
     let buffers = read_buffers(path, &document, blob, budget)?;
     let accessors = Accessors { buffers: &buffers, budget };
-    let mut scene = Scene {
-        name: String::new(),
-        meshes: Vec::new(),
-        materials: Vec::new(),
-        textures: Vec::new(),
-        images: Vec::new(),
-        nodes: Vec::new(),
-        order: Vec::new(),
-        cameras: read_cameras(&document),
-        lights: read_lights(&document),
-        skins: Vec::new(),
-        animations: Vec::new(),
-        draws: Vec::new(),
-        bounds: Bounds { min: Vec3::ZERO, max: Vec3::ZERO, extremes: Vec::new() },
-        warnings,
-    };
+    let mut scene =
+        Scene { cameras: read_cameras(&document), lights: read_lights(&document), ..Scene::empty(warnings) };
     materials::read(path, &document, &accessors, &mut scene)?;
     meshes::read(&document, &accessors, &mut scene).map_err(malformed)?;
     read_nodes(&document, budget, &mut scene).map_err(malformed)?;

@@ -43,6 +43,7 @@ impl Scene {
             scene.warnings.push("the texture named by the caller is used for OBJ files only".into());
         }
         scene.finish(path)?;
+        scene.files = budget.files();
         Ok(scene)
     }
 
@@ -88,6 +89,7 @@ impl Scene {
             draws: Vec::new(),
             bounds: Bounds { min: Vec3::ZERO, max: Vec3::ZERO, extremes: Vec::new() },
             warnings,
+            files: Vec::new(),
         }
     }
 

@@ -4,6 +4,7 @@ use glam::{Mat4, Quat, Vec3};
 
 use super::animation::Animation;
 use super::material::{Image, Material, Texture};
+use crate::identity::Identity;
 
 /// One vertex as it is uploaded: 72 bytes.
 #[repr(C)]
@@ -317,6 +318,8 @@ pub struct Scene {
     pub bounds: Bounds,
     /// What was read but could not be honoured, one line each.
     pub warnings: Vec<String>,
+    /// The files that it was read from, where the system tells them apart.
+    pub files: Vec<Identity>,
 }
 
 impl Scene {

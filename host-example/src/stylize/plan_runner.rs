@@ -1,8 +1,8 @@
 //! A plan of the library on the host's own device, with nothing but wgpu: **the example to copy**.
 //!
 //! The library says what is to be computed, as data: textures, compute passes, uniform bytes and shaders. The
-//! rest is up to the host, and all of it is here and in [`kernels`](super::kernels), [`textures`](super::textures) and
-//! [`uniforms`](super::uniforms):
+//! rest is up to the host, and all of it is here and in [`kernels`](super::kernels), `textures.rs` and
+//! `uniforms.rs`:
 //!
 //! 1. [`Kernels`] compiles the shader of a kernel when a plan first names it.
 //! 2. [`PlanRunner::new`] makes the plan's textures and one buffer for all uniform blocks.

@@ -400,10 +400,7 @@ fn open(library: &Library, style: &OsStr) -> Result<Opened> {
         }
         Err(refused) => refused,
     };
-    let looks_like_file = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"))
-        || path.components().count() > 1
-        || path.exists();
-    if !(looks_like_file || looks::id(path).is_some()) {
+    if !(looks_like_file(path) || path.exists() || looks::id(path).is_some()) {
         let fix = path.to_str().and_then(looks::meant).map_or_else(
             || {
                 "name a node that `isophote nodes` lists, a look, or a graph file or preset (.json)"
@@ -422,6 +419,21 @@ fn open(library: &Library, style: &OsStr) -> Result<Opened> {
     let preset = Preset::parse(path, &json)?;
     let opened = inside(library, path, &preset)?;
     Ok(Opened { preset: Some(preset), ..opened })
+}
+
+/// Whether the name of a style can be that of a file alone, since no node has such a name.
+fn looks_like_file(style: &Path) -> bool {
+    style.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) || style.components().count() > 1
+}
+
+/// Whether a style is a file, and neither a node nor a look nor a graph written out. Of a node and a file of one name the
+/// node counts.
+pub fn is_file(style: &Path) -> bool {
+    if looks::id(style).is_some() || style.to_str().is_some_and(preset::is_written_out) {
+        return false;
+    }
+    let is_node = |library: Library| library.find_node(&style.to_string_lossy()).is_ok();
+    looks_like_file(style) || style.is_file() && !Library::open().is_ok_and(is_node)
 }
 
 /// The graph that the preset of the file `path` sets the parameters of.

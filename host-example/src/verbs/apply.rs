@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueHint};
 
-use super::shared::{LengthArgs, PrecisionArgs};
+use super::shared::{ForceArgs, LengthArgs, PrecisionArgs};
 use crate::apply::backend::Backend;
 use crate::apply::dry_run::DryRun;
 use crate::apply::exr::{Convention, Guide, GuideChoice, MaskSource, OnUnknown, Selection};
@@ -17,38 +17,39 @@ use crate::apply::reader::{Footage, Reader};
 use crate::apply::report::{self, Outcome, Report};
 use crate::apply::sequence::Run;
 use crate::apply::space::Space;
-use crate::apply::tasks::{OnMissing, Tasks};
+use crate::apply::tasks::{OnMissing, Task, Tasks};
 use crate::apply::write::Format;
 use crate::error::{Error, Result};
-use crate::files;
+use crate::files::{self, Existing};
 use crate::frames::{FrameList, Pattern};
+use crate::identity::is_same;
 use crate::limits::{self, Threads};
+use crate::replacing::Made;
 use crate::stop::Stop;
 use crate::stylize::style::{Setting, Style};
-use crate::video;
+use crate::video::{self, OnError};
 use isophote_loader::Library;
-
-/// The word for motion that is estimated.
-const ESTIMATE: &str = "estimate";
 
 /// Options of `apply`.
 #[derive(Args, Debug)]
 pub struct ApplyArgs {
     /// The id of a node, a look, or a graph file or preset (.json). Left out where --preset or --layered is given.
+    #[arg(value_hint = ValueHint::FilePath)]
     pub style: PathBuf,
     /// The picture: PNG, JPEG, TIFF, WebP, HDR or EXR. A sequence: shot.####.exr, shot.@@@@.exr or shot.%04d.exr. A video
     /// that ffmpeg reads, such as .mp4, .mov, .mkv or .webm; or - for YUV4MPEG on standard input.
+    #[arg(value_hint = ValueHint::FilePath)]
     pub input: PathBuf,
-    /// The result: .png, .jpg, .tif or .exr; may be the input itself. For a sequence with #### as well. For a video another
-    /// one, or - for YUV4MPEG on standard output.
-    #[arg(required_unless_present_any = ["preset", "layered"])]
+    /// The result: .png, .jpg, .tif or .exr; the input itself with --in-place only. For a sequence with #### as well. For a
+    /// video another one, or - for YUV4MPEG on standard output.
+    #[arg(required_unless_present_any = ["preset", "layered"], value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
     /// A preset with the style and its parameters, or a look.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub preset: Option<PathBuf>,
     /// A JSON file with a list of looks instead of a style, each made from the picture and laid over those before where its mask
     /// is: [{"style": "watercolor"}, {"preset": "hero.json", "params": {"sigma": 2}, "mask": "cryptomatte:hero", "invert": false}].
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["preset", "set", "mask"])]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["preset", "set", "mask"])]
     pub layered: Option<PathBuf>,
     /// Frames of the sequence, such as 1001-1100x2,1200 [default: all that are on disk].
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
@@ -60,9 +61,15 @@ pub struct ApplyArgs {
     /// refused [default: 4GiB, or what the machine or the container has].
     #[arg(long, value_name = "SIZE")]
     pub memory: Option<Bytes>,
-    /// Skips frames whose result is there already and complete.
-    #[arg(long)]
+    /// Skips frames whose result is there already and complete, and makes the others: a run that was begun goes on.
+    #[arg(long, conflicts_with_all = ["force", "in_place"])]
     pub skip_existing: bool,
+    /// Lets results take the place of the pictures that they are made from.
+    #[arg(long)]
+    pub in_place: bool,
+    /// What becomes of results that are there.
+    #[command(flatten)]
+    pub force: ForceArgs,
     /// Prints what would be done, and does nothing.
     #[arg(long)]
     pub dry_run: bool,
@@ -110,10 +117,10 @@ pub struct ApplyArgs {
     /// the EXR file, or things of its Cryptomatte: `cryptomatte:hero,props/*` or `cryptomatte[crypto_material]:skin`. A star in
     /// a name stands for any letters, ? for one, and a backslash makes either ordinary. Files of colours count by luminance;
     /// alpha never counts.
-    #[arg(long, value_name = "MASK")]
+    #[arg(long, value_name = "MASK", value_hint = ValueHint::FilePath)]
     pub mask: Option<MaskSource>,
     /// EXR files that have the mask's layer or Cryptomatte, such as ids.####.exr [default: the input].
-    #[arg(long, value_name = "FILES")]
+    #[arg(long, value_name = "FILES", value_hint = ValueHint::FilePath)]
     pub mask_from: Option<PathBuf>,
     /// Uses the result where the mask is not.
     #[arg(long, requires = "mask")]
@@ -126,7 +133,7 @@ pub struct ApplyArgs {
     #[arg(long, value_name = "S")]
     pub steadiness: Option<f32>,
     /// EXR files with motion vectors, one for each frame: mv.####.exr; or estimate, for optical flow of the pictures.
-    #[arg(long, value_name = "FILES")]
+    #[arg(long, value_name = "FILES", value_hint = ValueHint::FilePath)]
     pub motion: Option<PathBuf>,
     /// What motion vectors mean: isophote, arnold, blender, renderman, vray or unreal, and after commas what differs, of
     /// units=pixels|normalised|ndc, y=up|down, direction=backward|forward, sign=1|-1, centre=NUMBER and scale=NUMBER
@@ -136,6 +143,9 @@ pub struct ApplyArgs {
     /// Options of ffmpeg's encoder for a video, such as "-c:v libx265 -crf 20".
     #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
     pub encode: Option<String>,
+    /// What to do where a video is damaged or cut short: fail, or write what can be read of it and warn.
+    #[arg(long, value_enum, default_value_t = OnError::Fail)]
+    pub on_error: OnError,
     /// Threads on the CPU; 0 for one per core.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1024))]
     pub threads: u32,
@@ -151,6 +161,9 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     if video::is_video(files.input) || video::is_video(files.output) {
         return args.run_on_video(&files);
     }
+    if args.on_error == OnError::Skip {
+        return Err(Error::input("--on-error", "is for videos", "leave it out"));
+    }
     let format = Format::of(files.output)?;
     let tasks = args.tasks()?;
     let library = Library::open()?;
@@ -165,11 +178,12 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let choices = args.masks(&entries);
     let masks = Masks::new(&choices, args.mask_from.as_deref(), args.on_unknown)?;
     masks.check(Some(&tasks))?;
-    let selection = args.selection(&library, &looks, choices, format)?;
+    let selection = args.selection(&library, &looks, &choices, format)?;
     let motion = args.motion_files(&tasks, &selection)?;
     let opened = args.open_first(&tasks, &selection)?;
     let backend = if args.dry_run { Backend::Cpu } else { args.backend };
     let mut planner = Planner::new(library.clone(), args.looks(&library, files.style, &entries)?)?;
+    args.check_results(&tasks, &planner, &choices)?;
     let filter = Filter::new(library.clone(), looks, backend, args.space, args.threads)?;
     let most = args.memory.unwrap_or_else(memory::usual);
     let needs = args.needs(&mut planner, &tasks, opened.as_ref(), most)?;
@@ -177,7 +191,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         let (skip_existing, json) = (args.skip_existing, args.json);
         let run = DryRun { tasks: &tasks, selection: &selection, most, skip_existing, json };
         let refused = run.print(&mut planner, needs)?;
-        return report::check_failed(files.input, refused, tasks.ready.len());
+        return report::check_failed(files.input, refused, tasks.ready.len(), args.consent());
     }
     let stop = Stop::on_signals();
     if !tasks.is_sequence() {
@@ -201,25 +215,22 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         masks: &masks,
         budget: &budget,
     };
-    let run = Run {
-        tasks: &tasks.ready,
-        format,
-        skip_existing: args.skip_existing,
-        threads,
-        report: &report,
-        stop: &stop,
-    };
+    let run =
+        Run { tasks: &tasks.ready, format, consent: args.consent(), threads, report: &report, stop: &stop };
     let result = run.all(&mut filters, Reader::new(footage, planner, &tasks.ready, opened));
     let counts = report.end(result.is_ok());
     result?;
-    counts.check(files.input, tasks.ready.len())
+    counts.check(files.input, tasks.ready.len(), args.consent())
 }
 
 /// The files that the command line names.
-struct Files<'a> {
-    style: &'a Path,
-    input: &'a Path,
-    output: &'a Path,
+pub struct Files<'a> {
+    /// What is done; a file or the name of a node or look.
+    pub style: &'a Path,
+    /// What is read.
+    pub input: &'a Path,
+    /// What is written.
+    pub output: &'a Path,
 }
 
 impl ApplyArgs {
@@ -240,7 +251,8 @@ impl ApplyArgs {
         if let Some(needs) = needs.map(|needs| needs.of(span)).filter(|needs| needs.total() > most.0) {
             return Err(too_large(&first.input, span, needs, most));
         }
-        if span > 1 && tasks.is_in_place && self.into.is_none() {
+        let is_in_place = |task: &Task| is_same(&task.input, &task.output);
+        if span > 1 && self.in_place && self.into.is_none() && tasks.ready.iter().any(is_in_place) {
             return Err(Error::file(
                 self.files()?.output,
                 "would take the place of frames that others depend on",
@@ -250,8 +262,11 @@ impl ApplyArgs {
         Ok(needs)
     }
 
-    /// With a preset the style is left out, and the other two move up.
-    fn files(&self) -> Result<Files<'_>> {
+    /// The files that the command line names. With a preset the style is left out, and the other two move up.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a style beside a preset.
+    pub fn files(&self) -> Result<Files<'_>> {
         match (&self.output, self.preset.as_ref().or(self.layered.as_ref())) {
             (Some(output), None) => Ok(Files { style: &self.style, input: &self.input, output }),
             (None, Some(style)) => Ok(Files { style, input: &self.style, output: &self.input }),
@@ -285,21 +300,21 @@ impl ApplyArgs {
         if let Some((option, _)) = others.iter().find(|(_, given)| *given) {
             return wrong(option, "is not for videos", "leave it out");
         }
-        if files.input == files.output && files.input != Path::new("-") {
-            return wrong(&files.output.display().to_string(), "is the input", "name another file");
+        let choices = self.masks(&self.entries()?);
+        let made = Made { from: Some(files.input), to: files.output };
+        if files.output != Path::new("-") {
+            self.consent().check(&[made], false, || self.inputs(&choices, None))?;
         }
         if self.skip_existing && files.output.is_file() {
             return Ok(());
         }
         if files.output != Path::new("-") {
-            files::check_writable(files.output)?;
+            files::check_writable(files.output, Existing::Replace)?;
             files::sweep(files.output);
         }
         let library = Library::open()?;
         limits::start_threads(self.threads as usize)?;
-        let entries = self.entries()?;
-        let looks = self.looks(&library, files.style, &entries)?;
-        let choices = self.masks(&entries);
+        let looks = self.looks(&library, files.style, &self.entries()?)?;
         let is_file = |mask: &MaskChoice| matches!(mask.source, MaskSource::File(_));
         if !(self.mask_from.is_some() || choices.iter().all(is_file)) {
             return wrong(
@@ -313,10 +328,12 @@ impl ApplyArgs {
         let mut filter = Filter::new(library, looks, self.backend, self.space, self.threads)?;
         let stop = Stop::on_signals();
         let (input, output, encode) = (files.input, files.output, self.encode.as_deref());
-        video::run(
-            &video::Job { input, output, encode, json: self.json, masks: &masks, stop: &stop },
-            &mut filter,
-        )
+        let run = |existing| {
+            let (on_error, json, masks, stop) = (self.on_error, self.json, &masks, &stop);
+            let job = video::Job { input, output, existing, encode, on_error, json, masks, stop };
+            video::run(&job, &mut filter)
+        };
+        self.consent().write(made, Path::is_file, run).map(drop)
     }
 
     /// The looks of a file; none where there is a style.
@@ -363,11 +380,6 @@ impl ApplyArgs {
         } else {
             refused.into_iter().next().map_or(Ok(looks), Err)
         }
-    }
-
-    /// Whether motion is to be found in the pictures themselves.
-    fn estimates_motion(&self) -> bool {
-        self.motion.as_deref() == Some(Path::new(ESTIMATE))
     }
 
     /// The files of motion vectors.
@@ -430,9 +442,9 @@ impl ApplyArgs {
             opened => opened.ok(),
         };
         if self.dry_run {
-            files::check(&first.output)?;
+            files::check(&first.output, Existing::Replace)?;
         } else {
-            files::check_writable(&first.output)?;
+            files::check_writable(&first.output, Existing::Replace)?;
             files::sweep(&first.output);
         }
         Ok(opened)
@@ -453,7 +465,7 @@ impl ApplyArgs {
         &self,
         library: &Library,
         looks: &[Look],
-        masks: Vec<MaskChoice>,
+        masks: &[MaskChoice],
         format: Format,
     ) -> Result<Selection> {
         if self.into.is_some() && format != Format::Exr {
@@ -484,8 +496,8 @@ impl ApplyArgs {
             convention: self.motion_convention,
             // What lies in other files is not looked for in the picture's.
             masks: masks
-                .into_iter()
-                .map(|mask| self.mask_from.clone().map_or(mask.source, MaskSource::File))
+                .iter()
+                .map(|mask| self.mask_from.clone().map_or(mask.source.clone(), MaskSource::File))
                 .collect(),
             on_unknown: self.on_unknown,
         })

@@ -4,18 +4,20 @@
 //! before. The CPU's are set against what the machine can do at most, measured in the same run; a small picture
 //! that stays in the caches may be copied faster than that.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use fearless_simd::Level;
 
-use super::shared::{PrecisionArgs, parse_size};
+use super::shared::{ForceArgs, PrecisionArgs, parse_size};
 use crate::bench::compare::Saved;
 use crate::bench::report::{Machine, Report, Shown};
 use crate::bench::{Subject, card, cpu, gpu, peak, picture, sequence};
 use crate::error::{AtPlace, Error, Result};
+use crate::files;
 use crate::output;
 use crate::render::gpu::Gpu;
+use crate::replacing::{Inputs, Made};
 use isophote_loader::Library;
 
 /// Sizes that are measured when none is given.
@@ -73,6 +75,8 @@ pub struct BenchArgs {
     /// Timed runs, of which the median counts, after one that is not timed.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     runs: u32,
+    #[command(flatten)]
+    force: ForceArgs,
 }
 
 /// What `bench` measures.
@@ -90,6 +94,11 @@ enum BenchBackend {
 /// [`Error::Failure`] without a library, and without an adapter when the GPU was asked for;
 /// [`Error::Input`] for nodes that do not exist.
 pub fn run(args: &BenchArgs) -> Result<()> {
+    if let Some(path) = &args.save {
+        let made = Made { from: None, to: path };
+        args.force.consent().check(&[made], false, || Ok(Inputs::of(&args.compare)))?;
+        files::check_writable(path, args.force.existing())?;
+    }
     let library = Library::open()?;
     if let Some(frames) = args.sequence {
         let usual = ["cartoon".to_owned()];
@@ -102,6 +111,7 @@ pub fn run(args: &BenchArgs) -> Result<()> {
             &library,
             &card::Options {
                 folder,
+                existing: args.force.existing(),
                 subjects: &subjects,
                 sizes: &args.size.map_or(CARD_SIZES.to_vec(), |size| vec![size]),
                 runs: args.runs,
@@ -146,7 +156,7 @@ pub fn run(args: &BenchArgs) -> Result<()> {
         }
     }
     if let Some(path) = &args.save {
-        save(path, &report)?;
+        files::write_bytes(path, args.force.existing(), report.json()?.as_bytes())?;
     }
     report.print_end()
 }
@@ -155,10 +165,6 @@ pub fn run(args: &BenchArgs) -> Result<()> {
 fn parse_seconds(text: &str) -> std::result::Result<f64, String> {
     let seconds = text.parse().ok().filter(|s: &f64| (0.0..=3600.0).contains(s));
     seconds.ok_or_else(|| "write a number from 0 to 3600".to_owned())
-}
-
-fn save(path: &Path, report: &Report) -> Result<()> {
-    std::fs::write(path, report.json()?).map_err(|e| Error::file(path, e, "choose another file"))
 }
 
 /// The nodes asked for, or all.

@@ -6,13 +6,17 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Command};
 use clap_complete::Shell;
 
+use super::shared::ForceArgs;
 use crate::error::{Error, Result};
+use crate::files;
 
 /// Options of `documents`.
 #[derive(Args, Debug)]
 pub struct DocumentsArgs {
     /// The folder to write to, laid out as `share` of a system: man/man1, bash-completion, zsh, fish, powershell.
     folder: PathBuf,
+    #[command(flatten)]
+    force: ForceArgs,
 }
 
 /// Shells, where each looks for completions below `share`, and the name of the file.
@@ -26,34 +30,35 @@ const COMPLETIONS: [(Shell, &str, &str); 4] = [
 /// Runs the verb for the command line of this program.
 ///
 /// # Errors
-/// [`Error::Input`] when the folder cannot be written.
+/// [`Error::Input`] when the folder cannot be written, and for files that are there already.
 pub fn run(args: &DocumentsArgs, command: Command) -> Result<()> {
-    let pages = folder(&args.folder.join("man/man1"))?;
+    let mut documents = Vec::new();
     let mut documented = command.clone().disable_help_subcommand(true);
     documented.build();
-    page(&documented, &pages)?;
+    pages(&documented, &args.folder.join("man/man1"), &mut documents)?;
     for (shell, place, name) in COMPLETIONS {
-        let path = folder(&args.folder.join(place))?.join(name);
         let mut text = Vec::new();
         clap_complete::generate(shell, &mut command.clone(), "isophote", &mut text);
-        std::fs::write(&path, text).map_err(|e| unwritten(&path, &e))?;
+        documents.push((args.folder.join(place).join(name), text));
     }
-    Ok(())
+    let existing = args.force.existing();
+    for (path, _) in &documents {
+        let folder = path.parent().unwrap_or(&args.folder);
+        std::fs::create_dir_all(folder)
+            .map_err(|e| Error::file(folder, format!("cannot be made: {e}"), "choose another folder"))?;
+        files::check_writable(path, existing)?;
+    }
+    documents.iter().try_for_each(|(path, text)| files::write_bytes(path, existing, text))
 }
 
-/// Writes the page of a command and those of its verbs.
-fn page(command: &Command, folder: &Path) -> Result<()> {
+/// Adds the page of a command and those of its verbs, which belong into a folder.
+fn pages(command: &Command, folder: &Path, documents: &mut Vec<(PathBuf, Vec<u8>)>) -> Result<()> {
     let program = concat!("Isophote ", env!("CARGO_PKG_VERSION"));
-    let text = clap_mangen::Man::new(command.clone()).manual("Isophote").source(program);
-    text.generate_to(folder).map_err(|e| unwritten(folder, &e))?;
-    command.get_subcommands().filter(|verb| !verb.is_hide_set()).try_for_each(|verb| page(verb, folder))
-}
-
-fn folder(path: &Path) -> Result<PathBuf> {
-    std::fs::create_dir_all(path).map_err(|e| unwritten(path, &e))?;
-    Ok(path.to_owned())
-}
-
-fn unwritten(path: &Path, error: &std::io::Error) -> Error {
-    Error::input(path.display(), format!("cannot be written: {error}"), "choose another folder")
+    let page = clap_mangen::Man::new(command.clone()).manual("Isophote").source(program);
+    let mut text = Vec::new();
+    page.render(&mut text)
+        .map_err(|e| Error::failure(e, "this is a mistake in the program; please report it"))?;
+    documents.push((folder.join(page.get_filename()), text));
+    let mut verbs = command.get_subcommands().filter(|verb| !verb.is_hide_set());
+    verbs.try_for_each(|verb| pages(verb, folder, documents))
 }

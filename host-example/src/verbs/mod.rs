@@ -6,6 +6,7 @@ pub mod bench;
 pub mod documents;
 pub mod farm;
 pub mod nodes;
+mod places;
 pub mod preset;
 pub mod render;
 mod shared;

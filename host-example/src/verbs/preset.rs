@@ -6,8 +6,11 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use serde_json::Value;
 
+use super::shared::ForceArgs;
 use crate::error::{AtPlace, Error, Result};
+use crate::identity::is_same;
 use crate::looks::{self, Look};
+use crate::replacing::{Consent, Inputs, Made};
 use crate::stylize::preset::{self, Preset, Track};
 use crate::stylize::source;
 use crate::stylize::style::{Setting, Style};
@@ -88,9 +91,17 @@ struct SaveArgs {
     /// A word by which it is found. May be repeated; takes the place of all tags of another preset.
     #[arg(long, value_name = "TAG", value_parser = line)]
     tag: Vec<String>,
-    /// Overwrites the file if it exists.
+    /// Replaces the preset that the file starts from.
     #[arg(long)]
-    force: bool,
+    in_place: bool,
+    #[command(flatten)]
+    force: ForceArgs,
+}
+
+impl SaveArgs {
+    fn consent(&self) -> Consent {
+        Consent { in_place: self.in_place, ..self.force.consent() }
+    }
 }
 
 /// A text for the title of a preset.
@@ -107,9 +118,7 @@ pub fn run(args: &PresetArgs) -> Result<()> {
     match &args.command {
         PresetCommand::List(args) => list(args),
         PresetCommand::Save(args) => {
-            if args.file.exists() && !args.force {
-                return Err(Error::file(&args.file, "is there already", "name another file, or add --force"));
-            }
+            args.consent().check(&[made(args)], false, || Ok(Inputs::default()))?;
             save(&Library::open()?, args)
         }
         PresetCommand::Show { file, frame } => show(&Library::open()?, file, *frame),
@@ -152,6 +161,11 @@ fn list(args: &ListArgs) -> Result<()> {
         text += &format!("  {:ids$}{name:names$}{about}\n", look.style());
     }
     output::print(&text)
+}
+
+/// The file, and what it starts from.
+fn made(args: &SaveArgs) -> Made<'_> {
+    Made { from: Some(&args.style), to: &args.file }
 }
 
 /// What a file starts from.
@@ -200,8 +214,13 @@ fn save(library: &Library, args: &SaveArgs) -> Result<()> {
             }
         }
     }
+    // A preset may start from another, whose graph is a third file.
+    if is_same(&file.with_file_name(&preset.style), file) {
+        return Err(Error::file(file, "is the graph that the preset is for", "name another file"));
+    }
     let text = preset.to_json();
-    files::write(file, |out| std::io::Write::write_all(out, text.as_bytes()).map_err(|e| e.to_string()))
+    let write = |existing| files::write_bytes(file, existing, text.as_bytes());
+    args.consent().write(made(args), |_| false, write).map(drop)
 }
 
 /// The path of a graph file as a preset names it: relative where both lie in one folder, whole otherwise.

@@ -4,17 +4,19 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::shared::{LengthArgs, PrecisionArgs, SceneArgs, parse_size};
+use super::shared::{ForceArgs, LengthArgs, PrecisionArgs, SceneArgs, parse_size};
 use super::staging::StagingArgs;
 use crate::apply::read;
 use crate::apply::report::{Outcome, Report};
 use crate::apply::tasks::Task;
 use crate::error::{Error, Result};
-use crate::files;
+use crate::files::{self, Existing};
 use crate::frames::{FrameList, Pattern};
+use crate::identity::Identity;
 use crate::limits;
 use crate::output::{self, Layer, Picture, Precision};
 use crate::render::targets::{Target, Targets};
+use crate::replacing::{Consent, Inputs, Made};
 use crate::scene::Scene;
 use crate::shot::{Options, Shot};
 use crate::stop::Stop;
@@ -40,9 +42,11 @@ pub struct RenderArgs {
     /// per second, 49-72 is its third second.
     #[arg(long, value_name = "N|LIST", default_value = "1", value_parser = FrameList::or_count, allow_hyphen_values = true)]
     frames: FrameList,
-    /// Leaves pictures alone that are there already and whole, and a video that is there.
-    #[arg(long)]
+    /// Leaves pictures alone that are there already and whole, and a video that is there; makes the others.
+    #[arg(long, conflicts_with = "force")]
     skip_existing: bool,
+    #[command(flatten)]
+    force: ForceArgs,
     /// Prints a line of JSON for every frame, as apply does.
     #[arg(long)]
     json: bool,
@@ -105,6 +109,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         style.warn_of_keys_beyond(args.frames.frames());
     }
     let scene = args.scene.load()?;
+    args.check_scene(&scene)?;
     let options = args.options(&scene)?;
     let mut shot = Shot::new(scene, style, options)?;
     files::sweep(&args.out);
@@ -125,32 +130,64 @@ pub fn run(args: &RenderArgs) -> Result<()> {
 impl RenderArgs {
     /// Renders every frame to a file of its own.
     fn pictures(&self, shot: &mut Shot, stop: &Stop, report: &Report) -> Result<()> {
-        let frames = self.frames.frames();
-        let pattern = match Pattern::new(&self.out)? {
-            None if frames.len() == 1 => None,
-            _ => Some(Pattern::or_added(&self.out)?),
-        };
-        for (done, &number) in frames.iter().enumerate() {
+        let results = self.results()?;
+        let count = results.len();
+        for (done, (number, file)) in results.into_iter().enumerate() {
             if stop.is_requested() {
-                return Err(Error::failure(
-                    format!("stopped after {done} of {} frames", frames.len()),
-                    "start again with --skip-existing to go on",
-                ));
+                let problem = format!("stopped after {done} of {count} frames");
+                return Err(Error::failure(problem, self.consent().resuming()));
             }
-            let file = pattern.as_ref().map_or_else(|| self.out.clone(), |pattern| pattern.file(number));
             let is_there = self.skip_existing && read::is_whole(&file);
-            if !is_there {
+            let is_written = !is_there && {
                 let picture = shot.draw(number)?;
-                if output::is_exr(&file) {
-                    save_layers(shot, &file, &picture)?;
-                } else {
-                    output::save(&file, &picture)?;
-                }
-            }
-            let outcome = if is_there { Outcome::Skipped } else { Outcome::Written(0) };
+                let made = Made { from: None, to: &file };
+                self.consent().write(made, read::is_whole, |existing| match output::is_exr(&file) {
+                    true => save_layers(shot, (&file, existing), &picture),
+                    false => output::save(&file, existing, &picture),
+                })?
+            };
+            let outcome = if is_written { Outcome::Written(0) } else { Outcome::Skipped };
             report.frame(&self.task(number, file), &outcome);
         }
         Ok(())
+    }
+
+    /// Numbers and files of the results; of a video there is one file for all.
+    fn results(&self) -> Result<Vec<(i64, PathBuf)>> {
+        let frames = self.frames.frames();
+        let pattern = match Pattern::new(&self.out)? {
+            _ if video::is_video(&self.out) => None,
+            None if frames.len() == 1 => None,
+            _ => Some(Pattern::or_added(&self.out)?),
+        };
+        let file = |number| pattern.as_ref().map_or_else(|| self.out.clone(), |pattern| pattern.file(number));
+        Ok(frames.iter().map(|number| (*number, file(*number))).collect())
+    }
+
+    fn consent(&self) -> Consent {
+        Consent { skip_existing: self.skip_existing, ..self.force.consent() }
+    }
+
+    /// Refuses results that are there already, or that are files which the command line names.
+    fn check_results(&self) -> Result<()> {
+        let results = self.results()?;
+        let is_sequence = results.len() > 1 && !video::is_video(&self.out);
+        let made: Vec<Made<'_>> = results.iter().map(|(_, file)| Made { from: None, to: file }).collect();
+        let read = || {
+            let named = [Some(self.scene.scene.clone()), self.scene.reading.texture.clone()];
+            let more = [self.staging.surroundings(), Some(self.style.clone())];
+            Ok(Inputs::of(named.into_iter().chain(more).flatten()))
+        };
+        self.consent().check(&made, is_sequence, read)
+    }
+
+    /// Refuses results that are files which the scene was read from.
+    fn check_scene(&self, scene: &Scene) -> Result<()> {
+        let is_read = |file: &PathBuf| Identity::of(file).is_some_and(|file| scene.files.contains(&file));
+        match self.results()?.into_iter().map(|(_, file)| file).find(is_read) {
+            Some(file) => Err(Error::file(&file, "is read with the scene", "name another file")),
+            None => Ok(()),
+        }
     }
 
     /// Renders all frames into a video.
@@ -160,7 +197,7 @@ impl RenderArgs {
             frames.iter().for_each(|n| report.frame(&self.task(*n, self.out.clone()), &Outcome::Skipped));
             return Ok(());
         }
-        files::write_by_path(&self.out, |place| {
+        let make = |place: &Path| {
             let mut film = None::<Film<'_>>;
             for (done, &number) in frames.iter().enumerate() {
                 if stop.is_requested() {
@@ -182,8 +219,11 @@ impl RenderArgs {
                 }
                 report.frame(&self.task(number, self.out.clone()), &Outcome::Written(0));
             }
-            film.map_or(Ok(()), Film::end)
-        })
+            Film::end(film, &self.out)
+        };
+        let made = Made { from: None, to: &self.out };
+        let write = |existing| files::write_by_path(&self.out, existing, make);
+        self.consent().write(made, Path::is_file, write).map(drop).inspect_err(|_| report.nothing_written())
     }
 
     fn task(&self, number: i64, output: PathBuf) -> Task {
@@ -207,7 +247,8 @@ impl RenderArgs {
                 "leave it out, or name a video such as out.mp4",
             ));
         }
-        files::check_writable(&self.out)?;
+        files::check_writable(&self.out, Existing::Replace)?;
+        self.check_results()?;
         let steadiness = self.steadiness.map(|s| format!("--steadiness {s}"));
         let setting = self.set.first().map(|setting| format!("--set {setting}")).or(steadiness);
         if let (true, Some(setting)) = (!self.is_stylized(), setting) {
@@ -286,7 +327,7 @@ const GUIDES: [Guide; 5] = [
 ];
 
 /// Writes a frame with everything that is known of it into one file.
-fn save_layers(shot: &mut Shot, file: &Path, color: &Picture) -> Result<()> {
+fn save_layers(shot: &mut Shot, (file, existing): (&Path, Existing), color: &Picture) -> Result<()> {
     let (names, precision): (&[&str], _) = match color.channels {
         1 => (&["Y"], Precision::Float),
         _ => (&["R", "G", "B", "A"], Precision::Half),
@@ -308,5 +349,5 @@ fn save_layers(shot: &mut Shot, file: &Path, color: &Picture) -> Result<()> {
         precision: *precision,
     }));
     // A matrix column by column is the same for row vectors row by row.
-    output::save_layers(file, &layers, shot.view().map(|view| view.world_to_view.to_cols_array()))
+    output::save_layers(file, existing, &layers, shot.view().map(|view| view.world_to_view.to_cols_array()))
 }

@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use crate::error::Result;
+use crate::files::Existing;
 use crate::output;
 use crate::pixels::MOST_PIXELS;
+use crate::replacing::Consent;
 use crate::scene::Scene;
 use crate::stylize::lengths::Lengths;
 use crate::stylize::precision::Precision;
@@ -99,6 +101,26 @@ pub struct PrecisionArgs {
     /// How precisely graphics devices compute; the CPU always computes exactly.
     #[arg(long, value_enum, default_value_t)]
     pub precision: Precision,
+}
+
+/// What becomes of files that are there already.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct ForceArgs {
+    /// Replaces files that are there already; without it they stay, and the command is refused.
+    #[arg(long)]
+    pub force: bool,
+}
+
+impl ForceArgs {
+    /// What was consented to.
+    pub fn consent(self) -> Consent {
+        Consent::forced(self.force)
+    }
+
+    /// What becomes of a file that is there.
+    pub fn existing(self) -> Existing {
+        if self.force { Existing::Replace } else { Existing::Keep }
+    }
 }
 
 /// Width and height in pixels, such as `1280x720`.

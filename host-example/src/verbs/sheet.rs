@@ -4,9 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::shared::ForceArgs;
 use crate::error::{Error, Result};
 use crate::files;
 use crate::limits;
+use crate::replacing::{Inputs, Made};
 use crate::sheet::{arranged, cells};
 
 /// Options of `sheet`.
@@ -27,6 +29,8 @@ pub struct SheetArgs {
     /// Label of a picture instead of its name. May be repeated, in the order of the pictures.
     #[arg(long, value_name = "TEXT")]
     label: Vec<String>,
+    #[command(flatten)]
+    force: ForceArgs,
 }
 
 /// Runs the verb.
@@ -41,7 +45,10 @@ pub fn run(args: &SheetArgs) -> Result<()> {
         let problem = format!("{} labels for {} pictures", args.label.len(), args.pictures.len());
         return Err(Error::input("--label", problem, "give one for each picture, in their order"));
     }
-    files::check_writable(&args.sheet)?;
+    let made = Made { from: None, to: &args.sheet };
+    args.force.consent().check(&[made], false, || Ok(Inputs::of(&args.pictures)))?;
+    let existing = args.force.existing();
+    files::check_writable(&args.sheet, existing)?;
     limits::start_threads(0)?;
     let mut all = Vec::new();
     for (index, path) in args.pictures.iter().enumerate() {
@@ -53,7 +60,7 @@ pub fn run(args: &SheetArgs) -> Result<()> {
     let sheet = arranged(&all, columns, args.width).ok_or_else(|| {
         Error::input("the sheet", "would be too large", "choose a smaller --width or fewer pictures")
     })?;
-    files::write(&args.sheet, |file| {
+    files::write(&args.sheet, existing, |file| {
         let encoder = image::codecs::png::PngEncoder::new(file);
         sheet.write_with_encoder(encoder).map_err(|e| e.to_string())
     })

@@ -10,7 +10,7 @@ pub mod window;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 
 use tempfile::TempDir;
@@ -78,6 +78,27 @@ pub fn fails(command: &mut Command, code: i32, words: &[&str]) {
         assert!(text.contains(word), "{command:?} does not say '{word}':\n{text}");
     }
     assert!(output.stdout.is_empty(), "{command:?} prints: {}", String::from_utf8_lossy(&output.stdout));
+}
+
+/// The program in a namespace whose folder `small` is a disk of 64 KiB, between lines of a shell; nothing where no disk may
+/// be mounted.
+#[cfg(target_os = "linux")]
+pub fn on_a_small_disk(folder: &Path, [before, after]: [&str; 2], more: &[&str]) -> Option<Command> {
+    let mount = "mount -t tmpfs -o size=64k none small || exit 99";
+    let script = format!("{mount}\n{before}\n\"$0\" \"$@\"\ncode=$?\n{after}\nexit $code");
+    let namespace = |program: &str| {
+        let mut command = Command::new("unshare");
+        command.current_dir(folder).env("ISOPHOTE_LIBRARY", library());
+        command.args(["-rm", "sh", "-c", &script, program]);
+        command
+    };
+    if !namespace("true").stderr(Stdio::null()).status().is_ok_and(|status| status.success()) {
+        eprintln!("\n*** SKIPPED: no disk may be mounted here ***\n");
+        return None;
+    }
+    let mut command = namespace(env!("CARGO_BIN_EXE_isophote"));
+    command.args(more);
+    Some(command)
 }
 
 /// A folder that goes away with the test.

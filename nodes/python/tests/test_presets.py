@@ -20,7 +20,7 @@ def by_host(host: Path, style: str, picture: np.ndarray, folder: Path, frame: in
     target = folder / f"out.{frame:04}.png"
     Image.fromarray(picture).save(folder / f"in.{frame:04}.png")
     frames = [folder / "in.####.png", folder / "out.####.png", "--frames", str(frame)]
-    command = [host, "apply", style, *frames, "--backend", "cpu"]
+    command = [host, "apply", style, *frames, "--force", "--backend", "cpu"]
     subprocess.run(command, check=True, env={**os.environ, "NODEVICE_SELECT": "1"}, stdout=subprocess.DEVNULL)
     return np.asarray(Image.open(target))
 

@@ -68,7 +68,7 @@ fn main() -> ExitCode {
         }
         Options::Licences { to, of } => {
             share::licences_of(&root(), &of.iter().map(String::as_str).collect::<Vec<_>>())
-                .and_then(|text| std::fs::write(&to, text).map_err(Error::at(&to)))
+                .and_then(|text| pack::write_text(&to, &text))
         }
     };
     match done {

@@ -24,8 +24,25 @@ pub fn pack(tree: &Tree, name: &str, file: &Path, fast: bool) -> Result<String> 
         append(&mut archive, &format!("{name}/{place}"), entry, file)?;
     }
     let finished = archive.into_inner().and_then(flate2::write::GzEncoder::finish);
-    finished.and_then(|mut out| out.flush()).map_err(Error::at(file))?;
+    let written = finished.and_then(|out| Ok(out.into_inner()?));
+    // Some disks tell only then that they are full.
+    written.and_then(|file| file.sync_all()).map_err(Error::at(file))?;
     checksum(file)
+}
+
+/// Writes a text under another name in its folder, and renames it when it is whole.
+///
+/// # Errors
+/// [`Error::File`] when it cannot be written.
+pub fn write_text(file: &Path, text: &str) -> Result<()> {
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let beside = file.with_file_name(format!(".{name}.part"));
+    let written = std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, file));
+    if written.is_err() {
+        // What failed is told; that this may fail as well adds nothing.
+        let _ = std::fs::remove_file(&beside);
+    }
+    written.map_err(Error::at(file))
 }
 
 fn append(archive: &mut Builder<impl Write>, place: &str, entry: &Entry, file: &Path) -> Result<()> {
@@ -80,6 +97,26 @@ mod tests {
         assert_eq!(std::fs::read(&files[0]).unwrap(), std::fs::read(&files[1]).unwrap());
         tree.text("b/long.txt", "other");
         assert_ne!(pack(&tree, "top", &files[0], true).unwrap(), sums[0]);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn an_archive_that_does_not_fit_on_the_disk_is_an_error() {
+        let mut tree = Tree::default();
+        tree.text("a.txt", "text");
+        assert!(pack(&tree, "top", Path::new("/dev/full"), true).is_err());
+    }
+
+    #[test]
+    fn texts_appear_when_they_are_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.txt");
+        write_text(&file, "first").unwrap();
+        write_text(&file, "second").unwrap();
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), "second");
+        std::fs::create_dir(folder.path().join("folder")).unwrap();
+        assert!(write_text(&folder.path().join("folder"), "text").is_err());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2, "nothing half-written is left");
     }
 
     #[test]

@@ -5,6 +5,8 @@ use crate::shot::{Shot, Style};
 use image::DynamicImage;
 use image::codecs::jpeg::JpegEncoder;
 use image::imageops::FilterType;
+use std::fs::File;
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
@@ -103,7 +105,23 @@ pub fn small(from: &Path, to: &Path, widest: u32) -> Result<()> {
     if picture.width() > widest {
         picture = picture.resize(widest, u32::MAX, FilterType::Lanczos3);
     }
-    let file = std::fs::File::create(to).map_err(Error::at(to))?;
-    let encoder = JpegEncoder::new_with_quality(std::io::BufWriter::new(file), QUALITY);
-    DynamicImage::ImageRgb8(picture.to_rgb8()).write_with_encoder(encoder).map_err(at(to))
+    let mut file = BufWriter::new(File::create(to).map_err(Error::at(to))?);
+    let encoder = JpegEncoder::new_with_quality(&mut file, QUALITY);
+    DynamicImage::ImageRgb8(picture.to_rgb8()).write_with_encoder(encoder).map_err(at(to))?;
+    // Dropped, it would not tell of a full disk.
+    file.flush().map_err(Error::at(to))
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_that_does_not_fit_on_the_disk_is_an_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let from = folder.path().join("a.png");
+        image::RgbImage::new(8, 8).save(&from).unwrap();
+        small(&from, &folder.path().join("a.jpg"), WIDEST).unwrap();
+        assert!(small(&from, Path::new("/dev/full"), WIDEST).is_err());
+    }
 }

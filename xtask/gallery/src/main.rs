@@ -81,13 +81,13 @@ impl Host<'_> {
 
     fn render(&self, scene: &Path, out: &Path) -> Command {
         let mut command = Command::new(self.program);
-        command.arg("render").arg(scene).arg(out).args(["--size", self.size]);
+        command.args(["render", "--force"]).arg(scene).arg(out).args(["--size", self.size]);
         command
     }
 
     fn apply(&self, style: &str, input: &Path, out: &Path) -> Command {
         let mut command = Command::new(self.program);
-        command.arg("apply").arg(style).arg(input).arg(out).args(["--backend", "cpu"]);
+        command.args(["apply", "--force"]).arg(style).arg(input).arg(out).args(["--backend", "cpu"]);
         command
     }
 }

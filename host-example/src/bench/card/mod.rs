@@ -16,6 +16,7 @@ use crate::apply::backend::Backend;
 use crate::apply::filter::{Filter, Look, Planner};
 use crate::apply::memory;
 use crate::error::{AtPlace, Error, Result};
+use crate::files::Existing;
 use crate::output;
 use crate::render::gpu::Gpu;
 use crate::stylize::lengths::Lengths;
@@ -34,6 +35,8 @@ const TWINS: (u32, u32) = (320, 200);
 pub struct Options<'a> {
     /// Where the reports go.
     pub folder: &'a Path,
+    /// What becomes of reports that are there.
+    pub existing: Existing,
     /// Nodes.
     pub subjects: &'a [Subject],
     /// Sizes of pictures.
@@ -54,6 +57,7 @@ pub struct Options<'a> {
 pub fn run(library: &Library, options: &Options<'_>) -> Result<()> {
     std::fs::create_dir_all(options.folder)
         .map_err(|e| Error::file(options.folder, format!("cannot be made: {e}"), "name another folder"))?;
+    report::check(options.folder, options.existing)?;
     let gpu = Gpu::open()?;
     let info = gpu.adapter.get_info();
     output::print(&format!("{}\n", info.name))?;
@@ -78,7 +82,7 @@ pub fn run(library: &Library, options: &Options<'_>) -> Result<()> {
             card.sequence(library, precision, options, *size)?;
         }
     }
-    report::write(&card, options.folder)?;
+    report::write(&card, options.folder, options.existing)?;
     let others = card.twins.iter().filter(|twin| !twin.agrees).count();
     match (others, card.problems.len()) {
         (0, 0) => Ok(()),

@@ -1,7 +1,6 @@
 //! The reports of a card.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::Path;
 
 use serde_json::{Value, json};
@@ -9,21 +8,29 @@ use serde_json::{Value, json};
 use super::found::Card;
 use crate::bench::entry::Entry;
 use crate::error::{Error, Result};
-use crate::files;
+use crate::files::{self, Existing};
 use crate::output;
 use crate::stylize::precision::Precision;
 
 /// Names of the reports.
 const NAMES: [&str; 2] = ["card.md", "card.json"];
 
+/// Makes sure that both can be written into a folder.
+///
+/// # Errors
+/// As [`files::check_writable`].
+pub fn check(folder: &Path, existing: Existing) -> Result<()> {
+    NAMES.iter().try_for_each(|name| files::check_writable(&folder.join(name), existing))
+}
+
 /// Writes both into a folder, and says where they are.
 ///
 /// # Errors
 /// [`Error::Input`] and [`Error::Failure`] when they cannot be written.
-pub fn write(card: &Card, folder: &Path) -> Result<()> {
+pub fn write(card: &Card, folder: &Path, existing: Existing) -> Result<()> {
     for (name, text) in NAMES.iter().zip([markdown(card), json(card)?]) {
         let file = folder.join(name);
-        files::write(&file, |out| out.write_all(text.as_bytes()).map_err(|e| e.to_string()))?;
+        files::write_bytes(&file, existing, text.as_bytes())?;
         output::print(&format!("{}\n", file.display()))?;
     }
     Ok(())
