@@ -34,7 +34,7 @@ impl Library {
     /// A graph of one node whose inputs are the pictures of the same name.
     ///
     /// # Errors
-    /// [`Error`](crate::Error) when there is no such node, naming the nearest.
+    /// [`Error`] when there is no such node, naming the nearest.
     pub fn single(&self, node: &str) -> Result<Graph> {
         let node = text::argument(node)?;
         self.graph(|error, graph| {
@@ -46,7 +46,7 @@ impl Library {
     /// The graph that a JSON text describes.
     ///
     /// # Errors
-    /// [`Error`](crate::Error) saying what is wrong with it and where.
+    /// [`Error`] saying what is wrong with it and where.
     pub fn graph_from_json(&self, json: &str) -> Result<Graph> {
         let json = text::argument(json)?;
         self.graph(|error, graph| {
@@ -70,7 +70,7 @@ impl Graph {
     /// Adds a node under a name of its own, and returns its index.
     ///
     /// # Errors
-    /// [`Error`](crate::Error) when there is no such node, or the name is taken.
+    /// [`Error`] when there is no such node, or the name is taken.
     pub fn add(&mut self, name: &str, node: &str) -> Result<u32> {
         let (name, node) = (text::argument(name)?, text::argument(node)?);
         let mut index = 0;
@@ -84,7 +84,7 @@ impl Graph {
     /// Connects the output of node `from` to an input of node `to`.
     ///
     /// # Errors
-    /// [`Error`](crate::Error) when there is no such node or input, or the two do not fit.
+    /// [`Error`] when there is no such node or input, or the two do not fit.
     pub fn connect(&mut self, from: u32, to: u32, port: &str) -> Result<()> {
         let port = text::argument(port)?;
         // SAFETY: the handle is this object's, and the text ends with a zero.
@@ -95,7 +95,7 @@ impl Graph {
     /// Connects a picture that enters the graph to the input of node `to` that bears its name.
     ///
     /// # Errors
-    /// [`Error`](crate::Error) when there is no such picture, node or input.
+    /// [`Error`] when there is no such picture, node or input.
     pub fn connect_input(&mut self, input: &str, to: u32) -> Result<()> {
         let input = text::argument(input)?;
         // SAFETY: the handle is this object's, and the text ends with a zero.
@@ -120,7 +120,7 @@ impl Graph {
     /// Name of a node within the graph.
     ///
     /// # Errors
-    /// [`Error`](crate::Error) when there is no such index.
+    /// [`Error`] when there is no such index.
     pub fn name(&self, node: u32) -> Result<String> {
         // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
         let (status, name) = text::whole(|out| unsafe { (self.api.graph_name)(self.handle, node, out) });
@@ -131,7 +131,7 @@ impl Graph {
     /// What a node says about itself.
     ///
     /// # Errors
-    /// [`Error`](crate::Error) when there is no such index.
+    /// [`Error`] when there is no such index.
     pub fn spec(&self, node: u32) -> Result<Node> {
         let mut spec = std::ptr::null();
         // SAFETY: the handle is this object's; `spec` may be written during the call.
@@ -144,7 +144,7 @@ impl Graph {
     /// Sets how precisely graphics devices compute it.
     ///
     /// # Errors
-    /// [`Error`](crate::Error) when the library computes exactly alone.
+    /// [`Error`] when the library computes exactly alone.
     pub fn set_precision(&self, precision: IsophotePrecision) -> Result<()> {
         // SAFETY: the name ends with a zero.
         let table = unsafe { (self.api.extension)(PRECISION.as_ptr()) }.cast::<IsophotePrecisionApi>();
@@ -160,7 +160,7 @@ impl Graph {
     /// Sets a parameter from text as a person writes it: `2.5`, `true`, `scharr3`, `#12407b`.
     ///
     /// # Errors
-    /// [`Error`](crate::Error) when there is no such parameter, or it cannot have this value.
+    /// [`Error`] when there is no such parameter, or it cannot have this value.
     pub fn set(&self, node: u32, param: &str, value: &str) -> Result<()> {
         let (param, value) = (text::argument(param)?, text::argument(value)?);
         // SAFETY: the handle is this object's; both texts end with a zero.
@@ -171,7 +171,7 @@ impl Graph {
     /// What leaves the graph.
     ///
     /// # Errors
-    /// [`Error`](crate::Error) when it has no output.
+    /// [`Error`] when it has no output.
     pub fn output_kind(&self) -> Result<Kind> {
         let mut kind = 0;
         // SAFETY: the handle is this object's; `kind` may be written during the call.
@@ -183,7 +183,7 @@ impl Graph {
     /// The graph as JSON.
     ///
     /// # Errors
-    /// [`Error`](crate::Error) when the library fails.
+    /// [`Error`] when the library fails.
     pub fn to_json(&self) -> Result<String> {
         // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
         let (status, json) = text::whole(|out| unsafe { (self.api.graph_to_json)(self.handle, out) });
