@@ -12,7 +12,7 @@ use crate::temporary::{self, Temporary};
 /// Most symbolic links that are followed from one to the next, as many as Linux does.
 const MOST_LINKS: usize = 40;
 
-/// What becomes of a file that has the name of a new one.
+/// Treatment of a file that has the name of a new one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
     /// It stays, and the new one is refused.

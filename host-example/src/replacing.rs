@@ -1,4 +1,4 @@
-//! What results may replace: files that are there already where that was asked for, and never one that is read.
+//! Files that results may replace: those that are there already where that was asked for, and never one that is read.
 
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ pub struct Consent {
 /// A result with the file that it is made from, if that is a file.
 #[derive(Clone, Copy, Debug)]
 pub struct Made<'a> {
-    /// What it is made from.
+    /// File that it is made from.
     pub from: Option<&'a Path>,
     /// Where it goes.
     pub to: &'a Path,
@@ -140,7 +140,7 @@ impl Consent {
         }
     }
 
-    /// How a run that was not done to its end goes on.
+    /// Way to go on with a run that was not done to its end.
     pub fn resuming(self) -> &'static str {
         if self.in_place || self.force {
             "start again with --frames for those that are left"

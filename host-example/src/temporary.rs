@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use tempfile::NamedTempFile;
 
-/// How the names of temporary files begin; [`kernel`] follows.
+/// Beginning of the names of temporary files; [`kernel`] follows.
 const TEMPORARY: &str = ".isophote-";
 
 /// Age after which a temporary file that nobody locks was left behind, whoever wrote it: locks of other machines may

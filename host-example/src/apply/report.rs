@@ -184,7 +184,7 @@ impl Report {
         self.bar.suspend(|| output::warn(warning));
     }
 
-    /// What all frames were to become is not there.
+    /// Takes back that frames were written, since their file is not there.
     pub fn nothing_written(&self) {
         self.counts.lock().unwrap_or_else(PoisonError::into_inner).written = 0;
     }

@@ -31,7 +31,7 @@ pub struct Run<'a> {
     pub tasks: &'a [Task],
     /// Kind of the outputs.
     pub format: Format,
-    /// What results may replace.
+    /// Consent to replace files.
     pub consent: Consent,
     /// Whether frames are read and written beside being filtered.
     pub threads: Threads,

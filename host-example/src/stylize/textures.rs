@@ -33,7 +33,7 @@ impl Slot {
         (self.role, self.format, self.size) == (texture.role, texture.format, texture.size)
     }
 
-    /// Whether the runner made it for this plan alone.
+    /// Tells whether the runner made it for this plan alone.
     fn is_own(&self) -> bool {
         self.role != Role::Input && !history::is_stage(&self.name)
     }

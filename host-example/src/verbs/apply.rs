@@ -67,7 +67,7 @@ pub struct ApplyArgs {
     /// Lets results take the place of the pictures that they are made from.
     #[arg(long)]
     pub in_place: bool,
-    /// What becomes of results that are there.
+    /// Treatment of results that are there.
     #[command(flatten)]
     pub force: ForceArgs,
     /// Prints what would be done, and does nothing.

@@ -56,7 +56,7 @@ struct OpenJdArgs {
 
 /// The command of a job.
 struct Job {
-    /// How `apply` declares its arguments.
+    /// Declaration of the arguments of `apply`.
     declared: Command,
     /// Those that are given.
     given: ArgMatches,

@@ -78,7 +78,7 @@ impl ApplyArgs {
         self.motion.as_deref() == Some(Path::new(ESTIMATE))
     }
 
-    /// What results may replace.
+    /// Consent to replace files.
     pub fn consent(&self) -> Consent {
         Consent { in_place: self.in_place, skip_existing: self.skip_existing, ..self.force.consent() }
     }

@@ -103,7 +103,7 @@ pub struct PrecisionArgs {
     pub precision: Precision,
 }
 
-/// What becomes of files that are there already.
+/// Treatment of files that are there already.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct ForceArgs {
     /// Replaces files that are there already; without it they stay, and the command is refused.
@@ -112,12 +112,12 @@ pub struct ForceArgs {
 }
 
 impl ForceArgs {
-    /// What was consented to.
+    /// Consent that was given.
     pub fn consent(self) -> Consent {
         Consent::forced(self.force)
     }
 
-    /// What becomes of a file that is there.
+    /// Treatment of a file that is there.
     pub fn existing(self) -> Existing {
         if self.force { Existing::Replace } else { Existing::Keep }
     }

@@ -14,7 +14,7 @@ use crate::pixels::{Pixels, Samples};
 /// How ffmpeg changes between RGB and what videos hold.
 pub const EXACT: &str = "flags=bicubic+accurate_rnd+full_chroma_int+full_chroma_inp";
 
-/// What becomes of a video that is damaged or cut short.
+/// Treatment of a video that is damaged or cut short.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum OnError {
     /// Nothing is written.

@@ -38,7 +38,7 @@ pub struct Job<'a> {
     pub input: &'a Path,
     /// What is written: a file, or `-`.
     pub output: &'a Path,
-    /// What becomes of a file that is there.
+    /// Treatment of a file that is there.
     pub existing: Existing,
     /// Options of the encoder instead of the usual ones.
     pub encode: Option<&'a str>,

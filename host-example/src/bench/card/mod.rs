@@ -35,7 +35,7 @@ const TWINS: (u32, u32) = (320, 200);
 pub struct Options<'a> {
     /// Where the reports go.
     pub folder: &'a Path,
-    /// What becomes of reports that are there.
+    /// Treatment of reports that are there.
     pub existing: Existing,
     /// Nodes.
     pub subjects: &'a [Subject],
