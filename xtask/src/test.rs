@@ -274,7 +274,9 @@ fn run_all(mut programs: Vec<Program>) -> Result<Vec<String>> {
         std::thread::scope(|scope| {
             for _ in 0..lanes {
                 scope.spawn(|| {
-                    while let Some(program) = lock(&waiting).next() {
+                    loop {
+                        // Not in the head of a `while let`: its guard would be held while the program runs.
+                        let Some(program) = lock(&waiting).next() else { break };
                         let started = Instant::now();
                         let output = program.command().output();
                         let seconds = started.elapsed().as_secs_f64();
