@@ -29,7 +29,6 @@ pub mod request;
 pub mod sequence;
 pub mod spec;
 mod stages;
-pub mod tensor_options;
 pub mod value;
 
 pub use colour_space::ColourSpace;

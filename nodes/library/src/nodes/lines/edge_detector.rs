@@ -3,9 +3,9 @@
 use crate::kernels::colour::rgb_to_lab;
 use crate::kernels::lines::edge_candidates::{self, Method, Options};
 use crate::kernels::lines::{edge_gradient, edge_hysteresis};
-use crate::nodes::lines::difference_of_gaussians as dog;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
+use crate::stages::difference_of_gaussians as dog;
 use isophote_engine::ImageId;
 
 /// The node.
