@@ -41,7 +41,7 @@ pub use request::Planned;
 pub use stages::optical_flow;
 pub use value::Value;
 
-/// The README's example, compiled with the documentation tests.
+/// The example of the documentation's page for Rust, compiled with the documentation tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-pub struct Readme;
+#[doc = include_str!("../../../xtask/docs/pages/engines/rust.md")]
+pub struct Page;
