@@ -8,6 +8,7 @@ pub mod cli;
 pub mod drivers;
 pub mod error;
 pub mod files;
+pub mod floats;
 pub mod frames;
 pub mod identity;
 pub mod input;

@@ -3,7 +3,7 @@
 use std::f32::consts::TAU;
 
 use crate::error::Result;
-use crate::output::Picture;
+use crate::floats::Picture;
 use crate::render::Renderer;
 use crate::render::background::Background;
 use crate::render::gpu::Gpu;

@@ -5,7 +5,7 @@ mod support;
 use std::path::Path;
 use std::sync::Arc;
 
-use isophote_host::output::Picture;
+use isophote_host::floats::Picture;
 use isophote_host::pixels::{Pixels, Precision, Samples};
 use isophote_host::render::Renderer;
 use isophote_host::render::gpu::Gpu;

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use isophote_host::files::Existing;
-use isophote_host::output::{self, Layer, Picture, Precision};
+use isophote_host::floats::{self, Layer, Picture, Precision};
 use isophote_host::scene::Scene;
 use isophote_host::view::document::{Document, Options};
 use isophote_host::view::look::Look;
@@ -194,5 +194,5 @@ fn write_layers(file: &std::path::Path) {
         Layer { picture: &main, names: &["R", "G", "B"], precision },
         Layer { picture: &beauty, names: &["beauty.R", "beauty.G", "beauty.B"], precision },
     ];
-    output::save_layers(file, Existing::Replace, &layers, None).unwrap();
+    floats::save_layers(file, Existing::Replace, &layers, None).unwrap();
 }

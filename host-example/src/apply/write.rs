@@ -8,6 +8,7 @@ use super::exr::{ExrFile, Picture, components};
 use super::read::{ImageState, Source};
 use crate::error::{Error, Result};
 use crate::files::{self, Existing};
+use crate::floats;
 use crate::output;
 use crate::pixels::{Pixels, Precision, Samples};
 
@@ -136,17 +137,17 @@ fn grey_as_rgb(pixels: Pixels) -> Pixels {
 /// EXR in the precision that the source deserves: 8 bits fit into halves, 16 do not.
 fn write_exr(path: &Path, existing: Existing, pixels: &Pixels, picture: &Picture) -> Result<()> {
     let precision = match picture.pixels.precision() {
-        Precision::U8 | Precision::F16 => output::Precision::Half,
-        Precision::U16 | Precision::F32 => output::Precision::Float,
+        Precision::U8 | Precision::F16 => floats::Precision::Half,
+        Precision::U16 | Precision::F32 => floats::Precision::Float,
     };
     let channels = pixels.channels();
-    let data = output::Picture {
+    let data = floats::Picture {
         width: pixels.width(),
         height: pixels.height(),
         channels: channels as usize,
         data: pixels.to_f32(),
     };
-    output::save_exr(path, existing, &data, components(channels), precision)
+    floats::save_exr(path, existing, &data, components(channels), precision)
 }
 
 fn keep_profile(encoder: &mut impl ImageEncoder, profile: Option<Vec<u8>>) {

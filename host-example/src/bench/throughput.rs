@@ -20,8 +20,8 @@ use crate::apply::tasks::Task;
 use crate::apply::write::Format;
 use crate::error::{Error, Result};
 use crate::files::Existing;
+use crate::floats::{self, Picture, Precision};
 use crate::limits::Threads;
-use crate::output::{self, Picture, Precision};
 use crate::pixels::Pixels;
 use crate::replacing::Consent;
 use crate::stop::Stop;
@@ -112,7 +112,7 @@ fn save(path: &Path, picture: &Pixels) -> Result<()> {
         channels: picture.channels() as usize,
         data: picture.to_f32(),
     };
-    output::save_exr(path, Existing::Keep, &data, components(picture.channels()), Precision::Half)
+    floats::save_exr(path, Existing::Keep, &data, components(picture.channels()), Precision::Half)
 }
 
 /// Lets the system count the peak of this process anew, where it can.

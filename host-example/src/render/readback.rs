@@ -4,7 +4,7 @@ use half::f16;
 
 use super::gpu::Gpu;
 use crate::error::{Error, Result};
-use crate::output::Picture;
+use crate::floats::Picture;
 
 /// Copies textures to main memory; keeps its buffer from one call to the next.
 #[derive(Debug, Default)]

@@ -7,7 +7,7 @@ use super::gpu::Gpu;
 use super::look::Look;
 use super::readback::Readback;
 use super::{Renderer, targets::Target};
-use crate::output::Picture;
+use crate::floats::Picture;
 use crate::scene::animation::{Animation, Channel, Interpolation, Property};
 use crate::scene::camera::View;
 use crate::scene::model::Projection;

@@ -11,10 +11,10 @@ use crate::apply::report::{Outcome, Report};
 use crate::apply::tasks::Task;
 use crate::error::{Error, Result};
 use crate::files::{self, Existing};
+use crate::floats::{self, Layer, Picture, Precision};
 use crate::frames::{FrameList, Pattern};
 use crate::identity::Identity;
 use crate::limits;
-use crate::output::{self, Layer, Picture, Precision};
 use crate::render::targets::{Target, Targets};
 use crate::replacing::{Consent, Inputs, Made};
 use crate::scene::Scene;
@@ -141,9 +141,9 @@ impl RenderArgs {
             let is_written = !is_there && {
                 let picture = shot.draw(number)?;
                 let made = Made { from: None, to: &file };
-                self.consent().write(made, read::is_whole, |existing| match output::is_exr(&file) {
+                self.consent().write(made, read::is_whole, |existing| match floats::is_exr(&file) {
                     true => save_layers(shot, (&file, existing), &picture),
-                    false => output::save(&file, existing, &picture),
+                    false => floats::save(&file, existing, &picture),
                 })?
             };
             let outcome = if is_written { Outcome::Written(0) } else { Outcome::Skipped };
@@ -238,7 +238,7 @@ impl RenderArgs {
     fn check(&self) -> Result<()> {
         let is_video = video::is_video(&self.out) && self.out != Path::new("-");
         if !is_video {
-            output::check_extension(&self.out)?;
+            floats::check_extension(&self.out)?;
         }
         if self.encode.is_some() && !is_video {
             return Err(Error::input(
@@ -269,7 +269,7 @@ impl RenderArgs {
     }
 
     fn options(&self, scene: &Scene) -> Result<Options> {
-        let is_exr = output::is_exr(&self.out);
+        let is_exr = floats::is_exr(&self.out);
         let frames = self.frames.frames();
         let first = frames.iter().min().copied().unwrap_or(1);
         let last = frames.iter().max().copied().unwrap_or(1);
@@ -349,5 +349,5 @@ fn save_layers(shot: &mut Shot, (file, existing): (&Path, Existing), color: &Pic
         precision: *precision,
     }));
     // A matrix column by column is the same for row vectors row by row.
-    output::save_layers(file, existing, &layers, shot.view().map(|view| view.world_to_view.to_cols_array()))
+    floats::save_layers(file, existing, &layers, shot.view().map(|view| view.world_to_view.to_cols_array()))
 }

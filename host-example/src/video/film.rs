@@ -7,7 +7,7 @@ use super::encode::{Encoder, Encoding};
 use super::stream::Stream;
 use crate::apply::space::srgb_encode;
 use crate::error::{Error, Result};
-use crate::output::Picture;
+use crate::floats::Picture;
 use crate::pixels::{Pixels, Precision, Samples};
 
 /// A video that is being made. It is opaque: what is transparent is put on black. A last odd row or column, which most videos
