@@ -2,8 +2,8 @@
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-use crate::error::Result;
 use crate::verbs::{apply, bench, documents, farm, nodes, preset, render, sheet, view};
+use isophote_files::error::Result;
 
 const AFTER_HELP: &str = "Files that are there already stay unless --force is given, and no result takes the place of a file \
     that is read; a picture gives way to its own result with --in-place.";

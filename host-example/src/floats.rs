@@ -6,8 +6,8 @@ use half::f16;
 use isophote_exr_edit::{Plane, create};
 
 use crate::apply::space::srgb_encode;
-use crate::error::{Error, Result};
-use crate::files::{self, Existing};
+use isophote_files::error::{Error, Result};
+use isophote_files::files::{self, Existing};
 
 /// An image of 32-bit floats, channels interleaved, rows from the top.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,8 +5,8 @@
 
 use std::path::Path;
 
-use crate::error::{Error, Result};
 use crate::stylize::preset::Preset;
+use isophote_files::error::{Error, Result};
 
 /// What the names of looks start with; no node has such an id.
 const PREFIX: &str = "look:";

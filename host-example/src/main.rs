@@ -5,9 +5,10 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use clap::error::ErrorKind;
+use isophote_files::error::Error;
+use isophote_files::{limits, output};
 use isophote_host::cli::Cli;
-use isophote_host::error::Error;
-use isophote_host::{drivers, limits, output};
+use isophote_host::drivers;
 use isophote_loader::printable;
 
 /// The program starts where the C library is older.

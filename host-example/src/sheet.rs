@@ -20,8 +20,8 @@ use crate::apply::exr::Selection;
 use crate::apply::read::{self, ImageState};
 use crate::apply::space::srgb_encode;
 use crate::apply::working::WorkingSpace;
-use crate::error::{Error, Result};
 use crate::pixels::MOST_PIXELS;
+use isophote_files::error::{Error, Result};
 
 /// Pixels between and around pictures.
 const GAP: u32 = 12;

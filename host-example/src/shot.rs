@@ -2,7 +2,6 @@
 
 use std::f32::consts::TAU;
 
-use crate::error::Result;
 use crate::floats::Picture;
 use crate::render::Renderer;
 use crate::render::background::Background;
@@ -16,6 +15,7 @@ use crate::scene::pose::Pose;
 use crate::stylize::Stylizer;
 use crate::stylize::kernels::Kernels;
 use crate::stylize::style::Style;
+use isophote_files::error::Result;
 use isophote_loader::Library;
 
 /// What is rendered of a scene.
@@ -70,8 +70,8 @@ impl Shot {
     /// Opens a device and makes everything ready.
     ///
     /// # Errors
-    /// [`crate::error::Error::Input`] for scenes and styles that cannot be drawn,
-    /// [`crate::error::Error::Failure`] without a device or when it fails.
+    /// [`isophote_files::error::Error::Input`] for scenes and styles that cannot be drawn,
+    /// [`isophote_files::error::Error::Failure`] without a device or when it fails.
     pub fn new(scene: Scene, style: Option<(&Library, Style)>, options: Options) -> Result<Self> {
         let gpu = Gpu::open()?;
         let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &scene, options.size)?;
@@ -132,7 +132,7 @@ impl Shot {
     /// were not drawn are drawn first.
     ///
     /// # Errors
-    /// [`crate::error::Error::Failure`] when the device fails.
+    /// [`isophote_files::error::Error::Failure`] when the device fails.
     pub fn draw(&mut self, number: i64) -> Result<Picture> {
         let follows = self.drawn.as_ref().is_some_and(|(drawn, _)| *drawn == number - 1);
         if number == 1 || !follows {
@@ -194,7 +194,7 @@ impl Shot {
     /// not rendered.
     ///
     /// # Errors
-    /// [`crate::error::Error::Failure`] when the device fails.
+    /// [`isophote_files::error::Error::Failure`] when the device fails.
     pub fn read(&mut self, choose: impl FnOnce(&Targets) -> Option<&Target>) -> Result<Option<Picture>> {
         let target = choose(self.renderer.targets());
         target.map(|target| self.readback.read(&self.gpu, &target.texture)).transpose()

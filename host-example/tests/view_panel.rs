@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use isophote_host::files::Existing;
+use isophote_files::files::Existing;
 use isophote_host::floats::{self, Layer, Picture, Precision};
 use isophote_host::scene::Scene;
 use isophote_host::view::document::{Document, Options};

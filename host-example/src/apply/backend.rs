@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 
-use crate::error::{AtPlace, Result};
+use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::ISOPHOTE_ERROR_NO_DEVICE;
 use isophote_loader::{Device, Library};
 
@@ -21,7 +21,7 @@ impl Backend {
     /// The library's own device, or nothing for the CPU.
     ///
     /// # Errors
-    /// [`crate::error::Error::Failure`] when there is no such device.
+    /// [`isophote_files::error::Error::Failure`] when there is no such device.
     pub fn device(self, library: &Library) -> Result<Option<Device>> {
         let place = "--backend";
         match self {

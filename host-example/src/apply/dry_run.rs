@@ -8,8 +8,8 @@ use super::memory::{Bytes, Needs, too_large};
 use super::read::{self, Unread};
 use super::sequence::MOST_IN_FLIGHT;
 use super::tasks::{Task, Tasks};
-use crate::error::Result;
-use crate::output;
+use isophote_files::error::Result;
+use isophote_files::output;
 
 /// A run that is not done.
 #[derive(Debug)]

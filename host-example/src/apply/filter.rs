@@ -15,10 +15,10 @@ use super::reel::{Window, guide_bit};
 use super::space::Space;
 use super::working::WorkingSpace;
 use super::write::Format;
-use crate::error::{AtPlace, Error, Result};
 use crate::pixels::{Pixels, Precision};
 use crate::stylize::history::{is_stage, split};
 use crate::stylize::style::Style;
+use isophote_files::error::{AtPlace, Error, Result};
 use isophote_loader::abi::{IsophoteHistory, IsophoteRequest};
 use isophote_loader::catalogue::Kind;
 use isophote_loader::plan::{Role, Texture};
@@ -93,7 +93,7 @@ pub struct Planner {
 /// Looks as they are applied: the mask of the only one enters its graph where that takes it.
 ///
 /// # Errors
-/// [`crate::error::Error::Input`] for a mask of what is no picture of colours.
+/// [`isophote_files::error::Error::Input`] for a mask of what is no picture of colours.
 fn layers(looks: Vec<Look>) -> Result<Vec<Layer>> {
     let is_single = looks.len() == 1;
     let mut layers = Vec::with_capacity(looks.len());
@@ -441,7 +441,7 @@ fn stages(
 /// Guides that a style can use, whether or not they are connected.
 ///
 /// # Errors
-/// [`crate::error::Error::Failure`] when the library fails.
+/// [`isophote_files::error::Error::Failure`] when the library fails.
 pub fn usable_guides(library: &Library, style: &Style) -> Result<Vec<Guide>> {
     let mut guides = Vec::new();
     let refused = |e: isophote_loader::Error| e.at(&style.name, "choose another style");

@@ -19,11 +19,11 @@ use serde_json::{Map, Value, json};
 
 use super::exr::MaskSource;
 use super::masks::MaskChoice;
-use crate::error::{Error, Result};
 use crate::looks;
 use crate::stylize::preset::{self, Preset};
 use crate::stylize::source;
 use crate::stylize::style::Style;
+use isophote_files::error::{Error, Result};
 use isophote_loader::Library;
 
 /// Keys of a look.

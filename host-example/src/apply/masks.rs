@@ -11,9 +11,9 @@ use isophote_exr_edit::Window;
 use super::exr::{self, MaskSource, OnUnknown, Picture};
 use super::read::{self, Source, Unread};
 use super::tasks::Tasks;
-use crate::error::{Error, Result};
-use crate::frames::{self, Pattern};
 use crate::pixels::{Pixels, Samples};
+use isophote_files::error::{Error, Result};
+use isophote_files::frames::{self, Pattern};
 
 /// Where a mask comes from, and whether what it leaves out is meant.
 #[derive(Clone, Debug)]

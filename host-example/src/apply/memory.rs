@@ -5,7 +5,7 @@ use std::str::FromStr;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use super::machine;
-use crate::error::Error;
+use isophote_files::error::Error;
 
 /// A number of bytes as people write it: `4GiB`, `500MB`, `2G`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -13,11 +13,11 @@ use image::{DynamicImage, ImageDecoder, ImageError, ImageResult, Limits};
 
 use super::exr::{self, ExrFile, Offers, Picture, Selection};
 use super::{jpeg, png};
-use crate::error::{Error, Result};
-use crate::frames;
-use crate::input;
-use crate::limits;
 use crate::pixels::{MOST_PIXELS, Pixels, Precision, Samples};
+use isophote_files::error::{Error, Result};
+use isophote_files::frames;
+use isophote_files::input;
+use isophote_files::limits;
 
 /// First bytes of an EXR file.
 const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];

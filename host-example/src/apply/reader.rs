@@ -14,9 +14,9 @@ use super::memory::{Budget, Needs, too_large};
 use super::read::{Opened, Source, Unread};
 use super::reel::{Held, Window};
 use super::tasks::Task;
-use crate::error::{Error, Result};
-use crate::frames::Pattern;
-use crate::limits;
+use isophote_files::error::{Error, Result};
+use isophote_files::frames::Pattern;
+use isophote_files::limits;
 
 /// Where the frames of a run come from.
 #[derive(Clone, Copy, Debug)]

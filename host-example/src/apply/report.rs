@@ -9,9 +9,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 
 use super::tasks::Task;
-use crate::error::{Error, Result};
-use crate::output;
-use crate::replacing::Consent;
+use isophote_files::error::{Error, Result};
+use isophote_files::output;
+use isophote_files::replacing::Consent;
 
 /// What became of a frame.
 #[derive(Debug)]

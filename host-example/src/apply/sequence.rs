@@ -15,10 +15,10 @@ use super::reel::{Held, Window};
 use super::report::{Outcome, Report};
 use super::tasks::Task;
 use super::write::{self, Format};
-use crate::error::{Error, Result};
-use crate::limits::{self, Threads};
-use crate::replacing::Consent;
-use crate::stop::Stop;
+use isophote_files::error::{Error, Result};
+use isophote_files::limits::{self, Threads};
+use isophote_files::replacing::Consent;
+use isophote_files::stop::Stop;
 use std::sync::Arc;
 
 /// Most frames between being read and being written: one in each hand and one waiting between them.

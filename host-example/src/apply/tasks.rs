@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
-use crate::error::{Error, Result};
-use crate::frames::{self, FrameList, Pattern};
-use crate::output;
-use crate::replacing::Made;
+use isophote_files::error::{Error, Result};
+use isophote_files::frames::{self, FrameList, Pattern};
+use isophote_files::output;
+use isophote_files::replacing::Made;
 
 /// One frame, or a picture by itself.
 #[derive(Clone, Debug)]

@@ -6,11 +6,11 @@ use image::{ExtendedColorType, ImageEncoder, ImageResult};
 
 use super::exr::{ExrFile, Picture, components};
 use super::read::{ImageState, Source};
-use crate::error::{Error, Result};
-use crate::files::{self, Existing};
 use crate::floats;
-use crate::output;
 use crate::pixels::{Pixels, Precision, Samples};
+use isophote_files::error::{Error, Result};
+use isophote_files::files::{self, Existing};
+use isophote_files::output;
 
 /// Quality of JPEG files, 1 to 100.
 const JPEG_QUALITY: u8 = 95;

@@ -5,8 +5,8 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::entry::Entry;
-use crate::error::{Error, Result};
-use crate::input;
+use isophote_files::error::{Error, Result};
+use isophote_files::input;
 
 /// Most bytes of a saved run; real ones have some hundred thousands.
 const MOST_BYTES: u64 = 64 << 20;

@@ -6,7 +6,6 @@ use std::time::Instant;
 use super::entry::{Entry, PassEntry};
 use super::timer::Timer;
 use super::{Subject, median, motion};
-use crate::error::{AtPlace, Result};
 use crate::pixels::Pixels;
 use crate::render::gpu::Gpu;
 use crate::stylize::history::Past;
@@ -14,6 +13,7 @@ use crate::stylize::kernels::Kernels;
 use crate::stylize::plan_runner::PlanRunner;
 use crate::stylize::precision::Precision;
 use crate::stylize::style::Style;
+use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::ISOPHOTE_GUIDE_MOTION;
 use isophote_loader::plan::{Pass, Texture};
 use isophote_loader::{Library, Plan};
@@ -41,7 +41,7 @@ impl Bench {
     /// the adapter has any.
     ///
     /// # Errors
-    /// [`crate::error::Error::Input`] for nodes that need more than a picture, [`crate::error::Error::Failure`] when the device
+    /// [`isophote_files::error::Error::Input`] for nodes that need more than a picture, [`isophote_files::error::Error::Failure`] when the device
     /// fails.
     pub fn run(
         &mut self,

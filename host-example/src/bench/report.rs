@@ -6,8 +6,8 @@ use super::compare::{self, Saved};
 use super::entry::Entry;
 use super::peak::Peak;
 use super::peers;
-use crate::error::{Error, Result};
-use crate::output;
+use isophote_files::error::{Error, Result};
+use isophote_files::output;
 use isophote_loader::Library;
 
 /// What was measured on.

@@ -5,11 +5,11 @@ use super::throughput::{Throughput, measure};
 use crate::apply::backend::Backend;
 use crate::apply::filter::{Filter, Look, Planner};
 use crate::apply::memory::{self, Bytes};
-use crate::error::{Error, Result};
-use crate::output;
 use crate::pixels::Pixels;
 use crate::stylize::lengths::Lengths;
 use crate::stylize::style::Style;
+use isophote_files::error::{Error, Result};
+use isophote_files::output;
 use isophote_loader::Library;
 
 /// Measures every subject on so many frames that show `picture`, and prints what came out.

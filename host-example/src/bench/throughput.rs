@@ -18,13 +18,13 @@ use crate::apply::report::Report;
 use crate::apply::sequence::Run;
 use crate::apply::tasks::Task;
 use crate::apply::write::Format;
-use crate::error::{Error, Result};
-use crate::files::Existing;
 use crate::floats::{self, Picture, Precision};
-use crate::limits::Threads;
 use crate::pixels::Pixels;
-use crate::replacing::Consent;
-use crate::stop::Stop;
+use isophote_files::error::{Error, Result};
+use isophote_files::files::Existing;
+use isophote_files::limits::Threads;
+use isophote_files::replacing::Consent;
+use isophote_files::stop::Stop;
 
 /// What was measured.
 #[derive(Clone, Copy, Debug, Serialize)]

@@ -1,9 +1,9 @@
 //! Timestamps around every pass of a plan.
 
-use crate::error::Result;
 use crate::render::gpu::Gpu;
 use crate::render::timestamps::Timestamps;
 use crate::stylize::plan_runner::PlanRunner;
+use isophote_files::error::Result;
 
 /// Measures plans of so many passes.
 #[derive(Debug)]
@@ -22,7 +22,7 @@ impl Timer {
     /// returns what each took, in seconds.
     ///
     /// # Errors
-    /// [`crate::error::Error::Failure`] when the device fails.
+    /// [`isophote_files::error::Error::Failure`] when the device fails.
     pub fn run(&self, gpu: &Gpu, runner: &PlanRunner) -> Result<Vec<f64>> {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         for index in 0..self.passes {

@@ -7,8 +7,8 @@ use glam::{Vec3, Vec4};
 use super::layouts::{self, Layouts, bind_sampler, bind_view};
 use super::pipelines::{BACKGROUND_PARTS, behind_everything, full_screen, module};
 use super::targets::{COLOR_FORMAT, SAMPLES};
-use crate::error::{Error, Result};
 use crate::scene::environment::Environment;
+use isophote_files::error::{Error, Result};
 
 /// What is behind a scene.
 #[derive(Clone, Debug, Default)]

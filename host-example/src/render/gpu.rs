@@ -4,8 +4,8 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::error::{Error, Result};
-use crate::limits;
+use isophote_files::error::{Error, Result};
+use isophote_files::limits;
 
 /// What to install on a machine without any adapter.
 const NO_ADAPTER: &str = "install a graphics driver; a software one will do (on Debian: apt install mesa-vulkan-drivers libvulkan1)";

@@ -38,7 +38,7 @@ use self::tone_map::ToneMap;
 use self::uniforms::{FrameBlock, InstanceBlock, LightBlock};
 use self::upload::GpuPrimitive;
 use self::visible::Visible;
-use crate::error::Result;
+use isophote_files::error::Result;
 use crate::scene::camera::View;
 use crate::scene::pose::Pose;
 use crate::scene::{AlphaMode, Scene};
@@ -105,7 +105,7 @@ impl Renderer {
     /// are found by [`gpu::Gpu::check`].
     ///
     /// # Errors
-    /// [`crate::error::Error::Input`] when the size or a part of the scene is beyond the limits of the device.
+    /// [`isophote_files::error::Error::Input`] when the size or a part of the scene is beyond the limits of the device.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene, size: (u32, u32)) -> Result<Self> {
         let targets = Targets::new(device, size.0, size.1)?;
         let layouts = Layouts::new(device);
@@ -187,7 +187,7 @@ impl Renderer {
     /// Takes another background from now on. `scene_referred` says that colours are wanted before tone mapping.
     ///
     /// # Errors
-    /// [`crate::error::Error::Input`] for pictures beyond the limits of the device.
+    /// [`isophote_files::error::Error::Input`] for pictures beyond the limits of the device.
     pub fn set_background(&mut self, background: &Background, scene_referred: bool) -> Result<()> {
         let (device, queue) = (&self.device, &self.queue);
         self.backdrop = Backdrop::new(device, queue, &self.layouts, background, scene_referred)?;

@@ -1,6 +1,6 @@
 //! The textures that a frame is rendered into.
 
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 
 /// Samples per pixel of the colour pass.
 pub const SAMPLES: u32 = 4;

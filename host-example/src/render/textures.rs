@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use crate::error::{Error, Result};
 use crate::scene::material::Wrap;
 use crate::scene::{ColorSpace, Sampler, Scene, TextureUse};
+use isophote_files::error::{Error, Result};
 
 /// Textures and samplers of a scene, each made once however often it is used.
 pub struct TextureStore {

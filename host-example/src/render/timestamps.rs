@@ -1,7 +1,7 @@
 //! What the device's own clock says of passes.
 
 use super::gpu::Gpu;
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 
 const BYTES: u64 = wgpu::QUERY_SIZE as u64;
 

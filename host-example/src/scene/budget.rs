@@ -5,7 +5,7 @@ use std::cell::{Cell, RefCell};
 use std::fs::File;
 use std::io::Read;
 
-use crate::identity::Identity;
+use isophote_files::identity::Identity;
 
 const GIB: u64 = 1 << 30;
 

@@ -12,7 +12,7 @@ use crate::apply::exr::Selection;
 use crate::apply::primaries::{Change, REC709, same};
 use crate::apply::read::{self, ImageState};
 use crate::apply::space::Space;
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 
 /// Most pixels across; larger pictures are reduced.
 const MOST_ACROSS: usize = 8192;

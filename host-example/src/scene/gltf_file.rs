@@ -21,7 +21,7 @@ use self::accessors::{Accessors, Pick};
 use self::animations::Outline;
 use super::budget::Budget;
 use super::model::{Camera, Light, LightKind, Node, Projection, Scene, Skin, Transform};
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 pub use sources::open;
 
 /// Extensions that are understood.

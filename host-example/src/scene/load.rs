@@ -8,7 +8,7 @@ use super::budget::Budget;
 use super::material::{Image, Material, Texture};
 use super::model::{Bounds, Draw, Mesh, Node, Scene, Transform};
 use super::{gltf_file, obj_file, pose};
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 
 impl Scene {
     /// Loads a glTF (`.gltf`, `.glb`) or OBJ (`.obj`) file. `texture` names an image that colours an OBJ whose

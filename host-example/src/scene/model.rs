@@ -4,7 +4,7 @@ use glam::{Mat4, Quat, Vec3};
 
 use super::animation::Animation;
 use super::material::{Image, Material, Texture};
-use crate::identity::Identity;
+use isophote_files::identity::Identity;
 
 /// One vertex as it is uploaded: 72 bytes.
 #[repr(C)]

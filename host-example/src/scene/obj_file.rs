@@ -19,7 +19,7 @@ use super::budget::{Budget, TOO_LARGE};
 use super::geometry;
 use super::material::TextureUse;
 use super::model::{Mesh, Node, Primitive, Scene, Vertex};
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 
 /// Faces that meet at more than this keep a sharp edge between them when normals are averaged.
 const CREASE: f32 = 60.0 * std::f32::consts::PI / 180.0;

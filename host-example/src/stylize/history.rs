@@ -4,7 +4,7 @@
 //! `depth@-1`. Of each there are as many textures as frames that are known at the same time. Frame by frame the next one
 //! is written, so that nothing is copied but the host's own textures, which it draws into anew.
 
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 
 /// What later frames will read of a frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::num::NonZeroU64;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::error::{AtPlace, Error, Result};
+use isophote_files::error::{AtPlace, Error, Result};
 use isophote_loader::Plan;
 use isophote_loader::plan::{Format, Pass, Texture};
 

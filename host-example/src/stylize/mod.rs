@@ -22,7 +22,7 @@ use self::history::Past;
 use self::kernels::Kernels;
 use self::plan_runner::{Counts, PlanRunner};
 use self::style::{Setting, Style};
-use crate::error::{AtPlace, Result};
+use isophote_files::error::{AtPlace, Result};
 use crate::render::targets::{Target, Targets};
 use isophote_loader::abi::{
     ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
@@ -55,7 +55,7 @@ impl Stylizer {
     /// those of the renderer's device.
     ///
     /// # Errors
-    /// [`crate::error::Error::Input`] when an input that the style needs is open, [`crate::error::Error::Failure`] when the device refuses.
+    /// [`isophote_files::error::Error::Input`] when an input that the style needs is open, [`isophote_files::error::Error::Failure`] when the device refuses.
     pub fn new(kernels: &Arc<Kernels>, library: &Library, style: Style, size: (u32, u32)) -> Result<Self> {
         let request = frame_request(library, &style, size)?;
         Self::with_request(kernels, library, style, request)
@@ -87,7 +87,7 @@ impl Stylizer {
     /// Whether the renderer must [add rest positions](crate::render::Renderer::add_rest_positions) before targets are bound.
     ///
     /// # Errors
-    /// [`crate::error::Error::Failure`] when the library fails.
+    /// [`isophote_files::error::Error::Failure`] when the library fails.
     pub fn wants_rest_positions(&self) -> Result<bool> {
         self.style.can_use(Kind::Position)
     }
@@ -134,7 +134,7 @@ impl Stylizer {
     /// texture and [`Stylizer::bind`] must be called. Parameters that are not structural cost one small upload.
     ///
     /// # Errors
-    /// [`crate::error::Error::Failure`] when the device refuses; the style must then be made anew.
+    /// [`isophote_files::error::Error::Failure`] when the device refuses; the style must then be made anew.
     pub fn update(&mut self) -> Result<bool> {
         let is_edited = std::mem::take(&mut self.edited);
         if is_edited {
@@ -171,7 +171,7 @@ impl Stylizer {
     /// Changes the size of the frames; [`Stylizer::bind`] must be called then.
     ///
     /// # Errors
-    /// [`crate::error::Error::Input`] for impossible sizes, [`crate::error::Error::Failure`] when the device refuses; the style must then be
+    /// [`isophote_files::error::Error::Input`] for impossible sizes, [`isophote_files::error::Error::Failure`] when the device refuses; the style must then be
     /// made anew.
     pub fn resize(&mut self, size: (u32, u32)) -> Result<()> {
         self.resize_at_scale(size, self.request.scale)
@@ -196,7 +196,7 @@ impl Stylizer {
     /// Compiles what later frames need too, where they look at those before, so that none of them waits for it.
     ///
     /// # Errors
-    /// [`crate::error::Error::Failure`] when the device refuses.
+    /// [`isophote_files::error::Error::Failure`] when the device refuses.
     pub fn compile_all(&self) -> Result<()> {
         (1..=self.past.frames).try_for_each(|known| {
             self.runner.kernels().compile(&self.style.plan(&self.library, &self.request, known)?)
@@ -213,7 +213,7 @@ impl Stylizer {
     /// to [`Stylizer::new`]. The same ones again cost nothing.
     ///
     /// # Errors
-    /// [`crate::error::Error::Failure`] when they are too small or the device refuses.
+    /// [`isophote_files::error::Error::Failure`] when they are too small or the device refuses.
     pub fn bind(&mut self, targets: &Targets) -> Result<()> {
         self.bind_with(&targets.color, targets)
     }
@@ -251,7 +251,7 @@ impl Stylizer {
     /// Records the whole style on a frame; the next call is of the next one. Nothing is created and nothing submitted.
     ///
     /// # Errors
-    /// [`crate::error::Error::Failure`] when nothing is bound.
+    /// [`isophote_files::error::Error::Failure`] when nothing is bound.
     pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
         self.runner.encode(encoder)?;
         self.known = (self.planned + 1).min(self.past.frames);
@@ -290,7 +290,7 @@ impl Style {
     /// The plan of a frame where so many frames before it are known.
     ///
     /// # Errors
-    /// [`crate::error::Error::Input`] when an input that the style needs is open.
+    /// [`isophote_files::error::Error::Input`] when an input that the style needs is open.
     pub fn plan(&self, library: &Library, request: &IsophoteRequest, known: usize) -> Result<Plan> {
         let history = IsophoteHistory { past: known as u32, max_motion: 0.0 };
         let plan = match library.frames(&self.graph) {
@@ -326,7 +326,7 @@ impl Style {
 /// What the renderer's frames are: linear light, premultiplied, with guides.
 ///
 /// # Errors
-/// [`crate::error::Error::Input`] for impossible sizes.
+/// [`isophote_files::error::Error::Input`] for impossible sizes.
 pub fn frame_request(library: &Library, style: &Style, size: (u32, u32)) -> Result<IsophoteRequest> {
     let request = style.request(library, size).map_err(|e| e.at("--size", "choose another size"))?;
     Ok(IsophoteRequest {

@@ -25,7 +25,7 @@ use super::history::{self, Past, Rings};
 use super::kernels::{Kernel, Kernels, checked, refused};
 use super::textures::{self, COPIED, Slot};
 use super::uniforms::{Block, Layout, Uniforms};
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 use isophote_loader::Plan;
 use isophote_loader::plan::Role;
 

@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 
 use super::style::Style;
-use crate::error::{AtPlace, Result};
+use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::{
     ISOPHOTE_PRECISION_EXACT, ISOPHOTE_PRECISION_FAST, ISOPHOTE_PRECISION_HALF, IsophotePrecision,
 };
@@ -42,7 +42,7 @@ impl Precision {
     /// Lets graphics devices compute a style so.
     ///
     /// # Errors
-    /// [`Error::Failure`](crate::error::Error::Failure) when the library computes exactly alone.
+    /// [`Error::Failure`](isophote_files::error::Error::Failure) when the library computes exactly alone.
     pub fn apply(self, style: &Style) -> Result<()> {
         if self == Self::Exact {
             return Ok(());

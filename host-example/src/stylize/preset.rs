@@ -29,7 +29,7 @@ use serde_json::{Map, Value};
 
 use super::lengths::Lengths;
 use super::title::{self, Title};
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 use isophote_loader::catalogue::{Param, ParamKind};
 
 /// Keys of the file.

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use crate::error::{Error, Result};
-use crate::{input, looks};
+use crate::looks;
+use isophote_files::error::{Error, Result};
+use isophote_files::input;
 
 /// Most bytes of a file; real ones have some thousands.
 const MOST_BYTES: u64 = 16 << 20;

@@ -2,7 +2,7 @@
 
 use super::history::{self, Past, Rings};
 use super::kernels::{checked, texture_format};
-use crate::error::Result;
+use isophote_files::error::Result;
 use isophote_loader::plan::{Format, Role, Texture};
 
 /// Uses of textures that passes write.
@@ -43,7 +43,7 @@ impl Slot {
 /// holds those of stages for later frames.
 ///
 /// # Errors
-/// [`Error::Failure`](crate::error::Error::Failure) when the device refuses or has no memory.
+/// [`Error::Failure`](isophote_files::error::Error::Failure) when the device refuses or has no memory.
 pub fn slots(
     device: &wgpu::Device,
     wanted: &[Texture<'_>],

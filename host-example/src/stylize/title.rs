@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value};
 
-use crate::error::Error;
+use isophote_files::error::Error;
 
 /// Its keys in the file.
 pub const KEYS: [&str; 3] = ["name", "about", "tags"];

@@ -3,7 +3,7 @@
 use std::num::NonZeroU64;
 
 use super::kernels::{block_size, checked};
-use crate::error::Result;
+use isophote_files::error::Result;
 
 /// Place of a pass's block in the buffer.
 #[derive(Clone, Copy, Debug)]
@@ -45,7 +45,7 @@ impl Uniforms {
     /// A buffer of zeros for all blocks that were placed.
     ///
     /// # Errors
-    /// [`Error::Failure`](crate::error::Error::Failure) when the device refuses or has no memory.
+    /// [`Error::Failure`](isophote_files::error::Error::Failure) when the device refuses or has no memory.
     pub fn new(device: &wgpu::Device, layout: &Layout) -> Result<Self> {
         let buffer = checked(device, || {
             Ok(device.create_buffer(&wgpu::BufferDescriptor {

@@ -19,15 +19,15 @@ use crate::apply::sequence::Run;
 use crate::apply::space::Space;
 use crate::apply::tasks::{OnMissing, Task, Tasks};
 use crate::apply::write::Format;
-use crate::error::{Error, Result};
-use crate::files::{self, Existing};
-use crate::frames::{FrameList, Pattern};
-use crate::identity::is_same;
-use crate::limits::{self, Threads};
-use crate::replacing::Made;
-use crate::stop::Stop;
 use crate::stylize::style::{Setting, Style};
 use crate::video::{self, OnError};
+use isophote_files::error::{Error, Result};
+use isophote_files::files::{self, Existing};
+use isophote_files::frames::{FrameList, Pattern};
+use isophote_files::identity::is_same;
+use isophote_files::limits::{self, Threads};
+use isophote_files::replacing::Made;
+use isophote_files::stop::Stop;
 use isophote_loader::Library;
 
 /// Options of `apply`.

@@ -13,11 +13,11 @@ use super::shared::{ForceArgs, PrecisionArgs, parse_size};
 use crate::bench::compare::Saved;
 use crate::bench::report::{Machine, Report, Shown};
 use crate::bench::{Subject, card, cpu, gpu, peak, picture, sequence};
-use crate::error::{AtPlace, Error, Result};
-use crate::files;
-use crate::output;
 use crate::render::gpu::Gpu;
-use crate::replacing::{Inputs, Made};
+use isophote_files::error::{AtPlace, Error, Result};
+use isophote_files::files;
+use isophote_files::output;
+use isophote_files::replacing::{Inputs, Made};
 use isophote_loader::Library;
 
 /// Sizes that are measured when none is given.

@@ -7,8 +7,8 @@ use clap::{Args, Command};
 use clap_complete::Shell;
 
 use super::shared::ForceArgs;
-use crate::error::{Error, Result};
-use crate::files;
+use isophote_files::error::{Error, Result};
+use isophote_files::files;
 
 /// Options of `documents`.
 #[derive(Args, Debug)]

@@ -12,10 +12,10 @@ use serde_json::{Value, json};
 
 use super::apply::ApplyArgs;
 use super::shared::ForceArgs;
-use crate::error::{Error, Result};
-use crate::frames::range_expression;
-use crate::replacing::Made;
-use crate::{files, output};
+use isophote_files::error::{Error, Result};
+use isophote_files::frames::range_expression;
+use isophote_files::replacing::Made;
+use isophote_files::{files, output};
 
 /// Longest name of a job.
 const LONGEST_NAME: usize = 128;

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use crate::error::{AtPlace, Error, Result};
+use isophote_files::error::{AtPlace, Error, Result};
 use isophote_loader::Library;
 use isophote_loader::catalogue::{Catalogue, Node, Param, ParamKind, Port};
 
@@ -35,7 +35,7 @@ pub fn run(args: &NodesArgs) -> Result<()> {
             if args.json { json(&catalogue)? } else { list(&library, &catalogue) }
         }
     };
-    crate::output::print(&text)
+    isophote_files::output::print(&text)
 }
 
 fn json(value: &impl serde::Serialize) -> Result<String> {

@@ -9,9 +9,9 @@ use crate::apply::exr::MaskSource;
 use crate::apply::filter::Planner;
 use crate::apply::masks::MaskChoice;
 use crate::apply::tasks::{Task, Tasks};
-use crate::error::Result;
-use crate::replacing::{Consent, Inputs, Made};
 use crate::stylize::style;
+use isophote_files::error::Result;
+use isophote_files::replacing::{Consent, Inputs, Made};
 
 /// The word for motion that is estimated.
 const ESTIMATE: &str = "estimate";
@@ -86,7 +86,7 @@ impl ApplyArgs {
     /// Files that a run reads: for these frames, or for all that are on disk. `masks` are those of all looks.
     ///
     /// # Errors
-    /// [`crate::error::Error::Input`] for patterns with several places for a number.
+    /// [`isophote_files::error::Error::Input`] for patterns with several places for a number.
     pub fn inputs(&self, masks: &[MaskChoice], frames: Option<&BTreeSet<i64>>) -> Result<Inputs> {
         let mut inputs = Inputs::default();
         for Place { part, path, .. } in self.places()? {

@@ -9,19 +9,19 @@ use super::staging::StagingArgs;
 use crate::apply::read;
 use crate::apply::report::{Outcome, Report};
 use crate::apply::tasks::Task;
-use crate::error::{Error, Result};
-use crate::files::{self, Existing};
 use crate::floats::{self, Layer, Picture, Precision};
-use crate::frames::{FrameList, Pattern};
-use crate::identity::Identity;
-use crate::limits;
 use crate::render::targets::{Target, Targets};
-use crate::replacing::{Consent, Inputs, Made};
 use crate::scene::Scene;
 use crate::shot::{Options, Shot};
-use crate::stop::Stop;
 use crate::stylize::style::{Setting, Style};
 use crate::video::{self, Film};
+use isophote_files::error::{Error, Result};
+use isophote_files::files::{self, Existing};
+use isophote_files::frames::{FrameList, Pattern};
+use isophote_files::identity::Identity;
+use isophote_files::limits;
+use isophote_files::replacing::{Consent, Inputs, Made};
+use isophote_files::stop::Stop;
 use isophote_loader::Library;
 
 /// Options of `render`.

@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use crate::error::Result;
-use crate::files::Existing;
-use crate::output;
 use crate::pixels::MOST_PIXELS;
-use crate::replacing::Consent;
 use crate::scene::Scene;
 use crate::stylize::lengths::Lengths;
 use crate::stylize::precision::Precision;
 use crate::stylize::style::Style;
+use isophote_files::error::Result;
+use isophote_files::files::Existing;
+use isophote_files::output;
+use isophote_files::replacing::Consent;
 
 /// The scene of `render`.
 #[derive(Args, Debug)]

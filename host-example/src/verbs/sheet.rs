@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::shared::ForceArgs;
-use crate::error::{Error, Result};
-use crate::files;
-use crate::limits;
-use crate::replacing::{Inputs, Made};
 use crate::sheet::{arranged, cells};
+use isophote_files::error::{Error, Result};
+use isophote_files::files;
+use isophote_files::limits;
+use isophote_files::replacing::{Inputs, Made};
 
 /// Options of `sheet`.
 #[derive(Args, Debug)]

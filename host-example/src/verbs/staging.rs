@@ -8,11 +8,11 @@ use clap::Args;
 use glam::Vec3;
 
 use crate::apply::space::srgb_decode;
-use crate::error::{Error, Result};
 use crate::render::background::Background;
 use crate::scene::camera::{self, Direction, Framing};
 use crate::scene::environment::Environment;
 use crate::scene::{Scene, floor};
+use isophote_files::error::{Error, Result};
 
 /// Camera, light and background.
 #[derive(Args, Debug)]

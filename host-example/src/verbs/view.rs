@@ -6,7 +6,6 @@ use clap::Args;
 
 use super::shared::{LengthArgs, PrecisionArgs, ReadingArgs, parse_size};
 use super::staging::StagingArgs;
-use crate::error::{AtPlace, Result};
 use crate::stylize::style::{Setting, Style};
 use crate::view;
 use crate::view::document::kind::Kind;
@@ -16,6 +15,7 @@ use crate::view::reel::Reel;
 use crate::view::scenery::{Lighting, Scenery, Staging};
 use crate::view::session::Session;
 use crate::view::settings::Settings;
+use isophote_files::error::{AtPlace, Result};
 use isophote_loader::Library;
 
 /// The look of a window that was never open.
@@ -57,8 +57,8 @@ pub struct ViewArgs {
 /// Runs the verb until the window is closed.
 ///
 /// # Errors
-/// [`crate::error::Error::Input`] for scenes and styles that cannot be shown,
-/// [`crate::error::Error::Failure`] without a display or a graphics device.
+/// [`isophote_files::error::Error::Input`] for scenes and styles that cannot be shown,
+/// [`isophote_files::error::Error::Failure`] without a display or a graphics device.
 pub fn run(args: &ViewArgs) -> Result<()> {
     let library = Library::open()?;
     let looks = looks(&library, args)?;

@@ -6,9 +6,9 @@ use super::closed::Ratio;
 use super::encode::{Encoder, Encoding};
 use super::stream::Stream;
 use crate::apply::space::srgb_encode;
-use crate::error::{Error, Result};
 use crate::floats::Picture;
 use crate::pixels::{Pixels, Precision, Samples};
+use isophote_files::error::{Error, Result};
 
 /// A video that is being made. It is opaque: what is transparent is put on black. A last odd row or column, which most videos
 /// cannot have, is left out.

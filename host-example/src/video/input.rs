@@ -10,7 +10,7 @@ use super::packets::Packets;
 use super::probe::{probe, warn_of};
 use super::stream::Stream;
 use super::y4m::{Header, MAGIC};
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 
 /// The bytes of a stream.
 type Bytes = BufReader<Box<dyn Read + Send>>;

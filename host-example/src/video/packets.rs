@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::process::{self, Process, at};
 use super::stream::{Promise, Stream};
-use crate::error::Result;
+use isophote_files::error::Result;
 
 /// What to do about a video whose packets cannot be read.
 const FIX: &str = "name an intact video that ffmpeg reads";

@@ -10,8 +10,8 @@ use super::closed::{
 use super::process::{self, Problem, Process};
 use super::stream::{Promise, Stream};
 use crate::apply::read::check_size;
-use crate::error::{Error, Result};
-use crate::output;
+use isophote_files::error::{Error, Result};
+use isophote_files::output;
 
 /// Share by which the mean rate of frames that last equally long may be off.
 const STEADY: f64 = 0.1;

@@ -7,7 +7,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{Builder, JoinHandle};
 
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 
 /// Most characters of a complaint.
 const MOST: usize = 400;

@@ -21,10 +21,10 @@ use crate::apply::reel::{Held, Window};
 use crate::apply::report::{Outcome, Report};
 use crate::apply::tasks::Task;
 use crate::apply::write::Format;
-use crate::error::{Error, Result};
-use crate::files::{self, Existing};
 use crate::pixels::{Pixels, Precision};
-use crate::stop::Stop;
+use isophote_files::error::{Error, Result};
+use isophote_files::files::{self, Existing};
+use isophote_files::stop::Stop;
 
 /// What to do about a video that is damaged.
 const DAMAGED: &str = "use an intact file, or give --on-error skip to write what can be read";

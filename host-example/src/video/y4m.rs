@@ -8,7 +8,7 @@ use std::path::Path;
 use super::closed::{PIXELS, Ratio, usual_matrix, word};
 use super::stream::{Promise, Stream};
 use crate::apply::read::check_size;
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 
 /// How every stream begins.
 pub const MAGIC: &[u8] = b"YUV4MPEG2";

@@ -25,10 +25,10 @@ use super::session::{Session, Wish};
 use super::watch::Watch;
 use super::worker::{Wake, Worker};
 use crate::apply::exr::Selection;
-use crate::error::{Error, Result};
 use crate::render::background::Background as Surround;
 use crate::scene::environment::Environment;
 use crate::scene::{Scene, camera, floor};
+use isophote_files::error::{Error, Result};
 use isophote_loader::Library;
 use isophote_loader::abi::IsophoteRequest;
 

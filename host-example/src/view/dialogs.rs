@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::sync::Once;
 
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 
 /// Where that crate's messages come from.
 const SHOWS: &str = "rfd";

@@ -18,10 +18,10 @@ use serde_json::Value;
 use super::document::kind::Kind;
 use crate::apply::exr::Selection;
 use crate::apply::read;
-use crate::error::{Error, Result};
-use crate::files::{self, Existing};
-use crate::frames::Pattern;
 use crate::video::{self, Film};
+use isophote_files::error::{Error, Result};
+use isophote_files::files::{self, Existing};
+use isophote_files::frames::Pattern;
 
 /// Time between two looks at whether a process has ended that says no more.
 const TICK: Duration = Duration::from_millis(5);

@@ -5,8 +5,8 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use crate::error::{Error, Result};
-use crate::files::{self, Existing};
+use isophote_files::error::{Error, Result};
+use isophote_files::files::{self, Existing};
 
 /// Most bytes of a file that is kept; looks have some kilobytes.
 const MOST_BYTES: u64 = 16 << 20;

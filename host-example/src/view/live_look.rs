@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use super::look::{Knob, Look};
 use super::worker::{Wake, Worker};
-use crate::error::{Error, Result};
 use crate::stylize::Stylizer;
 use crate::stylize::kernels::Kernels;
 use crate::stylize::plan_runner::Counts;
 use crate::stylize::precision::Precision;
 use crate::stylize::preset::Track;
 use crate::stylize::style::Setting;
+use isophote_files::error::{Error, Result};
 use isophote_loader::Library;
 use isophote_loader::abi::{IsophoteRequest, IsophoteSpace};
 use isophote_loader::catalogue::Kind;

@@ -7,7 +7,7 @@ use super::preview::queue::Queue;
 use super::session::Session;
 use super::watch::Watch;
 use super::worker::{Wake, Worker};
-use crate::error::Result;
+use isophote_files::error::Result;
 
 /// The threads.
 pub struct LookWork {

@@ -58,7 +58,7 @@ mod worker;
 use winit::error::EventLoopError;
 use winit::event_loop::EventLoop;
 
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 use app::{App, Event};
 use session::Session;
 

@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use crate::error::Error;
-use crate::output;
+use isophote_files::error::Error;
+use isophote_files::output;
 
 /// How long good news stays.
 const STAYS: Duration = Duration::from_secs(4);

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::document::Frames;
 use super::document::kind::Kind;
-use crate::{frames, video};
+use crate::video;
+use isophote_files::frames;
 
 /// Frames of a turntable, unless others are asked for.
 const TURN: u32 = 96;

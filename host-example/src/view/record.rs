@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use crate::error::Result;
-use crate::output;
 use crate::stylize::precision::Precision;
+use isophote_files::error::Result;
+use isophote_files::output;
 
 /// Frames of one look and size.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::document::frame::Frame;
 use super::document::{Document, Frames, reduce};
-use crate::error::Result;
+use isophote_files::error::Result;
 
 /// Pixels of the small copy of a picture, which is shown while something moves where the processor draws.
 const SMALL: f32 = 400_000.0;

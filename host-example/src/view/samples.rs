@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
 
-use crate::error::{Error, Result};
-use crate::files::{self, Existing};
+use isophote_files::error::{Error, Result};
+use isophote_files::files::{self, Existing};
 
 /// Pixels across and down of the small pictures, whose shape is that of the large ones.
 const SMALL: (u32, u32) = (360, 240);

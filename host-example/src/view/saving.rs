@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::browser::titling::Words;
 use super::look::Look;
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 
 /// What is typed before a look is saved.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,8 +5,8 @@ use std::{env, fs};
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
-use crate::files::{self, Existing};
+use isophote_files::error::{Error, Result};
+use isophote_files::files::{self, Existing};
 
 /// Names the file instead of the usual place.
 const PLACE: &str = "ISOPHOTE_SETTINGS";

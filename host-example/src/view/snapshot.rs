@@ -9,10 +9,10 @@ use crate::apply::asked::Asked;
 use crate::apply::exr::Guide;
 use crate::apply::read::ImageState;
 use crate::apply::space::Space;
-use crate::error::{Error, Result};
 use crate::render::gpu::Gpu;
 use crate::render::readback::decode;
 use crate::render::targets::Target;
+use isophote_files::error::{Error, Result};
 
 /// Copies frames and turns them into numbers on a thread of its own.
 pub struct Snapshots<F> {

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use super::canvas::Numbers;
 use super::pictures::PictureSource;
 use super::scenery::{Scenery, is_same};
-use crate::error::Result;
 use crate::render::Renderer;
 use crate::render::background::Background;
 use crate::render::gpu::Gpu;
@@ -15,6 +14,7 @@ use crate::scene::Scene;
 use crate::scene::camera::View;
 use crate::scene::pose::Pose;
 use crate::stylize::Stylizer;
+use isophote_files::error::Result;
 use isophote_loader::abi::{
     ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
     ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_LINEAR, IsophoteRequest,
@@ -58,7 +58,7 @@ impl SceneSource {
     /// Uploads a scene for pictures of a size; `usual` is a request of any size at their scale.
     ///
     /// # Errors
-    /// [`crate::error::Error::Input`] when the scene is beyond the limits of the device.
+    /// [`isophote_files::error::Error::Input`] when the scene is beyond the limits of the device.
     pub fn new(gpu: &Gpu, stand: &Stand, size: (u32, u32), usual: IsophoteRequest) -> Result<Self> {
         let Stand { scene, pose, view, light, background, ground } = stand;
         let mut renderer = Renderer::new(&gpu.device, &gpu.queue, scene, size)?;

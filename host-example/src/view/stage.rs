@@ -22,7 +22,6 @@ use super::source::Source;
 use super::sources::Sources;
 use super::viewport::Overlay;
 use super::worker::{Wake, Worker};
-use crate::error::{Error, Result};
 use crate::render::gpu::Gpu;
 use crate::render::layouts;
 use crate::render::look::Look as Light;
@@ -30,6 +29,7 @@ use crate::render::timestamps::Timestamps;
 use crate::scene::camera::View;
 use crate::stylize::kernels::Kernels;
 use crate::stylize::plan_runner::Counts;
+use isophote_files::error::{Error, Result};
 use isophote_loader::abi::IsophoteRequest;
 
 /// All of one device. Fields are dropped in order: what uses the device before it.

@@ -8,7 +8,7 @@ use std::time::{Duration, SystemTime};
 use std::{fs, mem};
 
 use super::worker::Wake;
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 
 /// Time between two looks at the files.
 const PAUSE: Duration = Duration::from_millis(500);

@@ -4,7 +4,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 
 /// Lets the window look at what is done.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;

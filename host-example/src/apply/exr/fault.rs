@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::error::Error;
+use isophote_files::error::Error;
 
 /// A problem of the file, or of what was chosen in it.
 #[derive(Debug)]

@@ -9,8 +9,8 @@ use super::fault::Fault;
 use super::mask::{self, ChosenMask, MaskSource, OnUnknown};
 use super::offers::{self, Offers};
 use super::picture::{self, Picture};
-use crate::error::Result;
 use crate::pixels::{MOST_PIXELS, Pixels, Samples};
+use isophote_files::error::Result;
 
 /// What one file may take at most, whatever it says of itself. How many files are in memory at the same time is
 /// decided by what they weigh; see [`Opened::weight`].
@@ -19,7 +19,7 @@ const LIMITS: Limits = Limits { memory: 16 << 30, pixels: MOST_PIXELS };
 /// Motion vectors for a picture from a file of their own, by the names of the graph's inputs.
 ///
 /// # Errors
-/// [`Error::Input`](crate::error::Error::Input) for damaged files, those that hold no vectors, and vectors for a picture of
+/// [`Error::Input`](isophote_files::error::Error::Input) for damaged files, those that hold no vectors, and vectors for a picture of
 /// another size.
 pub fn motion_of(
     path: &Path,
@@ -63,7 +63,7 @@ pub fn motion_of(
 /// and display windows.
 ///
 /// # Errors
-/// [`Error::Input`](crate::error::Error::Input) for damaged files, those of several channels or without what is named, and
+/// [`Error::Input`](isophote_files::error::Error::Input) for damaged files, those of several channels or without what is named, and
 /// where `place` finds no window, which says what is wrong.
 pub fn mask_of(
     path: &Path,
@@ -124,7 +124,7 @@ impl Opened {
     /// Takes a file apart.
     ///
     /// # Errors
-    /// [`Error::Input`](crate::error::Error::Input) for damaged files, and when there is no such layer, view, alpha or guide.
+    /// [`Error::Input`](isophote_files::error::Error::Input) for damaged files, and when there is no such layer, view, alpha or guide.
     pub fn new(path: &Path, bytes: Vec<u8>, selection: &Selection) -> Result<Self> {
         let open = || -> std::result::Result<Self, Fault> {
             let exr = File::parse(bytes, LIMITS)?;
@@ -173,7 +173,7 @@ impl Opened {
     /// Decodes the parts that are needed.
     ///
     /// # Errors
-    /// [`Error::Input`](crate::error::Error::Input) for damaged files and for kinds of files that cannot be written back.
+    /// [`Error::Input`](isophote_files::error::Error::Input) for damaged files and for kinds of files that cannot be written back.
     pub fn decode(self, path: &Path) -> Result<ExrFile> {
         ExrFile::of(self).map_err(|fault| fault.of(path))
     }
@@ -225,7 +225,7 @@ impl ExrFile {
     /// The pictures, one for each view that was asked for.
     ///
     /// # Errors
-    /// [`Error::Input`](crate::error::Error::Input) when channels are of unequal size.
+    /// [`Error::Input`](isophote_files::error::Error::Input) when channels are of unequal size.
     pub fn pictures(&self, path: &Path) -> Result<Vec<Picture>> {
         let read = |chosen| picture::read(&self.exr, &self.decoded, chosen, &self.selection, path);
         let pictures: std::result::Result<Vec<Picture>, Fault> = self.chosen.iter().map(read).collect();

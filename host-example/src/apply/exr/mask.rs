@@ -10,7 +10,7 @@ use super::cryptomatte::{MatteChoice, id};
 use super::fault::Fault;
 use super::mattes::{Matte, Ranks, mattes, pick};
 use super::names::{Group, groups};
-use crate::{frames, output};
+use isophote_files::{frames, output};
 
 /// Channels and layers in a message.
 const MOST_SHOWN: usize = 16;

@@ -11,7 +11,7 @@ use isophote_exr_edit::{File, Sample};
 use super::cryptomatte::{Manifest, sidecar};
 use super::fault::Fault;
 use super::names::Group;
-use crate::input;
+use isophote_files::input;
 
 /// How the names of attributes begin.
 const PREFIX: &str = "cryptomatte/";

@@ -9,8 +9,8 @@ use super::fault::Fault;
 use super::motion::applied;
 use super::names::{Model, components};
 use crate::apply::primaries;
-use crate::error::Error;
 use crate::pixels::{Pixels, Samples};
+use isophote_files::error::Error;
 
 /// Numbers up to here are exact as floats.
 const EXACT: u32 = 1 << 24;

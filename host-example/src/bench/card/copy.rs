@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use crate::error::Result;
 use crate::render::gpu::Gpu;
+use isophote_files::error::Result;
 
 /// Bytes of the source; few caches hold so many.
 const BYTES: u64 = 256 << 20;
@@ -15,7 +15,7 @@ const REPEATS: usize = 3;
 /// Bytes read and written per second.
 ///
 /// # Errors
-/// [`crate::error::Error::Failure`] when the device fails.
+/// [`isophote_files::error::Error::Failure`] when the device fails.
 pub fn measure(gpu: &Gpu) -> Result<f64> {
     let bytes = BYTES.min(gpu.device.limits().max_buffer_size);
     let buffer = |usage| {
@@ -38,7 +38,7 @@ pub fn measure(gpu: &Gpu) -> Result<f64> {
         let started = Instant::now();
         gpu.queue.submit([encoder.finish()]);
         gpu.wait()?;
-        Ok::<_, crate::error::Error>(started.elapsed().as_secs_f64())
+        Ok::<_, isophote_files::error::Error>(started.elapsed().as_secs_f64())
     };
     // Memory is cleared before its first use.
     time(1)?;

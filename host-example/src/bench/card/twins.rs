@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use crate::bench::Subject;
-use crate::error::{AtPlace, Result};
 use crate::pixels::{Pixels, Precision as Samples};
 use crate::stylize::precision::Precision;
 use crate::stylize::style::Style;
+use isophote_files::error::{AtPlace, Result};
 use isophote_loader::device::Device;
 use isophote_loader::{Control, Input, Library};
 
@@ -39,7 +39,7 @@ pub struct Twin {
 /// Compares a node in all precisions; none where it needs more than a picture.
 ///
 /// # Errors
-/// [`crate::error::Error::Failure`] when the device fails.
+/// [`isophote_files::error::Error::Failure`] when the device fails.
 pub fn compare(library: &Library, device: &Device, subject: &Subject, picture: &Pixels) -> Result<Vec<Twin>> {
     let refused = |e: isophote_loader::Error| e.at(&subject.node, "leave it out with --node");
     let node = library.find_node(&subject.node).map_err(refused)?;
@@ -57,7 +57,7 @@ pub fn compare(library: &Library, device: &Device, subject: &Subject, picture: &
             .graph
             .process(device, &request, &inputs, &mut target, &mut Control::default())
             .map_err(refused)?;
-        Ok::<_, crate::error::Error>(target.to_f32())
+        Ok::<_, isophote_files::error::Error>(target.to_f32())
     };
     let expected = result(None, Precision::Exact)?;
     SHARES

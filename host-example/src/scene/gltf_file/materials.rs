@@ -10,9 +10,9 @@ use gltf::texture::{MagFilter, MinFilter, WrappingMode};
 
 use super::accessors::Accessors;
 use super::sources;
-use crate::error::{Error, Result};
 use crate::scene::material::{AlphaMode, DecodeProblem, Image, Material, Sampler, Texture, TextureUse, Wrap};
 use crate::scene::model::Scene;
+use isophote_files::error::{Error, Result};
 
 /// Reads images, textures and materials into the scene. The last material is the default one.
 pub fn read(path: &Path, document: &gltf::Document, accessors: &Accessors, scene: &mut Scene) -> Result<()> {

@@ -5,8 +5,8 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::error::{Error, Result};
 use crate::scene::budget::{Budget, TOO_LARGE};
+use isophote_files::error::{Error, Result};
 
 /// Decodes `%41` and its like.
 fn percent_decode(text: &str) -> Option<Vec<u8>> {

@@ -11,11 +11,11 @@ use std::path::{Path, PathBuf};
 use glam::Vec3;
 
 use super::statements::{UNNAMED, number, statements, words};
-use crate::error::{Error, Result};
 use crate::scene::budget::Budget;
 use crate::scene::gltf_file::open;
 use crate::scene::material::{AlphaMode, DecodeProblem, Image, Material, Sampler, Texture, TextureUse};
 use crate::scene::model::Scene;
+use isophote_files::error::{Error, Result};
 
 /// Colour of surfaces that say nothing about it.
 const PLAIN: Vec3 = Vec3::new(0.45, 0.44, 0.42);

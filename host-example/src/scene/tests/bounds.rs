@@ -7,9 +7,9 @@ use glam::Vec3;
 use serde_json::json;
 
 use super::build::{Builder, F32, load_bytes};
-use crate::error::Error;
 use crate::scene::Scene;
 use crate::scene::budget::Budget;
+use isophote_files::error::Error;
 
 const MIB: u64 = 1 << 20;
 

@@ -5,8 +5,8 @@ use std::fs;
 use serde_json::{Value, json};
 
 use super::build::{Builder, F32, U8, U16, load_bytes, png};
-use crate::error::Error;
 use crate::scene::Scene;
+use isophote_files::error::Error;
 
 fn assert_clear(error: &Error, what: &str) {
     let text = error.to_string();

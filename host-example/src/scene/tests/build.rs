@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use serde_json::{Value, json};
 
-use crate::error::Result;
 use crate::scene::Scene;
+use isophote_files::error::Result;
 
 /// A document with one buffer that grows as accessors are added.
 pub struct Builder {

@@ -6,8 +6,8 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::build::{load_bytes, png};
-use crate::error::Result;
 use crate::scene::{AlphaMode, Scene};
+use isophote_files::error::Result;
 
 fn load(files: &[(&str, &[u8])], texture: Option<&str>) -> Result<Scene> {
     let folder = tempfile::tempdir().unwrap();

@@ -9,9 +9,9 @@ use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
 
 use super::App;
-use crate::error::{Error, Result};
 use crate::view::stage::Stage;
 use crate::view::ui;
+use isophote_files::error::{Error, Result};
 
 /// How often a device is opened anew, in vain, before what is open is put away, and then before the window gives up.
 const REVIVALS: u32 = 3;

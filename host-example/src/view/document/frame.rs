@@ -6,9 +6,9 @@ use crate::apply::exr::Guide;
 use crate::apply::read::{ImageState, Source};
 use crate::apply::space::Space;
 use crate::apply::working::WorkingSpace;
-use crate::error::{Error, Result};
-use crate::limits;
 use crate::pixels::Pixels;
+use isophote_files::error::{Error, Result};
+use isophote_files::limits;
 use isophote_loader::abi::{ISOPHOTE_ALPHA_EMISSIVE, IsophoteRequest};
 
 /// What an infinity becomes when the library reads it.

@@ -3,9 +3,10 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use crate::error::{Error, Result};
-use crate::frames::{self, Pattern};
-use crate::{input, video};
+use crate::video;
+use isophote_files::error::{Error, Result};
+use isophote_files::frames::{self, Pattern};
+use isophote_files::input;
 
 /// Kinds of documents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 use std::thread::Builder;
 
-use crate::error::{Error, Result};
-use crate::limits;
+use isophote_files::error::{Error, Result};
+use isophote_files::limits;
 
 /// What is being made on another thread. Dropped, it is finished there and thrown away.
 #[derive(Debug)]

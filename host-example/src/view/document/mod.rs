@@ -24,8 +24,8 @@ use self::store::Store;
 use crate::apply::exr::{Guide, Offers, Selection};
 use crate::apply::space::Space;
 use crate::apply::{memory, read};
-use crate::error::{Error, Result};
-use crate::frames::{self, Pattern};
+use isophote_files::error::{Error, Result};
+use isophote_files::frames::{self, Pattern};
 use crate::video::Clip;
 
 /// Frames of a sequence that are opened to find out what can be chosen, where the first cannot be read.

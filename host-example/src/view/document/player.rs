@@ -8,7 +8,7 @@ use std::thread::Builder;
 use super::frame::Frame;
 use super::source::{Sink, Source};
 use super::store::Store;
-use crate::error::{Error, Result};
+use isophote_files::error::{Error, Result};
 
 /// Frames that are read on a thread of their own, until the player is dropped.
 #[derive(Debug)]

@@ -7,10 +7,10 @@ use super::frame::Frame;
 use crate::apply::exr::{Picture, Selection};
 use crate::apply::read::{self, ImageState, Opened, Source as Read};
 use crate::apply::space::Space;
-use crate::error::{Error, Result};
-use crate::frames::Pattern;
-use crate::limits;
 use crate::video::Clip;
+use isophote_files::error::{Error, Result};
+use isophote_files::frames::Pattern;
+use isophote_files::limits;
 
 /// Frames before the one that is wanted that are decoded with it where a video plays backward.
 const CHUNK: i64 = 16;

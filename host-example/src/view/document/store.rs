@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::frame::Frame;
-use crate::error::Result;
+use isophote_files::error::Result;
 
 /// Most frames that are read before they are shown, in the direction of play.
 const AHEAD: usize = 48;

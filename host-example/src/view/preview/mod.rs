@@ -12,7 +12,7 @@ use egui::{ColorImage, Context, TextureHandle, TextureOptions};
 use self::picture::Picture;
 use self::queue::{Done, Task};
 use self::render::Order;
-use crate::error::Result;
+use isophote_files::error::Result;
 use isophote_loader::process::Part;
 
 /// Most bytes of previews in memory, but for those that are shown.

@@ -11,8 +11,8 @@ use egui::ColorImage;
 
 use super::picture::Picture;
 use super::render::{Order, Renderer};
-use crate::error::{Error, Result};
 use crate::view::worker::Wake;
+use isophote_files::error::{Error, Result};
 use isophote_loader::Library;
 
 /// Most threads of the library for one preview; small pictures have no work for more.

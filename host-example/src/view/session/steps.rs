@@ -4,9 +4,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::{Session, State};
-use crate::error::Result;
 use crate::view::look::Look;
 use crate::view::scenery::Lighting;
+use isophote_files::error::Result;
 
 impl Session {
     /// What undo would bring back.

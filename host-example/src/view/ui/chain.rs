@@ -3,9 +3,9 @@
 use egui::{Button, CollapsingHeader, RichText, Ui, vec2};
 
 use super::theme;
-use crate::error::Error;
 use crate::view::chain::Watched;
 use crate::view::session::Session;
+use isophote_files::error::Error;
 
 /// What a button of a row asks for.
 enum Act {
@@ -108,7 +108,7 @@ fn perform(session: &mut Session, index: usize, act: Act) {
 }
 
 /// A list from which everything would be gone is no look.
-fn kept(is_done: bool) -> crate::error::Result<()> {
+fn kept(is_done: bool) -> isophote_files::error::Result<()> {
     let nothing =
         || Error::input("the nodes", "nothing would be left of the look", "choose the look Original");
     is_done.then_some(()).ok_or_else(nothing)
