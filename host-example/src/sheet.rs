@@ -15,13 +15,13 @@ use embedded_graphics::text::{Baseline, Text};
 use image::imageops::{FilterType, resize};
 use image::{ImageBuffer, Rgb, RgbImage, Rgba};
 
-use crate::apply::convert;
-use crate::apply::exr::Selection;
-use crate::apply::read::{self, ImageState};
-use crate::apply::space::srgb_encode;
-use crate::apply::working::WorkingSpace;
-use crate::pixels::MOST_PIXELS;
 use isophote_files::error::{Error, Result};
+use isophote_pictures::convert;
+use isophote_pictures::exr::Selection;
+use isophote_pictures::pixels::MOST_PIXELS;
+use isophote_pictures::read::{self, ImageState};
+use isophote_pictures::space::srgb_encode;
+use isophote_pictures::working::WorkingSpace;
 
 /// Pixels between and around pictures.
 const GAP: u32 = 12;

@@ -2,7 +2,6 @@
 
 use std::f32::consts::TAU;
 
-use crate::floats::Picture;
 use crate::render::Renderer;
 use crate::render::background::Background;
 use crate::render::gpu::Gpu;
@@ -17,6 +16,7 @@ use crate::stylize::kernels::Kernels;
 use crate::stylize::style::Style;
 use isophote_files::error::Result;
 use isophote_loader::Library;
+use isophote_pictures::floats::Picture;
 
 /// What is rendered of a scene.
 #[derive(Clone, Debug)]

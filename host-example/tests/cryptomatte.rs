@@ -7,8 +7,8 @@ mod support;
 use std::fs;
 
 use exr::prelude::*;
-use isophote_host::apply::exr::{Guide, Selection};
-use isophote_host::apply::read;
+use isophote_pictures::exr::{Guide, Selection};
+use isophote_pictures::read;
 
 use mattes::*;
 use support::{fails, folder, isophote};

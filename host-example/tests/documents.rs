@@ -9,14 +9,9 @@ use std::time::{Duration, Instant};
 
 use image::{DynamicImage, Rgb32FImage, Rgba32FImage};
 use isophote_host::apply::backend::Backend;
-use isophote_host::apply::exr::{Guide, Selection};
 use isophote_host::apply::filter::{self, Filter, Look};
 use isophote_host::apply::memory::Budget;
-use isophote_host::apply::read;
 use isophote_host::apply::reel::{Held, Window, guide_bit};
-use isophote_host::apply::space::Space;
-use isophote_host::apply::write::Format;
-use isophote_host::pixels::{Pixels, Precision, Samples};
 use isophote_host::render::gpu::Gpu;
 use isophote_host::render::readback::Readback;
 use isophote_host::stylize::history::Past;
@@ -28,6 +23,11 @@ use isophote_host::view::document::kind::Kind;
 use isophote_host::view::document::{Document, Options};
 use isophote_loader::abi::IsophoteRequest;
 use isophote_loader::{Control, Input, Library};
+use isophote_pictures::exr::{Guide, Selection};
+use isophote_pictures::pixels::{Pixels, Precision, Samples};
+use isophote_pictures::read;
+use isophote_pictures::space::Space;
+use isophote_pictures::write::Format;
 
 use support::{assets, folder, has_ffmpeg, isophote, picture, succeeds};
 

@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use exr::prelude::*;
-use isophote_host::pixels::{Pixels, Precision, Samples};
 use isophote_loader::{Control, Input, Library, abi};
+use isophote_pictures::pixels::{Pixels, Precision, Samples};
 
 use support::{IN_PIXELS, assets, fails, folder, isophote, listing, succeeds};
 

@@ -6,12 +6,12 @@ mod support;
 use std::fs;
 
 use isophote_host::looks::{self, Look};
-use isophote_host::pixels::{Pixels, Precision, Samples};
 use isophote_host::stylize::lengths::Lengths;
 use isophote_host::stylize::preset::Track;
 use isophote_host::stylize::style::{Setting, Style};
 use isophote_loader::catalogue::{Param, ParamKind};
 use isophote_loader::{Control, Input, Library};
+use isophote_pictures::pixels::{Pixels, Precision, Samples};
 
 use support::{cube, fails, folder, isophote, picture, succeeds};
 

@@ -5,8 +5,6 @@ mod support;
 use std::path::Path;
 use std::sync::Arc;
 
-use isophote_host::floats::Picture;
-use isophote_host::pixels::{Pixels, Precision, Samples};
 use isophote_host::render::Renderer;
 use isophote_host::render::gpu::Gpu;
 use isophote_host::render::look::Look;
@@ -22,6 +20,8 @@ use isophote_host::stylize::plan_runner::Counts;
 use isophote_host::stylize::style::{Setting, Style};
 use isophote_loader::abi::{ISOPHOTE_SPACE_LINEAR, IsophoteRequest};
 use isophote_loader::{Control, Input, Library};
+use isophote_pictures::floats::Picture;
+use isophote_pictures::pixels::{Pixels, Precision, Samples};
 
 use support::{folder, isophote, listing, succeeds};
 

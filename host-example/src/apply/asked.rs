@@ -1,12 +1,12 @@
 //! What the library is told of a picture: what its numbers mean and where it stands.
 
-use super::exr::Picture;
-use super::read::ImageState;
-use super::space::Space;
 use isophote_loader::abi::{
     ISOPHOTE_ALPHA_PREMULTIPLIED, ISOPHOTE_ALPHA_STRAIGHT, ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR,
     ISOPHOTE_SPACE_SRGB, IsophoteRequest,
 };
+use isophote_pictures::exr::Picture;
+use isophote_pictures::read::ImageState;
+use isophote_pictures::space::Space;
 
 /// Farthest from 0 that a picture may begin, pixels, as the contract has it.
 const MOST_ORIGIN: i32 = 1_000_000;

@@ -2,14 +2,14 @@
 
 use serde_json::json;
 
-use super::exr::Selection;
 use super::filter::Planner;
 use super::memory::{Bytes, Needs, too_large};
-use super::read::{self, Unread};
 use super::sequence::MOST_IN_FLIGHT;
 use super::tasks::{Task, Tasks};
 use isophote_files::error::Result;
 use isophote_files::output;
+use isophote_pictures::exr::Selection;
+use isophote_pictures::read::{self, Unread};
 
 /// A run that is not done.
 #[derive(Debug)]

@@ -5,17 +5,8 @@ use std::sync::Arc;
 
 use super::asked::Asked;
 use super::backend::Backend;
-use super::convert;
-use super::exr::{ExrFile, Guide};
 use super::memory::Needs;
-use super::mix::{self, Meaning};
-use super::primaries::Change;
-use super::read::{ImageState, Opened};
 use super::reel::{Window, guide_bit};
-use super::space::Space;
-use super::working::WorkingSpace;
-use super::write::Format;
-use crate::pixels::{Pixels, Precision};
 use crate::stylize::history::{is_stage, split};
 use crate::stylize::style::Style;
 use isophote_files::error::{AtPlace, Error, Result};
@@ -23,6 +14,15 @@ use isophote_loader::abi::{IsophoteHistory, IsophoteRequest};
 use isophote_loader::catalogue::Kind;
 use isophote_loader::plan::{Role, Texture};
 use isophote_loader::{Control, Device, Input, Library, Sequence};
+use isophote_pictures::convert;
+use isophote_pictures::exr::{ExrFile, Guide};
+use isophote_pictures::mix::{self, Meaning};
+use isophote_pictures::pixels::{Pixels, Precision};
+use isophote_pictures::primaries::Change;
+use isophote_pictures::read::{ImageState, Opened};
+use isophote_pictures::space::Space;
+use isophote_pictures::working::WorkingSpace;
+use isophote_pictures::write::Format;
 
 /// What is done to a picture: a style, maybe where a mask is.
 #[derive(Debug)]

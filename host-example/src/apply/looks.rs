@@ -17,7 +17,6 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value, json};
 
-use super::exr::MaskSource;
 use super::masks::MaskChoice;
 use crate::looks;
 use crate::stylize::preset::{self, Preset};
@@ -25,6 +24,7 @@ use crate::stylize::source;
 use crate::stylize::style::Style;
 use isophote_files::error::{Error, Result};
 use isophote_loader::Library;
+use isophote_pictures::exr::MaskSource;
 
 /// Keys of a look.
 const KEYS: [&str; 5] = ["style", "preset", "params", "mask", "invert"];

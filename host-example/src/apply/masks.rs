@@ -8,12 +8,12 @@ use std::sync::{Mutex, PoisonError};
 
 use isophote_exr_edit::Window;
 
-use super::exr::{self, MaskSource, OnUnknown, Picture};
-use super::read::{self, Source, Unread};
 use super::tasks::Tasks;
-use crate::pixels::{Pixels, Samples};
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::{self, Pattern};
+use isophote_pictures::exr::{self, MaskSource, OnUnknown, Picture};
+use isophote_pictures::pixels::{Pixels, Samples};
+use isophote_pictures::read::{self, Source, Unread};
 
 /// Where a mask comes from, and whether what it leaves out is meant.
 #[derive(Clone, Debug)]

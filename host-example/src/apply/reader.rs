@@ -7,16 +7,16 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::exr::{self, Selection};
 use super::filter::Planner;
 use super::masks::Masks;
 use super::memory::{Budget, Needs, too_large};
-use super::read::{Opened, Source, Unread};
 use super::reel::{Held, Window};
 use super::tasks::Task;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::Pattern;
 use isophote_files::limits;
+use isophote_pictures::exr::{self, Selection};
+use isophote_pictures::read::{Opened, Source, Unread};
 
 /// Where the frames of a run come from.
 #[derive(Clone, Copy, Debug)]

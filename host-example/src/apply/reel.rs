@@ -4,12 +4,12 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use isophote_loader::abi;
 
-use super::convert;
-use super::exr::{ExrFile, Picture};
 use super::memory::Share;
-use super::primaries::Change;
-use super::read::Source;
-use crate::pixels::Pixels;
+use isophote_pictures::convert;
+use isophote_pictures::exr::{ExrFile, Picture};
+use isophote_pictures::pixels::Pixels;
+use isophote_pictures::primaries::Change;
+use isophote_pictures::read::Source;
 
 /// A frame that was read.
 #[derive(Debug)]

@@ -7,18 +7,18 @@
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{Builder, Scope, ScopedJoinHandle};
 
-use super::exr::ExrFile;
 use super::filter::{Filter, Filtered};
-use super::read;
 use super::reader::Reader;
 use super::reel::{Held, Window};
 use super::report::{Outcome, Report};
 use super::tasks::Task;
-use super::write::{self, Format};
 use isophote_files::error::{Error, Result};
 use isophote_files::limits::{self, Threads};
 use isophote_files::replacing::Consent;
 use isophote_files::stop::Stop;
+use isophote_pictures::exr::ExrFile;
+use isophote_pictures::read;
+use isophote_pictures::write::{self, Format};
 use std::sync::Arc;
 
 /// Most frames between being read and being written: one in each hand and one waiting between them.

@@ -5,12 +5,12 @@ use std::cell::Cell;
 use super::entry::{Entry, PassEntry};
 use super::{Subject, median, motion};
 use crate::apply::memory;
-use crate::pixels::{Pixels, Precision};
 use crate::stylize::style::Style;
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::{ISOPHOTE_GUIDE_MOTION, IsophoteRequest};
 use isophote_loader::process::PassTime;
 use isophote_loader::{Control, Input, Library};
+use isophote_pictures::pixels::{Pixels, Precision};
 
 /// Measures one node; of one that is steady, frames in order of which those before are known.
 pub fn run(library: &Library, subject: &Subject, picture: &Pixels, runs: u32) -> Result<Entry> {

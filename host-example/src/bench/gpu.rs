@@ -6,7 +6,6 @@ use std::time::Instant;
 use super::entry::{Entry, PassEntry};
 use super::timer::Timer;
 use super::{Subject, median, motion};
-use crate::pixels::Pixels;
 use crate::render::gpu::Gpu;
 use crate::stylize::history::Past;
 use crate::stylize::kernels::Kernels;
@@ -17,6 +16,7 @@ use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::ISOPHOTE_GUIDE_MOTION;
 use isophote_loader::plan::{Pass, Texture};
 use isophote_loader::{Library, Plan};
+use isophote_pictures::pixels::Pixels;
 
 /// A device to measure on.
 pub struct Bench {

@@ -12,7 +12,7 @@ pub mod sequence;
 mod throughput;
 mod timer;
 
-use crate::pixels::{Pixels, Samples};
+use isophote_pictures::pixels::{Pixels, Samples};
 use crate::stylize::style::Setting;
 
 /// What is measured: a node, with other values than the defaults where they are given.
@@ -46,7 +46,7 @@ pub fn picture((width, height): (u32, u32)) -> Pixels {
         }
     }
     // Four samples were made for each pixel.
-    let black = || Pixels::zeroed(width, height, 4, crate::pixels::Precision::F32);
+    let black = || Pixels::zeroed(width, height, 4, isophote_pictures::pixels::Precision::F32);
     Pixels::new(width, height, 4, Samples::F32(samples)).unwrap_or_else(black)
 }
 
@@ -54,7 +54,7 @@ pub fn picture((width, height): (u32, u32)) -> Pixels {
 fn motion((width, height): (u32, u32)) -> Pixels {
     let samples = [-1.3, 0.7].repeat(width as usize * height as usize);
     // Two samples were made for each pixel.
-    let rest = || Pixels::zeroed(width, height, 2, crate::pixels::Precision::F32);
+    let rest = || Pixels::zeroed(width, height, 2, isophote_pictures::pixels::Precision::F32);
     Pixels::new(width, height, 2, Samples::F32(samples)).unwrap_or_else(rest)
 }
 

@@ -5,12 +5,12 @@ use super::throughput::{Throughput, measure};
 use crate::apply::backend::Backend;
 use crate::apply::filter::{Filter, Look, Planner};
 use crate::apply::memory::{self, Bytes};
-use crate::pixels::Pixels;
 use crate::stylize::lengths::Lengths;
 use crate::stylize::style::Style;
 use isophote_files::error::{Error, Result};
 use isophote_files::output;
 use isophote_loader::Library;
+use isophote_pictures::pixels::Pixels;
 
 /// Measures every subject on so many frames that show `picture`, and prints what came out.
 ///

@@ -7,24 +7,24 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use crate::apply::exr::{Selection, components};
 use crate::apply::filter::{Filter, Planner};
 use crate::apply::masks::Masks;
 use crate::apply::memory::Budget;
-use crate::apply::read;
 use crate::apply::reader::{Footage, Reader};
 use crate::apply::reel::{Held, Window};
 use crate::apply::report::Report;
 use crate::apply::sequence::Run;
 use crate::apply::tasks::Task;
-use crate::apply::write::Format;
-use crate::floats::{self, Picture, Precision};
-use crate::pixels::Pixels;
 use isophote_files::error::{Error, Result};
 use isophote_files::files::Existing;
 use isophote_files::limits::Threads;
 use isophote_files::replacing::Consent;
 use isophote_files::stop::Stop;
+use isophote_pictures::exr::{Selection, components};
+use isophote_pictures::floats::{self, Picture, Precision};
+use isophote_pictures::pixels::Pixels;
+use isophote_pictures::read;
+use isophote_pictures::write::Format;
 
 /// What was measured.
 #[derive(Clone, Copy, Debug, Serialize)]

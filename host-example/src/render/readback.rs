@@ -3,8 +3,8 @@
 use half::f16;
 
 use super::gpu::Gpu;
-use crate::floats::Picture;
 use isophote_files::error::{Error, Result};
+use isophote_pictures::floats::Picture;
 
 /// Copies textures to main memory; keeps its buffer from one call to the next.
 #[derive(Debug, Default)]

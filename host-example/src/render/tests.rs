@@ -7,7 +7,6 @@ use super::gpu::Gpu;
 use super::look::Look;
 use super::readback::Readback;
 use super::{Renderer, targets::Target};
-use crate::floats::Picture;
 use crate::scene::animation::{Animation, Channel, Interpolation, Property};
 use crate::scene::camera::View;
 use crate::scene::model::Projection;
@@ -15,6 +14,7 @@ use crate::scene::pose::Pose;
 use crate::scene::{
     AlphaMode, Bounds, Influence, Material, Mesh, MorphDelta, Node, Primitive, Scene, Skin, Vertex,
 };
+use isophote_pictures::floats::Picture;
 
 const SIZE: (u32, u32) = (64, 48);
 

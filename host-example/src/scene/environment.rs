@@ -7,12 +7,12 @@ use std::path::Path;
 use glam::Vec3;
 use half::f16;
 
-use crate::apply::convert;
-use crate::apply::exr::Selection;
-use crate::apply::primaries::{Change, REC709, same};
-use crate::apply::read::{self, ImageState};
-use crate::apply::space::Space;
 use isophote_files::error::{Error, Result};
+use isophote_pictures::convert;
+use isophote_pictures::exr::Selection;
+use isophote_pictures::primaries::{Change, REC709, same};
+use isophote_pictures::read::{self, ImageState};
+use isophote_pictures::space::Space;
 
 /// Most pixels across; larger pictures are reduced.
 const MOST_ACROSS: usize = 8192;

@@ -7,18 +7,14 @@ use clap::{Args, ValueHint};
 use super::shared::{ForceArgs, LengthArgs, PrecisionArgs};
 use crate::apply::backend::Backend;
 use crate::apply::dry_run::DryRun;
-use crate::apply::exr::{Convention, Guide, GuideChoice, MaskSource, OnUnknown, Selection};
 use crate::apply::filter::{self, Filter, Look, Planner};
 use crate::apply::looks::{self, Entry};
 use crate::apply::masks::{MaskChoice, Masks};
 use crate::apply::memory::{self, Budget, Bytes, Needs, too_large};
-use crate::apply::read::{self, Opened};
 use crate::apply::reader::{Footage, Reader};
 use crate::apply::report::{self, Outcome, Report};
 use crate::apply::sequence::Run;
-use crate::apply::space::Space;
 use crate::apply::tasks::{OnMissing, Task, Tasks};
-use crate::apply::write::Format;
 use crate::stylize::style::{Setting, Style};
 use crate::video::{self, OnError};
 use isophote_files::error::{Error, Result};
@@ -29,6 +25,10 @@ use isophote_files::limits::{self, Threads};
 use isophote_files::replacing::Made;
 use isophote_files::stop::Stop;
 use isophote_loader::Library;
+use isophote_pictures::exr::{Convention, Guide, GuideChoice, MaskSource, OnUnknown, Selection};
+use isophote_pictures::read::{self, Opened};
+use isophote_pictures::space::Space;
+use isophote_pictures::write::Format;
 
 /// Options of `apply`.
 #[derive(Args, Debug)]

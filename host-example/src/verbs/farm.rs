@@ -203,7 +203,7 @@ mod tests {
     use clap::ValueHint;
 
     use super::*;
-    use crate::apply::exr::MaskSource;
+    use isophote_pictures::exr::MaskSource;
 
     fn words(command: &[&str]) -> Vec<String> {
         let command: Vec<String> = command.iter().map(|word| (*word).to_owned()).collect();

@@ -5,13 +5,13 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::apply::ApplyArgs;
-use crate::apply::exr::MaskSource;
 use crate::apply::filter::Planner;
 use crate::apply::masks::MaskChoice;
 use crate::apply::tasks::{Task, Tasks};
 use crate::stylize::style;
 use isophote_files::error::Result;
 use isophote_files::replacing::{Consent, Inputs, Made};
+use isophote_pictures::exr::MaskSource;
 
 /// The word for motion that is estimated.
 const ESTIMATE: &str = "estimate";

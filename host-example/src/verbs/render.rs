@@ -6,10 +6,8 @@ use clap::Args;
 
 use super::shared::{ForceArgs, LengthArgs, PrecisionArgs, SceneArgs, parse_size};
 use super::staging::StagingArgs;
-use crate::apply::read;
 use crate::apply::report::{Outcome, Report};
 use crate::apply::tasks::Task;
-use crate::floats::{self, Layer, Picture, Precision};
 use crate::render::targets::{Target, Targets};
 use crate::scene::Scene;
 use crate::shot::{Options, Shot};
@@ -23,6 +21,8 @@ use isophote_files::limits;
 use isophote_files::replacing::{Consent, Inputs, Made};
 use isophote_files::stop::Stop;
 use isophote_loader::Library;
+use isophote_pictures::floats::{self, Layer, Picture, Precision};
+use isophote_pictures::read;
 
 /// Options of `render`.
 #[derive(Args, Debug)]

@@ -7,12 +7,12 @@ use std::sync::Arc;
 use clap::Args;
 use glam::Vec3;
 
-use crate::apply::space::srgb_decode;
 use crate::render::background::Background;
 use crate::scene::camera::{self, Direction, Framing};
 use crate::scene::environment::Environment;
 use crate::scene::{Scene, floor};
 use isophote_files::error::{Error, Result};
+use isophote_pictures::space::srgb_decode;
 
 /// Camera, light and background.
 #[derive(Args, Debug)]

@@ -14,8 +14,8 @@ use super::packets::Packets;
 use super::probe::probe;
 use super::process::{Process, at};
 use super::stream::Stream;
-use crate::pixels::Pixels;
 use isophote_files::error::{Error, Result};
+use isophote_pictures::pixels::Pixels;
 
 /// Containers whose frames are found by their times.
 const TIMED: [&str; 3] = ["mp4", "mov", "matroska"];

@@ -9,7 +9,7 @@ use clap::ValueEnum;
 use super::container::Y4M;
 use super::process::{self, PROTOCOLS, command};
 use super::stream::Stream;
-use crate::pixels::{Pixels, Samples};
+use isophote_pictures::pixels::{Pixels, Samples};
 
 /// How ffmpeg changes between RGB and what videos hold.
 pub const EXACT: &str = "flags=bicubic+accurate_rnd+full_chroma_int+full_chroma_inp";

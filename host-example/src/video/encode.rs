@@ -9,9 +9,9 @@ use super::decode::{EXACT, rgb};
 use super::process::{self, End, PROTOCOLS, Problem, Process, at, command, file};
 use super::recount;
 use super::stream::Stream;
-use crate::pixels::Pixels;
 use isophote_files::error::{Error, Result};
 use isophote_files::files;
+use isophote_pictures::pixels::Pixels;
 
 /// What to do about an encoder that refuses.
 const FIX: &str = "name another kind of video, or other options by --encode";

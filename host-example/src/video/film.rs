@@ -5,10 +5,10 @@ use std::path::Path;
 use super::closed::Ratio;
 use super::encode::{Encoder, Encoding};
 use super::stream::Stream;
-use crate::apply::space::srgb_encode;
-use crate::floats::Picture;
-use crate::pixels::{Pixels, Precision, Samples};
 use isophote_files::error::{Error, Result};
+use isophote_pictures::floats::Picture;
+use isophote_pictures::pixels::{Pixels, Precision, Samples};
+use isophote_pictures::space::srgb_encode;
 
 /// A video that is being made. It is opaque: what is transparent is put on black. A last odd row or column, which most videos
 /// cannot have, is left out.

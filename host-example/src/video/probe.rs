@@ -9,9 +9,9 @@ use super::closed::{
 };
 use super::process::{self, Problem, Process};
 use super::stream::{Promise, Stream};
-use crate::apply::read::check_size;
 use isophote_files::error::{Error, Result};
 use isophote_files::output;
+use isophote_pictures::read::check_size;
 
 /// Share by which the mean rate of frames that last equally long may be off.
 const STEADY: f64 = 0.1;

@@ -12,19 +12,19 @@ use super::encode::{Encoder, Encoding};
 use super::input::Input;
 use super::process::{End, Process, at};
 use super::stream::Stream;
-use crate::apply::exr::Picture;
 use crate::apply::filter::Filter;
 use crate::apply::masks::Masks;
 use crate::apply::memory::Budget;
-use crate::apply::read::{ImageState, Source};
 use crate::apply::reel::{Held, Window};
 use crate::apply::report::{Outcome, Report};
 use crate::apply::tasks::Task;
-use crate::apply::write::Format;
-use crate::pixels::{Pixels, Precision};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::stop::Stop;
+use isophote_pictures::exr::Picture;
+use isophote_pictures::pixels::{Pixels, Precision};
+use isophote_pictures::read::{ImageState, Source};
+use isophote_pictures::write::Format;
 
 /// What to do about a video that is damaged.
 const DAMAGED: &str = "use an intact file, or give --on-error skip to write what can be read";

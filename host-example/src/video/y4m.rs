@@ -7,8 +7,8 @@ use std::path::Path;
 
 use super::closed::{PIXELS, Ratio, usual_matrix, word};
 use super::stream::{Promise, Stream};
-use crate::apply::read::check_size;
 use isophote_files::error::{Error, Result};
+use isophote_pictures::read::check_size;
 
 /// How every stream begins.
 pub const MAGIC: &[u8] = b"YUV4MPEG2";

@@ -16,12 +16,12 @@ use std::time::Duration;
 use serde_json::Value;
 
 use super::document::kind::Kind;
-use crate::apply::exr::Selection;
-use crate::apply::read;
 use crate::video::{self, Film};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::frames::Pattern;
+use isophote_pictures::exr::Selection;
+use isophote_pictures::read;
 
 /// Time between two looks at whether a process has ended that says no more.
 const TICK: Duration = Duration::from_millis(5);

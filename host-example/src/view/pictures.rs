@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use super::canvas::Numbers;
 use super::document::frame::Frame;
-use crate::apply::exr::Guide;
 use crate::render::gpu::Gpu;
 use crate::stylize::Stylizer;
 use crate::stylize::kernels::checked;
@@ -14,6 +13,7 @@ use isophote_loader::abi::{
     ISOPHOTE_GUIDE_OBJECT_ID, ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR,
     IsophoteRequest, IsophoteSpace,
 };
+use isophote_pictures::exr::Guide;
 
 /// Bytes that are uploaded at once, so that no copy is larger than the devices' buffers.
 const STRIP: usize = 32 << 20;

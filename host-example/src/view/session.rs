@@ -28,13 +28,13 @@ use super::saving::Saving;
 use super::scenery::{Lighting, Scenery};
 use super::settings::Settings;
 use super::viewport::{Compare, Overlay, Viewport};
-use crate::apply::exr::{Guide, Layer};
 use crate::stylize::precision::Precision;
 use crate::stylize::preset::Preset;
 use isophote_files::error::Result;
 use isophote_loader::Library;
 use isophote_loader::catalogue::Node;
 use isophote_loader::printable;
+use isophote_pictures::exr::{Guide, Layer};
 
 /// What only the window itself can do, asked for by its controls.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,9 +5,9 @@
 use std::path::Path;
 
 use exr::prelude::*;
-use isophote_host::apply::exr::{MaskSource, OnUnknown, Selection};
 use isophote_host::apply::masks::{MaskChoice, Masks};
-use isophote_host::apply::read;
+use isophote_pictures::exr::{MaskSource, OnUnknown, Selection};
+use isophote_pictures::read;
 
 /// Pixels across and down.
 pub const SIZE: (usize, usize) = (24, 16);

@@ -3,12 +3,12 @@
 use serde::Serialize;
 
 use crate::bench::Subject;
-use crate::pixels::{Pixels, Precision as Samples};
 use crate::stylize::precision::Precision;
 use crate::stylize::style::Style;
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::device::Device;
 use isophote_loader::{Control, Input, Library};
+use isophote_pictures::pixels::{Pixels, Precision as Samples};
 
 /// A value that differs by more than this, of itself where it is larger than 1, is another one to the eye.
 const STEP: f32 = 3.5 / 255.0;

@@ -1,15 +1,15 @@
 //! A picture in main memory as the library takes it, with everything that `apply` would hand over beside it.
 
 use crate::apply::asked::Asked;
-use crate::apply::convert;
-use crate::apply::exr::Guide;
-use crate::apply::read::{ImageState, Source};
-use crate::apply::space::Space;
-use crate::apply::working::WorkingSpace;
-use crate::pixels::Pixels;
 use isophote_files::error::{Error, Result};
 use isophote_files::limits;
 use isophote_loader::abi::{ISOPHOTE_ALPHA_EMISSIVE, IsophoteRequest};
+use isophote_pictures::convert;
+use isophote_pictures::exr::Guide;
+use isophote_pictures::pixels::Pixels;
+use isophote_pictures::read::{ImageState, Source};
+use isophote_pictures::space::Space;
+use isophote_pictures::working::WorkingSpace;
 
 /// What an infinity becomes when the library reads it.
 const LARGEST_HALF: f32 = 65504.0;
@@ -134,8 +134,8 @@ fn is_beyond_coverage(pixel: &[f32; 4]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::apply::exr::Picture;
-    use crate::pixels::Samples;
+    use isophote_pictures::exr::Picture;
+    use isophote_pictures::pixels::Samples;
 
     fn frame(state: ImageState, pixels: Pixels) -> Frame {
         let source = Source { pictures: vec![Picture::alone(pixels)], state, profile: None, exr: None };

@@ -86,9 +86,9 @@ fn picked(frame: &Frame, image: &GuideImage, columns: &[Span], rows: &[Span]) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::apply::exr::Picture;
-    use crate::apply::read::{ImageState, Source};
-    use crate::pixels::{Pixels, Samples};
+    use isophote_pictures::exr::Picture;
+    use isophote_pictures::pixels::{Pixels, Samples};
+    use isophote_pictures::read::{ImageState, Source};
 
     fn frame(width: u32, height: u32, values: Vec<u8>) -> Frame {
         let pixels = Pixels::new(width, height, 4, Samples::U8(values)).unwrap();

@@ -4,13 +4,13 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use super::frame::Frame;
-use crate::apply::exr::{Picture, Selection};
-use crate::apply::read::{self, ImageState, Opened, Source as Read};
-use crate::apply::space::Space;
 use crate::video::Clip;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::Pattern;
 use isophote_files::limits;
+use isophote_pictures::exr::{Picture, Selection};
+use isophote_pictures::read::{self, ImageState, Opened, Source as Read};
+use isophote_pictures::space::Space;
 
 /// Frames before the one that is wanted that are decoded with it where a video plays backward.
 const CHUNK: i64 = 16;

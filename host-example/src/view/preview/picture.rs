@@ -5,9 +5,9 @@ use std::sync::Arc;
 use egui::{Color32, ColorImage};
 use rayon::prelude::*;
 
-use crate::apply::primaries::{Change, REC709};
-use crate::apply::space::{Space, srgb_decode, srgb_encode};
 use crate::view::document::frame::Frame;
+use isophote_pictures::primaries::{Change, REC709};
+use isophote_pictures::space::{Space, srgb_decode, srgb_encode};
 
 /// Side of the squares behind transparent pictures, in pixels of the preview.
 const SQUARE: usize = 8;

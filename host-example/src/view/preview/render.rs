@@ -7,8 +7,6 @@ use egui::ColorImage;
 
 use super::picture::{self, Meaning, Picture};
 use crate::apply::filter;
-use crate::apply::space::Space;
-use crate::pixels::{Pixels, Precision, Samples};
 use crate::stylize::style::Style;
 use crate::view::document::frame::Frame;
 use crate::view::document::reduce;
@@ -19,6 +17,8 @@ use isophote_loader::abi::{ISOPHOTE_ERROR_CANCELLED, IsophoteRequest};
 use isophote_loader::catalogue::Kind;
 use isophote_loader::process::Part;
 use isophote_loader::{Control, Input, Library};
+use isophote_pictures::pixels::{Pixels, Precision, Samples};
+use isophote_pictures::space::Space;
 
 /// Bytes a pixel that filtering takes beside the picture, for nearly all looks.
 const WORKING: u64 = 300;

@@ -3,8 +3,8 @@
 use egui::{ComboBox, RichText, Ui};
 
 use super::theme;
-use crate::apply::exr::{Guide, Layer};
 use crate::view::session::{Session, Wish};
+use isophote_pictures::exr::{Guide, Layer};
 
 /// Whether there is anything to choose or to tell.
 pub fn has_any(session: &Session) -> bool {

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
 
-use super::exr::{ExrFile, Picture, components};
-use super::read::{ImageState, Source};
+use crate::exr::{ExrFile, Picture, components};
 use crate::floats;
 use crate::pixels::{Pixels, Precision, Samples};
+use crate::read::{ImageState, Source};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::output;

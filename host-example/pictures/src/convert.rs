@@ -1,9 +1,9 @@
 //! Between display-referred and scene-referred numbers, and between primaries.
 
-use super::primaries::{Change, REC709};
-use super::read::ImageState;
-use super::space::{Space, srgb_decode, srgb_encode};
 use crate::pixels::{Pixels, Samples};
+use crate::primaries::{Change, REC709};
+use crate::read::ImageState;
+use crate::space::{Space, srgb_decode, srgb_encode};
 
 /// What an infinity becomes.
 const LARGEST_HALF: f32 = 65504.0;

@@ -1,9 +1,9 @@
 //! In which space a picture is filtered.
 
-use super::exr::Picture;
-use super::primaries::{AP1, Change, REC709, same};
-use super::read::ImageState;
-use super::space::Space;
+use crate::exr::Picture;
+use crate::primaries::{AP1, Change, REC709, same};
+use crate::read::ImageState;
+use crate::space::Space;
 
 /// The colour space in which a picture is filtered, and the change of primaries to it, which the library does not
 /// know and which is done here.

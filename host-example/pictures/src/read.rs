@@ -11,9 +11,9 @@ use image::codecs::tiff::TiffDecoder;
 use image::codecs::webp::WebPDecoder;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageResult, Limits};
 
-use super::exr::{self, ExrFile, Offers, Picture, Selection};
-use super::{jpeg, png};
+use crate::exr::{self, ExrFile, Offers, Picture, Selection};
 use crate::pixels::{MOST_PIXELS, Pixels, Precision, Samples};
+use crate::{jpeg, png};
 use isophote_files::error::{Error, Result};
 use isophote_files::frames;
 use isophote_files::input;

@@ -8,8 +8,8 @@ use super::choose::{Chosen, Meaning, Selection, Source};
 use super::fault::Fault;
 use super::motion::applied;
 use super::names::{Model, components};
-use crate::apply::primaries;
 use crate::pixels::{Pixels, Samples};
+use crate::primaries;
 use isophote_files::error::Error;
 
 /// Numbers up to here are exact as floats.

@@ -3,9 +3,9 @@
 
 use rayon::prelude::*;
 
-use super::read::ImageState;
-use super::space::{Space, srgb_decode, srgb_encode};
 use crate::pixels::{Pixels, Samples};
+use crate::read::ImageState;
+use crate::space::{Space, srgb_decode, srgb_encode};
 
 /// What infinities become, as in the library.
 const LARGEST_HALF: f32 = 65504.0;

@@ -5,7 +5,7 @@ use std::path::Path;
 use half::f16;
 use isophote_exr_edit::{Plane, create};
 
-use crate::apply::space::srgb_encode;
+use crate::space::srgb_encode;
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 

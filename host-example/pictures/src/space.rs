@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 
-use super::primaries::{AP1, Chromaticities, P3, REC2020};
+use crate::primaries::{AP1, Chromaticities, P3, REC2020};
 
 /// What the numbers of a picture mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
