@@ -8,7 +8,6 @@ pub mod cli;
 pub mod drivers;
 pub mod looks;
 pub mod render;
-pub mod scene;
 pub mod sheet;
 pub mod shot;
 pub mod stylize;

@@ -8,15 +8,15 @@ use crate::render::gpu::Gpu;
 use crate::render::look::Look;
 use crate::render::readback::Readback;
 use crate::render::targets::{Target, Targets};
-use crate::scene::Scene;
-use crate::scene::camera::{Direction, Framing, Orbit, View};
-use crate::scene::pose::Pose;
 use crate::stylize::Stylizer;
 use crate::stylize::kernels::Kernels;
 use crate::stylize::style::Style;
 use isophote_files::error::Result;
 use isophote_loader::Library;
 use isophote_pictures::floats::Picture;
+use isophote_scene::Scene;
+use isophote_scene::camera::{Direction, Framing, Orbit, View};
+use isophote_scene::pose::Pose;
 
 /// What is rendered of a scene.
 #[derive(Clone, Debug)]

@@ -10,9 +10,6 @@ use isophote_host::render::gpu::Gpu;
 use isophote_host::render::look::Look;
 use isophote_host::render::readback::Readback;
 use isophote_host::render::targets::Targets;
-use isophote_host::scene::Scene;
-use isophote_host::scene::camera::{Framing, Orbit};
-use isophote_host::scene::pose::Pose;
 use isophote_host::stylize::Stylizer;
 use isophote_host::stylize::kernels::Kernels;
 use isophote_host::stylize::lengths::Lengths;
@@ -22,6 +19,9 @@ use isophote_loader::abi::{ISOPHOTE_SPACE_LINEAR, IsophoteRequest};
 use isophote_loader::{Control, Input, Library};
 use isophote_pictures::floats::Picture;
 use isophote_pictures::pixels::{Pixels, Precision, Samples};
+use isophote_scene::Scene;
+use isophote_scene::camera::{Framing, Orbit};
+use isophote_scene::pose::Pose;
 
 use support::{folder, isophote, listing, succeeds};
 

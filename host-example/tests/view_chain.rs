@@ -4,7 +4,6 @@ mod support;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use isophote_host::scene::Scene;
 use isophote_host::view::chain::{self, Chain, Watched};
 use isophote_host::view::look::Look;
 use isophote_host::view::scenery::{Scenery, Staging};
@@ -13,6 +12,7 @@ use isophote_host::view::settings::Settings;
 use isophote_host::view::value::Value;
 use isophote_host::view::{command, ui};
 use isophote_loader::Library;
+use isophote_scene::Scene;
 
 fn library() -> Library {
     Library::from_file(support::library()).unwrap()

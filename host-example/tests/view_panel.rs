@@ -8,7 +8,6 @@ use std::collections::HashMap;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use isophote_files::files::Existing;
-use isophote_host::scene::Scene;
 use isophote_host::view::document::{Document, Options};
 use isophote_host::view::look::Look;
 use isophote_host::view::reel::Reel;
@@ -19,6 +18,7 @@ use isophote_host::view::ui;
 use isophote_host::view::value::Value;
 use isophote_loader::Library;
 use isophote_pictures::floats::{self, Layer, Picture, Precision};
+use isophote_scene::Scene;
 
 /// A session of all styles with a scene.
 fn session() -> Session {

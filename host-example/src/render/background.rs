@@ -7,8 +7,8 @@ use glam::{Vec3, Vec4};
 use super::layouts::{self, Layouts, bind_sampler, bind_view};
 use super::pipelines::{BACKGROUND_PARTS, behind_everything, full_screen, module};
 use super::targets::{COLOR_FORMAT, SAMPLES};
-use crate::scene::environment::Environment;
 use isophote_files::error::{Error, Result};
+use isophote_scene::environment::Environment;
 
 /// What is behind a scene.
 #[derive(Clone, Debug, Default)]

@@ -7,9 +7,9 @@ use super::layouts::Layouts;
 use super::look::Look;
 use super::pipelines::{SCENE, behind_everything, module};
 use super::targets::{COLOR_FORMAT, SAMPLES};
-use crate::scene::Scene;
-use crate::scene::camera::View;
-use crate::scene::model::Projection;
+use isophote_scene::Scene;
+use isophote_scene::camera::View;
+use isophote_scene::model::Projection;
 
 /// How much of the light that the sun's shadow takes away is taken: a full shadow is heavier than any model needs.
 const STRENGTH: f32 = 0.75;

@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
-use crate::scene::camera::{Direction, View};
-use crate::scene::environment::Environment;
-use crate::scene::pose::Pose;
-use crate::scene::{LightKind, Scene};
+use isophote_scene::camera::{Direction, View};
+use isophote_scene::environment::Environment;
+use isophote_scene::pose::Pose;
+use isophote_scene::{LightKind, Scene};
 
 /// How a scene is lit and exposed. Light is given by what a white surface that faces it reflects.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,7 +137,7 @@ impl Look {
 }
 
 /// Visible lights with their nodes.
-pub fn visible_lights(scene: &Scene) -> impl Iterator<Item = (usize, crate::scene::Light)> + '_ {
+pub fn visible_lights(scene: &Scene) -> impl Iterator<Item = (usize, isophote_scene::Light)> + '_ {
     scene
         .nodes
         .iter()

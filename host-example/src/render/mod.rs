@@ -39,9 +39,9 @@ use self::uniforms::{FrameBlock, InstanceBlock, LightBlock};
 use self::upload::GpuPrimitive;
 use self::visible::Visible;
 use isophote_files::error::Result;
-use crate::scene::camera::View;
-use crate::scene::pose::Pose;
-use crate::scene::{AlphaMode, Scene};
+use isophote_scene::camera::View;
+use isophote_scene::pose::Pose;
+use isophote_scene::{AlphaMode, Scene};
 
 /// A scene on the GPU with the targets it is rendered into.
 pub struct Renderer {

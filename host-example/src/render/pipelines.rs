@@ -7,7 +7,7 @@ use super::targets::{
     COLOR_FORMAT, DEPTH_FORMAT, LINEAR_DEPTH_FORMAT, MOTION_FORMAT, NORMAL_FORMAT, OBJECT_ID_FORMAT,
     REST_FORMAT, SAMPLES,
 };
-use crate::scene::{AlphaMode, Material, Vertex};
+use isophote_scene::{AlphaMode, Material, Vertex};
 
 /// The passes over the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

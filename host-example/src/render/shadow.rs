@@ -8,9 +8,9 @@ use super::buffers;
 use super::layouts::{Layouts, bind_buffer, bind_sampler, bind_view};
 use super::look::Look;
 use super::targets::DEPTH_FORMAT;
-use crate::scene::Scene;
-use crate::scene::camera::View;
-use crate::scene::model::Projection;
+use isophote_scene::Scene;
+use isophote_scene::camera::View;
+use isophote_scene::model::Projection;
 
 /// Most maps.
 pub const CASCADES: usize = 3;
@@ -206,13 +206,13 @@ impl ShadowMaps {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::camera::{Framing, Orbit};
-    use crate::scene::tests::build::Builder;
+    use isophote_scene::camera::{Framing, Orbit};
 
     fn scene(scale: f32) -> Scene {
-        let mut builder = Builder::triangle();
-        builder.json["nodes"][0]["scale"] = serde_json::json!([scale, scale, scale]);
-        builder.load().unwrap()
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.obj");
+        std::fs::write(&path, format!("v 0 0 0\nv {scale} 0 0\nv 0 {scale} 0\nf 1 2 3\n")).unwrap();
+        Scene::load(&path, None).unwrap()
     }
 
     #[test]

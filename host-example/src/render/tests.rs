@@ -7,14 +7,14 @@ use super::gpu::Gpu;
 use super::look::Look;
 use super::readback::Readback;
 use super::{Renderer, targets::Target};
-use crate::scene::animation::{Animation, Channel, Interpolation, Property};
-use crate::scene::camera::View;
-use crate::scene::model::Projection;
-use crate::scene::pose::Pose;
-use crate::scene::{
+use isophote_pictures::floats::Picture;
+use isophote_scene::animation::{Animation, Channel, Interpolation, Property};
+use isophote_scene::camera::View;
+use isophote_scene::model::Projection;
+use isophote_scene::pose::Pose;
+use isophote_scene::{
     AlphaMode, Bounds, Influence, Material, Mesh, MorphDelta, Node, Primitive, Scene, Skin, Vertex,
 };
-use isophote_pictures::floats::Picture;
 
 const SIZE: (u32, u32) = (64, 48);
 
@@ -58,7 +58,7 @@ fn scene(primitives: Vec<Primitive>, nodes: Vec<Node>, channels: Vec<Channel>) -
         files: Vec::new(),
     };
     scene.draws = (0..scene.nodes.len())
-        .filter_map(|node| Some(crate::scene::Draw { node, mesh: scene.nodes[node].mesh?, primitive: 0 }))
+        .filter_map(|node| Some(isophote_scene::Draw { node, mesh: scene.nodes[node].mesh?, primitive: 0 }))
         .collect();
     scene
 }
@@ -123,7 +123,7 @@ fn the_geometry_buffer_says_what_is_where() {
     let Some(gpu) = gpu() else { return };
     let tilted = Node {
         mesh: Some(1),
-        transform: crate::scene::Transform::Matrix(
+        transform: isophote_scene::Transform::Matrix(
             Mat4::from_translation(Vec3::new(0.0, 0.0, 1.0))
                 * Mat4::from_rotation_y(1.0)
                 * Mat4::from_scale(Vec3::splat(0.4)),
@@ -256,7 +256,7 @@ fn motion_is_the_same_after_a_frame_that_was_passed_over() {
 fn backs_are_hidden_holes_are_open_and_mirrors_keep_their_front() {
     let Some(gpu) = gpu() else { return };
     let covered = |scale: Vec3, change: fn(&mut Material)| {
-        let transform = crate::scene::Transform::Matrix(Mat4::from_scale(scale));
+        let transform = isophote_scene::Transform::Matrix(Mat4::from_scale(scale));
         let node = Node { mesh: Some(0), transform, ..Node::default() };
         let mut scene = scene(vec![square()], vec![node], vec![]);
         change(&mut scene.materials[0]);

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use crate::scene::material::Wrap;
-use crate::scene::{ColorSpace, Sampler, Scene, TextureUse};
 use isophote_files::error::{Error, Result};
+use isophote_scene::material::Wrap;
+use isophote_scene::{ColorSpace, Sampler, Scene, TextureUse};
 
 /// Textures and samplers of a scene, each made once however often it is used.
 pub struct TextureStore {

@@ -6,10 +6,10 @@ use glam::{Mat4, Vec3, Vec4};
 use super::ground::Plane;
 use super::look::{Look, visible_lights};
 use super::shadow::{CASCADES, Cascades};
-use crate::scene::camera::View;
-use crate::scene::model::Projection;
-use crate::scene::pose::Pose;
-use crate::scene::{Light, LightKind, Material, Scene};
+use isophote_scene::camera::View;
+use isophote_scene::model::Projection;
+use isophote_scene::pose::Pose;
+use isophote_scene::{Light, LightKind, Material, Scene};
 
 /// `Frame` of `scene.wgsl`.
 #[repr(C)]
@@ -99,7 +99,7 @@ impl MaterialBlock {
             normal_scale: material.normal_scale,
             occlusion_strength: material.occlusion_strength,
             alpha_cutoff: match material.alpha_mode {
-                crate::scene::AlphaMode::Mask { cutoff } => cutoff,
+                isophote_scene::AlphaMode::Mask { cutoff } => cutoff,
                 _ => 0.5,
             },
             flags: if material.unlit { UNLIT } else { 0 },

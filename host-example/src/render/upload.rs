@@ -6,8 +6,8 @@ use super::buffers::filled_buffer;
 use super::layouts::{Layouts, bind_buffer, bind_sampler, bind_view};
 use super::textures::TextureStore;
 use super::uniforms::MaterialBlock;
-use crate::scene::{Influence, Material, MorphDelta, Primitive, Scene};
 use isophote_files::error::{Error, Result};
+use isophote_scene::{Influence, Material, MorphDelta, Primitive, Scene};
 
 /// A primitive on the GPU.
 #[derive(Debug)]

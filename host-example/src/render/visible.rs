@@ -4,8 +4,8 @@
 use glam::{Mat4, Vec3, Vec4};
 
 use super::upload::GpuPrimitive;
-use crate::scene::pose::Pose;
-use crate::scene::{AlphaMode, Scene};
+use isophote_scene::pose::Pose;
+use isophote_scene::{AlphaMode, Scene};
 
 /// The draws of one frame; its memory is reused for the next.
 #[derive(Debug, Default)]
@@ -65,8 +65,8 @@ fn side_planes(view_projection: Mat4) -> [Vec4; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::camera::View;
-    use crate::scene::model::Projection;
+    use isophote_scene::camera::View;
+    use isophote_scene::model::Projection;
 
     #[test]
     fn planes_bound_the_picture() {

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use crate::scene::Scene;
 use crate::stylize::lengths::Lengths;
 use crate::stylize::precision::Precision;
 use crate::stylize::style::Style;
@@ -13,6 +12,7 @@ use isophote_files::files::Existing;
 use isophote_files::output;
 use isophote_files::replacing::Consent;
 use isophote_pictures::pixels::MOST_PIXELS;
+use isophote_scene::Scene;
 
 /// The scene of `render`.
 #[derive(Args, Debug)]

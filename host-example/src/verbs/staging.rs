@@ -8,11 +8,11 @@ use clap::Args;
 use glam::Vec3;
 
 use crate::render::background::Background;
-use crate::scene::camera::{self, Direction, Framing};
-use crate::scene::environment::Environment;
-use crate::scene::{Scene, floor};
 use isophote_files::error::{Error, Result};
 use isophote_pictures::space::srgb_decode;
+use isophote_scene::camera::{self, Direction, Framing};
+use isophote_scene::environment::Environment;
+use isophote_scene::{Scene, floor};
 
 /// Camera, light and background.
 #[derive(Args, Debug)]

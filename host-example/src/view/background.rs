@@ -25,12 +25,12 @@ use super::session::{Session, Wish};
 use super::watch::Watch;
 use super::worker::{Wake, Worker};
 use crate::render::background::Background as Surround;
-use crate::scene::environment::Environment;
-use crate::scene::{Scene, camera, floor};
 use isophote_files::error::{Error, Result};
 use isophote_loader::Library;
 use isophote_loader::abi::IsophoteRequest;
 use isophote_pictures::exr::Selection;
+use isophote_scene::environment::Environment;
+use isophote_scene::{Scene, camera, floor};
 
 /// What is to be opened.
 enum Job {

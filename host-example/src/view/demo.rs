@@ -5,9 +5,9 @@ use std::f32::consts::TAU;
 
 use glam::{Quat, Vec2, Vec3, Vec4};
 
-use crate::scene::geometry::smooth_normals;
-use crate::scene::{Image, Material, Mesh, Primitive, Sampler, Scene, Texture, TextureUse, Vertex};
 use isophote_files::error::Result;
+use isophote_scene::geometry::smooth_normals;
+use isophote_scene::{Image, Material, Mesh, Primitive, Sampler, Scene, Texture, TextureUse, Vertex};
 
 /// Corners around a turned shape.
 const AROUND: u32 = 72;

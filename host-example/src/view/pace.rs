@@ -8,7 +8,7 @@ use super::scenery::Scenery;
 use super::session::{Session, Which};
 use super::stage::Drawn;
 use crate::render::look::Look as Light;
-use crate::scene::camera::View;
+use isophote_scene::camera::View;
 
 /// How long nothing must move before the whole picture is rendered.
 const REST: Duration = Duration::from_millis(150);

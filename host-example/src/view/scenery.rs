@@ -8,10 +8,10 @@ use glam::Vec3;
 
 use crate::render::background::Background;
 use crate::render::look::Look as Light;
-use crate::scene::Scene;
-use crate::scene::animation::Animation;
-use crate::scene::camera::{self, Direction, Framing, Orbit, View};
-use crate::scene::pose::Pose;
+use isophote_scene::Scene;
+use isophote_scene::animation::Animation;
+use isophote_scene::camera::{self, Direction, Framing, Orbit, View};
+use isophote_scene::pose::Pose;
 
 /// What a scene is shown with besides itself.
 #[derive(Clone, Debug, Default)]

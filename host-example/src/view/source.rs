@@ -10,15 +10,15 @@ use crate::render::background::Background;
 use crate::render::gpu::Gpu;
 use crate::render::look::Look as Light;
 use crate::render::targets::Targets;
-use crate::scene::Scene;
-use crate::scene::camera::View;
-use crate::scene::pose::Pose;
 use crate::stylize::Stylizer;
 use isophote_files::error::Result;
 use isophote_loader::abi::{
     ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
     ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_LINEAR, IsophoteRequest,
 };
+use isophote_scene::Scene;
+use isophote_scene::camera::View;
+use isophote_scene::pose::Pose;
 
 /// What is uploaded of a scene: it stands still meanwhile.
 pub struct Stand {

@@ -8,9 +8,9 @@ use super::session::Session;
 use super::source::{SceneSource, Source, Stand};
 use super::worker::{Wake, Worker};
 use crate::render::gpu::Gpu;
-use crate::scene::Scene;
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::IsophoteRequest;
+use isophote_scene::Scene;
 
 /// What is to be uploaded.
 enum Job {

@@ -26,11 +26,11 @@ use crate::render::gpu::Gpu;
 use crate::render::layouts;
 use crate::render::look::Look as Light;
 use crate::render::timestamps::Timestamps;
-use crate::scene::camera::View;
 use crate::stylize::kernels::Kernels;
 use crate::stylize::plan_runner::Counts;
 use isophote_files::error::{Error, Result};
 use isophote_loader::abi::IsophoteRequest;
+use isophote_scene::camera::View;
 
 /// All of one device. Fields are dropped in order: what uses the device before it.
 pub struct Stage {

@@ -4,8 +4,8 @@ use egui::{Button, RichText, Slider, Ui};
 
 use super::theme;
 use crate::render::background::Background;
-use crate::scene::camera::Direction;
 use crate::view::session::{Session, Wish};
+use isophote_scene::camera::Direction;
 
 /// Shows the controls.
 pub fn show(ui: &mut Ui, session: &mut Session) {

@@ -4,7 +4,7 @@
 use gltf::accessor::{Accessor, DataType, Dimensions};
 use gltf::buffer::View;
 
-use crate::scene::budget::Budget;
+use crate::budget::Budget;
 
 /// Reads accessors from loaded buffers.
 pub struct Accessors<'a> {

@@ -233,7 +233,7 @@ fn duplicate(primitive: &mut Primitive, index: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::model::Vertex;
+    use crate::model::Vertex;
 
     /// A square in the plane z = 0 seen from +Z, with U to the right and V down, or U mirrored.
     fn square(mirrored: bool) -> Primitive {

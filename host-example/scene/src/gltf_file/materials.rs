@@ -10,8 +10,8 @@ use gltf::texture::{MagFilter, MinFilter, WrappingMode};
 
 use super::accessors::Accessors;
 use super::sources;
-use crate::scene::material::{AlphaMode, DecodeProblem, Image, Material, Sampler, Texture, TextureUse, Wrap};
-use crate::scene::model::Scene;
+use crate::material::{AlphaMode, DecodeProblem, Image, Material, Sampler, Texture, TextureUse, Wrap};
+use crate::model::Scene;
 use isophote_files::error::{Error, Result};
 
 /// Reads images, textures and materials into the scene. The last material is the default one.

@@ -6,8 +6,8 @@ use glam::{Affine2, Mat4, Quat, Vec2, Vec3};
 use serde_json::json;
 
 use super::build::{Builder, F32, U8, U16, load_bytes, png};
-use crate::scene::pose::Pose;
-use crate::scene::{AlphaMode, LightKind, MorphDelta, Scene, TextureUse};
+use crate::pose::Pose;
+use crate::{AlphaMode, LightKind, MorphDelta, Scene, TextureUse};
 
 #[test]
 fn a_triangle_gets_flat_normals_and_the_default_material() {
@@ -183,8 +183,8 @@ fn hierarchies_lights_and_cameras_are_placed() {
     assert_eq!(pose.world[1].transform_point3(Vec3::X), Vec3::new(3.0, 2.0, 3.0));
     assert_eq!(scene.bounds.max, Vec3::new(3.0, 4.0, 3.0));
     assert_eq!(scene.lights[0].kind, LightKind::Spot { inner: 0.1, outer: 0.4 });
-    let node = crate::scene::camera::file_camera(&scene).unwrap();
-    let view = crate::scene::camera::View::from_node(&scene, &pose, node).unwrap();
+    let node = crate::camera::file_camera(&scene).unwrap();
+    let view = crate::camera::View::from_node(&scene, &pose, node).unwrap();
     assert!(view.eye().abs_diff_eq(Vec3::new(1.0, 2.0, 3.0), 1e-6));
 }
 

@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::scene::budget::{Budget, TOO_LARGE};
+use crate::budget::{Budget, TOO_LARGE};
 use isophote_files::error::{Error, Result};
 
 /// Decodes `%41` and its like.

@@ -93,7 +93,7 @@ impl Places {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::tests::build::Builder;
+    use crate::tests::build::Builder;
 
     fn lacks(obj: &str) -> bool {
         let folder = tempfile::tempdir().unwrap();

@@ -7,8 +7,8 @@ use gltf::mesh::Mode;
 
 use super::accessors::{Accessors, Pick};
 use super::materials::label;
-use crate::scene::geometry::{self, Topology};
-use crate::scene::model::{Influence, Mesh, MorphDelta, Primitive, Scene, Vertex};
+use crate::geometry::{self, Topology};
+use crate::model::{Influence, Mesh, MorphDelta, Primitive, Scene, Vertex};
 
 /// Reads all meshes into the scene, whose materials must be there already.
 ///

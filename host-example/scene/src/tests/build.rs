@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use serde_json::{Value, json};
 
-use crate::scene::Scene;
+use crate::Scene;
 use isophote_files::error::Result;
 
 /// A document with one buffer that grows as accessors are added.

@@ -11,10 +11,10 @@ use std::path::{Path, PathBuf};
 use glam::Vec3;
 
 use super::statements::{UNNAMED, number, statements, words};
-use crate::scene::budget::Budget;
-use crate::scene::gltf_file::open;
-use crate::scene::material::{AlphaMode, DecodeProblem, Image, Material, Sampler, Texture, TextureUse};
-use crate::scene::model::Scene;
+use crate::budget::Budget;
+use crate::gltf_file::open;
+use crate::material::{AlphaMode, DecodeProblem, Image, Material, Sampler, Texture, TextureUse};
+use crate::model::Scene;
 use isophote_files::error::{Error, Result};
 
 /// Colour of surfaces that say nothing about it.

@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::build::{load_bytes, png};
-use crate::scene::{AlphaMode, Scene};
+use crate::{AlphaMode, Scene};
 use isophote_files::error::Result;
 
 fn load(files: &[(&str, &[u8])], texture: Option<&str>) -> Result<Scene> {

@@ -10,8 +10,8 @@ use serde_json::value::RawValue;
 
 use super::accessors::{Accessors, Pick};
 use super::materials::label;
-use crate::scene::animation::{Animation, Channel, Interpolation, Property};
-use crate::scene::model::Scene;
+use crate::animation::{Animation, Channel, Interpolation, Property};
+use crate::model::Scene;
 
 /// The text of a document and, taken out of it, the channels of its animations.
 pub struct Outline<'a> {

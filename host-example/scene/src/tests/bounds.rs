@@ -7,8 +7,8 @@ use glam::Vec3;
 use serde_json::json;
 
 use super::build::{Builder, F32, load_bytes};
-use crate::scene::Scene;
-use crate::scene::budget::Budget;
+use crate::Scene;
+use crate::budget::Budget;
 use isophote_files::error::Error;
 
 const MIB: u64 = 1 << 20;
@@ -123,7 +123,7 @@ fn normals_take_as_long_as_there_are_faces() {
     // The tip has one normal, however many faces meet there: 50 are compared with each other, 300 are not.
     for count in [50, 300] {
         let scene = load_bytes("a.obj", fan(count).as_bytes()).unwrap();
-        let tip = |v: &&crate::scene::Vertex| v.position[1] > 0.0;
+        let tip = |v: &&crate::Vertex| v.position[1] > 0.0;
         let vertices = &scene.primitive(&scene.draws[0]).vertices;
         assert!(vertices.iter().filter(tip).all(|v| Vec3::from(v.normal).abs_diff_eq(Vec3::Y, 1e-4)));
     }

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::{Value, json};
 
 use super::build::{Builder, F32, U8, U16, load_bytes, png};
-use crate::scene::Scene;
+use crate::Scene;
 use isophote_files::error::Error;
 
 fn assert_clear(error: &Error, what: &str) {
