@@ -5,9 +5,7 @@
 pub mod apply;
 pub mod bench;
 pub mod cli;
-pub mod drivers;
 pub mod looks;
-pub mod render;
 pub mod sheet;
 pub mod shot;
 pub mod stylize;

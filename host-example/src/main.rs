@@ -8,8 +8,8 @@ use clap::error::ErrorKind;
 use isophote_files::error::Error;
 use isophote_files::{limits, output};
 use isophote_host::cli::Cli;
-use isophote_host::drivers;
 use isophote_loader::printable;
+use isophote_render::drivers;
 
 /// The program starts where the C library is older.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]

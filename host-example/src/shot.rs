@@ -2,18 +2,18 @@
 
 use std::f32::consts::TAU;
 
-use crate::render::Renderer;
-use crate::render::background::Background;
-use crate::render::gpu::Gpu;
-use crate::render::look::Look;
-use crate::render::readback::Readback;
-use crate::render::targets::{Target, Targets};
 use crate::stylize::Stylizer;
 use crate::stylize::kernels::Kernels;
 use crate::stylize::style::Style;
 use isophote_files::error::Result;
 use isophote_loader::Library;
 use isophote_pictures::floats::Picture;
+use isophote_render::background::Background;
+use isophote_render::gpu::Gpu;
+use isophote_render::look::Look;
+use isophote_render::readback::Readback;
+use isophote_render::renderer::Renderer;
+use isophote_render::targets::{Target, Targets};
 use isophote_scene::Scene;
 use isophote_scene::camera::{Direction, Framing, Orbit, View};
 use isophote_scene::pose::Pose;

@@ -12,8 +12,6 @@ use isophote_host::apply::backend::Backend;
 use isophote_host::apply::filter::{self, Filter, Look};
 use isophote_host::apply::memory::Budget;
 use isophote_host::apply::reel::{Held, Window, guide_bit};
-use isophote_host::render::gpu::Gpu;
-use isophote_host::render::readback::Readback;
 use isophote_host::stylize::history::Past;
 use isophote_host::stylize::kernels::Kernels;
 use isophote_host::stylize::plan_runner::PlanRunner;
@@ -28,6 +26,8 @@ use isophote_pictures::pixels::{Pixels, Precision, Samples};
 use isophote_pictures::read;
 use isophote_pictures::space::Space;
 use isophote_pictures::write::Format;
+use isophote_render::gpu::Gpu;
+use isophote_render::readback::Readback;
 
 use support::{assets, folder, has_ffmpeg, isophote, picture, succeeds};
 

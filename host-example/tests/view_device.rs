@@ -9,7 +9,6 @@ use std::process::Command;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-use isophote_host::render::gpu::Gpu;
 use isophote_host::view::app::{App, Event};
 use isophote_host::view::document::{Document, Options};
 use isophote_host::view::look::Look;
@@ -19,6 +18,7 @@ use isophote_host::view::session::Session;
 use isophote_host::view::settings::Settings;
 use isophote_host::view::value::Value;
 use isophote_loader::Library;
+use isophote_render::gpu::Gpu;
 use isophote_scene::Scene;
 use winit::application::ApplicationHandler;
 use winit::event::{StartCause, WindowEvent};

@@ -6,7 +6,6 @@ use std::time::Instant;
 use super::entry::{Entry, PassEntry};
 use super::timer::Timer;
 use super::{Subject, median, motion};
-use crate::render::gpu::Gpu;
 use crate::stylize::history::Past;
 use crate::stylize::kernels::Kernels;
 use crate::stylize::plan_runner::PlanRunner;
@@ -17,6 +16,7 @@ use isophote_loader::abi::ISOPHOTE_GUIDE_MOTION;
 use isophote_loader::plan::{Pass, Texture};
 use isophote_loader::{Library, Plan};
 use isophote_pictures::pixels::Pixels;
+use isophote_render::gpu::Gpu;
 
 /// A device to measure on.
 pub struct Bench {

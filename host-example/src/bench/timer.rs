@@ -1,9 +1,9 @@
 //! Timestamps around every pass of a plan.
 
-use crate::render::gpu::Gpu;
-use crate::render::timestamps::Timestamps;
 use crate::stylize::plan_runner::PlanRunner;
 use isophote_files::error::Result;
+use isophote_render::gpu::Gpu;
+use isophote_render::timestamps::Timestamps;
 
 /// Measures plans of so many passes.
 #[derive(Debug)]

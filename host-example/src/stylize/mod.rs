@@ -23,7 +23,7 @@ use self::kernels::Kernels;
 use self::plan_runner::{Counts, PlanRunner};
 use self::style::{Setting, Style};
 use isophote_files::error::{AtPlace, Result};
-use crate::render::targets::{Target, Targets};
+use isophote_render::targets::{Target, Targets};
 use isophote_loader::abi::{
     ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
     ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_LINEAR, IsophoteHistory, IsophoteRequest,
@@ -84,7 +84,7 @@ impl Stylizer {
         self.past.frames
     }
 
-    /// Whether the renderer must [add rest positions](crate::render::Renderer::add_rest_positions) before targets are bound.
+    /// Whether the renderer must [add rest positions](isophote_render::renderer::Renderer::add_rest_positions) before targets are bound.
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Failure`] when the library fails.

@@ -13,12 +13,12 @@ use super::shared::{ForceArgs, PrecisionArgs, parse_size};
 use crate::bench::compare::Saved;
 use crate::bench::report::{Machine, Report, Shown};
 use crate::bench::{Subject, card, cpu, gpu, peak, picture, sequence};
-use crate::render::gpu::Gpu;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::files;
 use isophote_files::output;
 use isophote_files::replacing::{Inputs, Made};
 use isophote_loader::Library;
+use isophote_render::gpu::Gpu;
 
 /// Sizes that are measured when none is given.
 const SIZES: [(u32, u32); 2] = [(1280, 720), (1920, 1080)];

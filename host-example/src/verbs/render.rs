@@ -8,7 +8,6 @@ use super::shared::{ForceArgs, LengthArgs, PrecisionArgs, SceneArgs, parse_size}
 use super::staging::StagingArgs;
 use crate::apply::report::{Outcome, Report};
 use crate::apply::tasks::Task;
-use crate::render::targets::{Target, Targets};
 use crate::shot::{Options, Shot};
 use crate::stylize::style::{Setting, Style};
 use crate::video::{self, Film};
@@ -22,6 +21,7 @@ use isophote_files::stop::Stop;
 use isophote_loader::Library;
 use isophote_pictures::floats::{self, Layer, Picture, Precision};
 use isophote_pictures::read;
+use isophote_render::targets::{Target, Targets};
 use isophote_scene::Scene;
 
 /// Options of `render`.

@@ -7,9 +7,9 @@ use std::sync::Arc;
 use clap::Args;
 use glam::Vec3;
 
-use crate::render::background::Background;
 use isophote_files::error::{Error, Result};
 use isophote_pictures::space::srgb_decode;
+use isophote_render::background::Background;
 use isophote_scene::camera::{self, Direction, Framing};
 use isophote_scene::environment::Environment;
 use isophote_scene::{Scene, floor};

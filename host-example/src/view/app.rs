@@ -24,9 +24,9 @@ use super::session::{Session, Wish};
 use super::stage::{Drawn, Stage};
 use super::ui;
 use super::worker::Wake;
-use crate::render::gpu::Gpu;
 use crate::stylize::plan_runner::Counts;
 use isophote_files::error::{Error, Result};
+use isophote_render::gpu::Gpu;
 
 /// Time between two looks at whether what is to end with the window has ended.
 const CLOSING: Duration = Duration::from_millis(20);

@@ -24,11 +24,11 @@ use super::scenery::{Scenery, Staging};
 use super::session::{Session, Wish};
 use super::watch::Watch;
 use super::worker::{Wake, Worker};
-use crate::render::background::Background as Surround;
 use isophote_files::error::{Error, Result};
 use isophote_loader::Library;
 use isophote_loader::abi::IsophoteRequest;
 use isophote_pictures::exr::Selection;
+use isophote_render::background::Background as Surround;
 use isophote_scene::environment::Environment;
 use isophote_scene::{Scene, camera, floor};
 

@@ -1,7 +1,7 @@
 //! The pass that puts pictures on the window: one or two, before and after, wherever pan and zoom have them.
 
-use crate::render::layouts::{self, bind_buffer, bind_view};
-use crate::render::{buffers, pipelines};
+use isophote_render::layouts::{self, bind_buffer, bind_view};
+use isophote_render::{buffers, pipelines};
 
 /// What the numbers of a picture are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

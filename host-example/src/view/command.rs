@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use super::reel::Reel;
 use super::session::Session;
-use crate::render::background::Background;
 use crate::stylize::lengths::Lengths;
 use crate::stylize::precision::Precision;
 use isophote_pictures::space::srgb_encode;
+use isophote_render::background::Background;
 use isophote_scene::floor;
 
 /// The command line, quoted for a shell.

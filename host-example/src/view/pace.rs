@@ -7,7 +7,7 @@ use super::look::Look;
 use super::scenery::Scenery;
 use super::session::{Session, Which};
 use super::stage::Drawn;
-use crate::render::look::Look as Light;
+use isophote_render::look::Look as Light;
 use isophote_scene::camera::View;
 
 /// How long nothing must move before the whole picture is rendered.

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use super::canvas::Numbers;
 use super::document::frame::Frame;
-use crate::render::gpu::Gpu;
 use crate::stylize::Stylizer;
 use crate::stylize::kernels::checked;
 use isophote_files::error::{Error, Result};
@@ -14,6 +13,7 @@ use isophote_loader::abi::{
     IsophoteRequest, IsophoteSpace,
 };
 use isophote_pictures::exr::Guide;
+use isophote_render::gpu::Gpu;
 
 /// Bytes that are uploaded at once, so that no copy is larger than the devices' buffers.
 const STRIP: usize = 32 << 20;

@@ -1,6 +1,6 @@
 //! What is under the pointer: one pixel before and after, read back with the frame.
 
-use crate::render::readback::decode;
+use isophote_render::readback::decode;
 
 /// Bytes that copies of rows begin at multiples of.
 const PITCH: u64 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as u64;

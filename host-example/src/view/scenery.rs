@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use glam::Vec3;
 
-use crate::render::background::Background;
-use crate::render::look::Look as Light;
+use isophote_render::background::Background;
+use isophote_render::look::Look as Light;
 use isophote_scene::Scene;
 use isophote_scene::animation::Animation;
 use isophote_scene::camera::{self, Direction, Framing, Orbit, View};

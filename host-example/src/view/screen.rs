@@ -5,8 +5,8 @@ use std::sync::Arc;
 use winit::dpi::PhysicalSize;
 use winit::window::Window;
 
-use crate::render::gpu::Gpu;
 use isophote_files::error::{Error, Result};
+use isophote_render::gpu::Gpu;
 
 /// What to install where windows cannot be drawn on.
 const FIX: &str = "install a Vulkan driver with X11 or Wayland support";

@@ -6,13 +6,13 @@ use super::document::frame::{Frame, GuideImage};
 use super::source::SceneSource;
 use super::worker::{Wake, Worker};
 use crate::apply::asked::Asked;
-use crate::render::gpu::Gpu;
-use crate::render::readback::decode;
-use crate::render::targets::Target;
 use isophote_files::error::{Error, Result};
 use isophote_pictures::exr::Guide;
 use isophote_pictures::read::ImageState;
 use isophote_pictures::space::Space;
+use isophote_render::gpu::Gpu;
+use isophote_render::readback::decode;
+use isophote_render::targets::Target;
 
 /// Copies frames and turns them into numbers on a thread of its own.
 pub struct Snapshots<F> {

@@ -5,17 +5,17 @@ use std::sync::Arc;
 use super::canvas::Numbers;
 use super::pictures::PictureSource;
 use super::scenery::{Scenery, is_same};
-use crate::render::Renderer;
-use crate::render::background::Background;
-use crate::render::gpu::Gpu;
-use crate::render::look::Look as Light;
-use crate::render::targets::Targets;
 use crate::stylize::Stylizer;
 use isophote_files::error::Result;
 use isophote_loader::abi::{
     ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
     ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_LINEAR, IsophoteRequest,
 };
+use isophote_render::background::Background;
+use isophote_render::gpu::Gpu;
+use isophote_render::look::Look as Light;
+use isophote_render::renderer::Renderer;
+use isophote_render::targets::Targets;
 use isophote_scene::Scene;
 use isophote_scene::camera::View;
 use isophote_scene::pose::Pose;

@@ -7,9 +7,9 @@ use super::pictures::PictureSource;
 use super::session::Session;
 use super::source::{SceneSource, Source, Stand};
 use super::worker::{Wake, Worker};
-use crate::render::gpu::Gpu;
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::IsophoteRequest;
+use isophote_render::gpu::Gpu;
 use isophote_scene::Scene;
 
 /// What is to be uploaded.

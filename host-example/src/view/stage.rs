@@ -22,14 +22,14 @@ use super::source::Source;
 use super::sources::Sources;
 use super::viewport::Overlay;
 use super::worker::{Wake, Worker};
-use crate::render::gpu::Gpu;
-use crate::render::layouts;
-use crate::render::look::Look as Light;
-use crate::render::timestamps::Timestamps;
 use crate::stylize::kernels::Kernels;
 use crate::stylize::plan_runner::Counts;
 use isophote_files::error::{Error, Result};
 use isophote_loader::abi::IsophoteRequest;
+use isophote_render::gpu::Gpu;
+use isophote_render::layouts;
+use isophote_render::look::Look as Light;
+use isophote_render::timestamps::Timestamps;
 use isophote_scene::camera::View;
 
 /// All of one device. Fields are dropped in order: what uses the device before it.

@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use crate::render::gpu::Gpu;
 use isophote_files::error::Result;
+use isophote_render::gpu::Gpu;
 
 /// Bytes of the source; few caches hold so many.
 const BYTES: u64 = 256 << 20;

@@ -18,7 +18,7 @@ use crate::apply::memory;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::files::Existing;
 use isophote_files::output;
-use crate::render::gpu::Gpu;
+use isophote_render::gpu::Gpu;
 use crate::stylize::lengths::Lengths;
 use crate::stylize::precision::Precision;
 use crate::stylize::style::Style;

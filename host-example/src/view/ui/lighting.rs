@@ -3,8 +3,8 @@
 use egui::{Button, RichText, Slider, Ui};
 
 use super::theme;
-use crate::render::background::Background;
 use crate::view::session::{Session, Wish};
+use isophote_render::background::Background;
 use isophote_scene::camera::Direction;
 
 /// Shows the controls.

@@ -3,10 +3,11 @@
 
 use glam::{Mat4, Quat, Vec2, Vec3};
 
-use super::gpu::Gpu;
-use super::look::Look;
-use super::readback::Readback;
-use super::{Renderer, targets::Target};
+use crate::gpu::Gpu;
+use crate::look::Look;
+use crate::readback::Readback;
+use crate::renderer::Renderer;
+use crate::targets::Target;
 use isophote_pictures::floats::Picture;
 use isophote_scene::animation::{Animation, Channel, Interpolation, Property};
 use isophote_scene::camera::View;

@@ -104,7 +104,7 @@ impl Mipmaps {
         });
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("mipmap"),
-            source: wgpu::ShaderSource::Wgsl(include_str!("../../shaders/mipmap.wgsl").into()),
+            source: wgpu::ShaderSource::Wgsl(include_str!("../shaders/mipmap.wgsl").into()),
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("mipmap"),

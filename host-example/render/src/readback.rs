@@ -2,7 +2,7 @@
 
 use half::f16;
 
-use super::gpu::Gpu;
+use crate::gpu::Gpu;
 use isophote_files::error::{Error, Result};
 use isophote_pictures::floats::Picture;
 
@@ -87,7 +87,7 @@ fn copy(gpu: &Gpu, texture: &wgpu::Texture, buffer: &wgpu::Buffer, pitch: usize)
 }
 
 /// The numbers of one row.
-pub(crate) fn decode(format: wgpu::TextureFormat, line: &[u8], data: &mut Vec<f32>) {
+pub fn decode(format: wgpu::TextureFormat, line: &[u8], data: &mut Vec<f32>) {
     match format {
         wgpu::TextureFormat::Rgba16Float => {
             data.extend(line.as_chunks::<2>().0.iter().map(|b| f16::from_le_bytes(*b).to_f32()));

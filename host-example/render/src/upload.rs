@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
-use super::buffers::filled_buffer;
-use super::layouts::{Layouts, bind_buffer, bind_sampler, bind_view};
-use super::textures::TextureStore;
-use super::uniforms::MaterialBlock;
+use crate::buffers::filled_buffer;
+use crate::layouts::{Layouts, bind_buffer, bind_sampler, bind_view};
+use crate::textures::TextureStore;
+use crate::uniforms::MaterialBlock;
 use isophote_files::error::{Error, Result};
 use isophote_scene::{Influence, Material, MorphDelta, Primitive, Scene};
 

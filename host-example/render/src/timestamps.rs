@@ -1,6 +1,6 @@
 //! What the device's own clock says of passes.
 
-use super::gpu::Gpu;
+use crate::gpu::Gpu;
 use isophote_files::error::{Error, Result};
 
 const BYTES: u64 = wgpu::QUERY_SIZE as u64;

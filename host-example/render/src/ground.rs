@@ -3,10 +3,10 @@
 
 use glam::{Vec3, Vec4};
 
-use super::layouts::Layouts;
-use super::look::Look;
-use super::pipelines::{SCENE, behind_everything, module};
-use super::targets::{COLOR_FORMAT, SAMPLES};
+use crate::layouts::Layouts;
+use crate::look::Look;
+use crate::pipelines::{SCENE, behind_everything, module};
+use crate::targets::{COLOR_FORMAT, SAMPLES};
 use isophote_scene::Scene;
 use isophote_scene::camera::View;
 use isophote_scene::model::Projection;
@@ -61,7 +61,7 @@ pub fn plane(scene: &Scene, look: &Look, view: &View) -> Option<Plane> {
 
 /// Makes the pipeline that draws the plane over what is behind it.
 pub fn pipeline(device: &wgpu::Device, layouts: &Layouts) -> wgpu::RenderPipeline {
-    let module = module(device, "ground", &[SCENE, include_str!("../../shaders/ground.wgsl")]);
+    let module = module(device, "ground", &[SCENE, include_str!("../shaders/ground.wgsl")]);
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("ground"),
         bind_group_layouts: &[Some(&layouts.frame), Some(&layouts.shadow)],

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::{Vec3, Vec4};
 
-use super::layouts::{self, Layouts, bind_sampler, bind_view};
-use super::pipelines::{BACKGROUND_PARTS, behind_everything, full_screen, module};
-use super::targets::{COLOR_FORMAT, SAMPLES};
+use crate::layouts::{self, Layouts, bind_sampler, bind_view};
+use crate::pipelines::{BACKGROUND_PARTS, behind_everything, full_screen, module};
+use crate::targets::{COLOR_FORMAT, SAMPLES};
 use isophote_files::error::{Error, Result};
 use isophote_scene::environment::Environment;
 
@@ -126,7 +126,7 @@ fn surroundings(
         immediate_size: 0,
     });
     let [scene, sky, background] = BACKGROUND_PARTS;
-    let parts = [scene, sky, background, include_str!("../../shaders/environment.wgsl")];
+    let parts = [scene, sky, background, include_str!("../shaders/environment.wgsl")];
     let module = module(device, "environment", &parts);
     let depth = Some(behind_everything());
     let pipeline =

@@ -3,7 +3,7 @@
 
 use glam::{Mat4, Vec3, Vec4};
 
-use super::upload::GpuPrimitive;
+use crate::upload::GpuPrimitive;
 use isophote_scene::pose::Pose;
 use isophote_scene::{AlphaMode, Scene};
 

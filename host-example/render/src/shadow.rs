@@ -4,10 +4,10 @@
 use glam::camera::rh::{proj::directx as clip, view as camera};
 use glam::{Mat4, Vec2, Vec3};
 
-use super::buffers;
-use super::layouts::{Layouts, bind_buffer, bind_sampler, bind_view};
-use super::look::Look;
-use super::targets::DEPTH_FORMAT;
+use crate::buffers;
+use crate::layouts::{Layouts, bind_buffer, bind_sampler, bind_view};
+use crate::look::Look;
+use crate::targets::DEPTH_FORMAT;
 use isophote_scene::Scene;
 use isophote_scene::camera::View;
 use isophote_scene::model::Projection;

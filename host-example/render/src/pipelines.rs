@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::layouts::Layouts;
-use super::targets::{
+use crate::layouts::Layouts;
+use crate::targets::{
     COLOR_FORMAT, DEPTH_FORMAT, LINEAR_DEPTH_FORMAT, MOTION_FORMAT, NORMAL_FORMAT, OBJECT_ID_FORMAT,
     REST_FORMAT, SAMPLES,
 };
@@ -70,12 +70,12 @@ pub struct Pipelines {
 }
 
 /// What every shader of the scene begins with.
-pub const SCENE: &str = include_str!("../../shaders/scene.wgsl");
-const MATERIAL: &str = include_str!("../../shaders/material.wgsl");
-const SKY: &str = include_str!("../../shaders/sky.wgsl");
+pub const SCENE: &str = include_str!("../shaders/scene.wgsl");
+const MATERIAL: &str = include_str!("../shaders/material.wgsl");
+const SKY: &str = include_str!("../shaders/sky.wgsl");
 
 /// The parts of the shader of the sky behind everything.
-pub const BACKGROUND_PARTS: [&str; 3] = [SCENE, SKY, include_str!("../../shaders/background.wgsl")];
+pub const BACKGROUND_PARTS: [&str; 3] = [SCENE, SKY, include_str!("../shaders/background.wgsl")];
 
 /// Compiles a shader from its parts.
 pub fn module(device: &wgpu::Device, label: &str, parts: &[&str]) -> wgpu::ShaderModule {
@@ -114,12 +114,12 @@ impl Pipelines {
         Self {
             layout: pipeline_layout("scene", &[scene[0], scene[1], scene[2], Some(&layouts.shadow)]),
             shadow_layout: pipeline_layout("shadow", &[scene[0], scene[1], scene[2], Some(&layouts.cascade)]),
-            surface: module("surface", &[SCENE, MATERIAL, SKY, include_str!("../../shaders/surface.wgsl")]),
+            surface: module("surface", &[SCENE, MATERIAL, SKY, include_str!("../shaders/surface.wgsl")]),
             geometry: module(
                 "geometry buffer",
-                &[SCENE, MATERIAL, include_str!("../../shaders/geometry_buffer.wgsl")],
+                &[SCENE, MATERIAL, include_str!("../shaders/geometry_buffer.wgsl")],
             ),
-            shadow: module("shadow", &[SCENE, MATERIAL, include_str!("../../shaders/shadow.wgsl")]),
+            shadow: module("shadow", &[SCENE, MATERIAL, include_str!("../shaders/shadow.wgsl")]),
             background: full_screen(
                 device,
                 &background_layout,

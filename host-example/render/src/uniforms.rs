@@ -3,9 +3,9 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
 
-use super::ground::Plane;
-use super::look::{Look, visible_lights};
-use super::shadow::{CASCADES, Cascades};
+use crate::ground::Plane;
+use crate::look::{Look, visible_lights};
+use crate::shadow::{CASCADES, Cascades};
 use isophote_scene::camera::View;
 use isophote_scene::model::Projection;
 use isophote_scene::pose::Pose;

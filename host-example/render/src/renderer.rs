@@ -5,39 +5,20 @@
 //! geometry buffer with one sample per pixel, and the tone mapping. They are recorded into the caller's
 //! command encoder; nothing is allocated once every pipeline that the scene needs has been used.
 
-pub mod background;
-pub(crate) mod buffers;
-pub mod gpu;
-mod ground;
-pub(crate) mod layouts;
-pub mod look;
-pub(crate) mod pipelines;
-pub mod readback;
-mod rest;
-mod shadow;
-pub mod targets;
-#[cfg(test)]
-mod tests;
-mod textures;
-pub mod timestamps;
-mod tone_map;
-mod uniforms;
-pub(crate) mod upload;
-mod visible;
-
 use glam::Mat4;
 
-use self::background::{Backdrop, Background};
-use self::layouts::{Layouts, bind_buffer};
-use self::look::Look;
-use self::pipelines::{Pass, Pipelines, Variant};
-use self::shadow::{Cascades, ShadowMaps};
-use self::targets::{REST_FORMAT, Target, Targets};
-use self::textures::TextureStore;
-use self::tone_map::ToneMap;
-use self::uniforms::{FrameBlock, InstanceBlock, LightBlock};
-use self::upload::GpuPrimitive;
-use self::visible::Visible;
+use crate::background::{Backdrop, Background};
+use crate::layouts::{Layouts, bind_buffer};
+use crate::look::Look;
+use crate::pipelines::{Pass, Pipelines, Variant};
+use crate::shadow::{Cascades, ShadowMaps};
+use crate::targets::{REST_FORMAT, Target, Targets};
+use crate::textures::TextureStore;
+use crate::tone_map::ToneMap;
+use crate::uniforms::{FrameBlock, InstanceBlock, LightBlock};
+use crate::upload::GpuPrimitive;
+use crate::visible::Visible;
+use crate::{ground, layouts, look, rest, uniforms, upload};
 use isophote_files::error::Result;
 use isophote_scene::camera::View;
 use isophote_scene::pose::Pose;
@@ -102,7 +83,7 @@ struct Scratch {
 
 impl Renderer {
     /// Uploads a scene and allocates targets of `size` pixels. Errors that the device reports later than this
-    /// are found by [`gpu::Gpu::check`].
+    /// are found by [`crate::gpu::Gpu::check`].
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Input`] when the size or a part of the scene is beyond the limits of the device.

@@ -2,9 +2,9 @@
 
 use glam::Vec4;
 
-use super::layouts::{self, bind_buffer, bind_view};
-use super::targets::{COLOR_FORMAT, Targets};
-use super::{buffers, pipelines};
+use crate::layouts::{self, bind_buffer, bind_view};
+use crate::targets::{COLOR_FORMAT, Targets};
+use crate::{buffers, pipelines};
 
 /// The pass with what it binds.
 pub struct ToneMap {
@@ -26,7 +26,7 @@ impl ToneMap {
         });
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("tone map"),
-            source: wgpu::ShaderSource::Wgsl(include_str!("../../shaders/tone_map.wgsl").into()),
+            source: wgpu::ShaderSource::Wgsl(include_str!("../shaders/tone_map.wgsl").into()),
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("tone map"),

@@ -75,7 +75,7 @@ pub struct Targets {
     /// Pixels from where the surface is to where it was one frame ago, x right and y down; 0 on the background.
     pub motion: Target,
     /// Position in the scene before anything moves in x, y, z, where w is 1; all 0 on the background. Missing
-    /// until [`super::Renderer::add_rest_positions`] asks for it.
+    /// until [`crate::renderer::Renderer::add_rest_positions`] asks for it.
     pub rest: Option<Target>,
     pub(super) multisampled: Target,
     pub(super) multisampled_depth: Target,
