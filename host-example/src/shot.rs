@@ -3,8 +3,8 @@
 use std::f32::consts::TAU;
 
 use crate::stylize::Stylizer;
-use crate::stylize::kernels::Kernels;
 use crate::stylize::style::Style;
+use isophote_example::kernels::Kernels;
 use isophote_files::error::Result;
 use isophote_loader::Library;
 use isophote_pictures::floats::Picture;

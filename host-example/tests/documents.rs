@@ -8,13 +8,13 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use image::{DynamicImage, Rgb32FImage, Rgba32FImage};
+use isophote_example::history::Past;
+use isophote_example::kernels::Kernels;
+use isophote_example::plan_runner::PlanRunner;
 use isophote_host::apply::backend::Backend;
 use isophote_host::apply::filter::{self, Filter, Look};
 use isophote_host::apply::memory::Budget;
 use isophote_host::apply::reel::{Held, Window, guide_bit};
-use isophote_host::stylize::history::Past;
-use isophote_host::stylize::kernels::Kernels;
-use isophote_host::stylize::plan_runner::PlanRunner;
 use isophote_host::stylize::style::Style;
 use isophote_host::view::document::frame::Frame;
 use isophote_host::view::document::kind::Kind;

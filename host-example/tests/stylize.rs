@@ -5,10 +5,10 @@ mod support;
 use std::path::Path;
 use std::sync::Arc;
 
+use isophote_example::kernels::Kernels;
+use isophote_example::plan_runner::Counts;
 use isophote_host::stylize::Stylizer;
-use isophote_host::stylize::kernels::Kernels;
 use isophote_host::stylize::lengths::Lengths;
-use isophote_host::stylize::plan_runner::Counts;
 use isophote_host::stylize::style::{Setting, Style};
 use isophote_loader::abi::{ISOPHOTE_SPACE_LINEAR, IsophoteRequest};
 use isophote_loader::{Control, Input, Library};

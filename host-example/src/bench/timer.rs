@@ -1,6 +1,6 @@
 //! Timestamps around every pass of a plan.
 
-use crate::stylize::plan_runner::PlanRunner;
+use isophote_example::plan_runner::PlanRunner;
 use isophote_files::error::Result;
 use isophote_render::gpu::Gpu;
 use isophote_render::timestamps::Timestamps;

@@ -4,23 +4,18 @@
 //! after the scene's, and read the renderer's textures directly. Once warm, a frame creates no GPU object and
 //! is one submission.
 
-pub mod history;
-pub mod kernels;
 pub mod lengths;
-pub mod plan_runner;
 pub mod precision;
 pub mod preset;
 pub mod source;
 pub mod style;
-pub mod textures;
 pub mod title;
-pub mod uniforms;
 
 use std::sync::Arc;
 
-use self::history::Past;
-use self::kernels::Kernels;
-use self::plan_runner::{Counts, PlanRunner};
+use isophote_example::history::Past;
+use isophote_example::kernels::Kernels;
+use isophote_example::plan_runner::{Counts, PlanRunner};
 use self::style::{Setting, Style};
 use isophote_files::error::{AtPlace, Result};
 use isophote_render::targets::{Target, Targets};

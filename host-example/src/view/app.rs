@@ -24,7 +24,7 @@ use super::session::{Session, Wish};
 use super::stage::{Drawn, Stage};
 use super::ui;
 use super::worker::Wake;
-use crate::stylize::plan_runner::Counts;
+use isophote_example::plan_runner::Counts;
 use isophote_files::error::{Error, Result};
 use isophote_render::gpu::Gpu;
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::canvas::Numbers;
 use super::document::frame::Frame;
 use crate::stylize::Stylizer;
-use crate::stylize::kernels::checked;
+use isophote_example::kernels::checked;
 use isophote_files::error::{Error, Result};
 use isophote_loader::abi::{
     ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_MOTION_FORWARD, ISOPHOTE_GUIDE_NORMAL,

@@ -2,7 +2,7 @@
 
 use std::num::NonZeroU64;
 
-use super::kernels::{block_size, checked};
+use crate::kernels::{block_size, checked};
 use isophote_files::error::Result;
 
 /// Place of a pass's block in the buffer.

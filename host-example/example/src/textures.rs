@@ -1,7 +1,7 @@
 //! Textures of a plan: those that passes write, and places for those of the host.
 
-use super::history::{self, Past, Rings};
-use super::kernels::{checked, texture_format};
+use crate::history::{self, Past, Rings};
+use crate::kernels::{checked, texture_format};
 use isophote_files::error::Result;
 use isophote_loader::plan::{Format, Role, Texture};
 

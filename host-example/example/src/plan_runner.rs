@@ -1,7 +1,7 @@
 //! A plan of the library on the host's own device, with nothing but wgpu: **the example to copy**.
 //!
 //! The library says what is to be computed, as data: textures, compute passes, uniform bytes and shaders. The
-//! rest is up to the host, and all of it is here and in [`kernels`](super::kernels), `textures.rs` and
+//! rest is up to the host, and all of it is here and in [`kernels`](crate::kernels), `textures.rs` and
 //! `uniforms.rs`:
 //!
 //! 1. [`Kernels`] compiles the shader of a kernel when a plan first names it.
@@ -21,10 +21,10 @@
 use std::ops::AddAssign;
 use std::sync::Arc;
 
-use super::history::{self, Past, Rings};
-use super::kernels::{Kernel, Kernels, checked, refused};
-use super::textures::{self, COPIED, Slot};
-use super::uniforms::{Block, Layout, Uniforms};
+use crate::history::{self, Past, Rings};
+use crate::kernels::{Kernel, Kernels, checked, refused};
+use crate::textures::{self, COPIED, Slot};
+use crate::uniforms::{Block, Layout, Uniforms};
 use isophote_files::error::{Error, Result};
 use isophote_loader::Plan;
 use isophote_loader::plan::Role;
@@ -267,7 +267,7 @@ impl PlanRunner {
     }
 
     /// The kernels of its device.
-    pub(super) fn kernels(&self) -> &Kernels {
+    pub fn kernels(&self) -> &Kernels {
         &self.kernels
     }
 

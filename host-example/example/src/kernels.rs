@@ -25,8 +25,10 @@ pub struct Kernels {
 
 /// A compiled kernel, and what it binds.
 #[derive(Clone, Debug)]
-pub(super) struct Kernel {
+pub struct Kernel {
+    /// The pipeline.
     pub pipeline: wgpu::ComputePipeline,
+    /// The layout of its only group.
     pub layout: wgpu::BindGroupLayout,
     /// Binding of a sampler, for kernels that interpolate by one.
     pub sampler: Option<u32>,
@@ -47,22 +49,22 @@ impl Kernels {
     }
 
     /// The device that they are for.
-    pub(super) fn device(&self) -> &wgpu::Device {
+    pub fn device(&self) -> &wgpu::Device {
         &self.device
     }
 
     /// The sampler of kernels that interpolate by one.
-    pub(super) fn sampler(&self) -> &wgpu::Sampler {
+    pub fn sampler(&self) -> &wgpu::Sampler {
         &self.sampler
     }
 
     /// The queue of the device.
-    pub(super) fn queue(&self) -> &wgpu::Queue {
+    pub fn queue(&self) -> &wgpu::Queue {
         &self.queue
     }
 
     /// Compiles all that a plan needs.
-    pub(super) fn compile(&self, plan: &Plan) -> Result<()> {
+    pub fn compile(&self, plan: &Plan) -> Result<()> {
         let textures = plan.textures().map_err(refused)?;
         for (index, pass) in (0..).zip(plan.passes().map_err(refused)?) {
             self.get(plan, index, &pass, &textures)?;
@@ -71,7 +73,7 @@ impl Kernels {
     }
 
     /// The kernel of pass `index`, and whether it had to be compiled.
-    pub(super) fn get(
+    pub fn get(
         &self,
         plan: &Plan,
         index: u32,
@@ -164,12 +166,12 @@ fn layout_entries(
 }
 
 /// Bytes that a uniform block takes.
-pub(super) fn block_size(block: &[u8]) -> u64 {
+pub fn block_size(block: &[u8]) -> u64 {
     (block.len() as u64).next_multiple_of(BLOCK_ALIGNMENT)
 }
 
 /// The format in the words of wgpu.
-pub(super) fn texture_format(format: Format) -> wgpu::TextureFormat {
+pub fn texture_format(format: Format) -> wgpu::TextureFormat {
     match format {
         Format::R32Float => wgpu::TextureFormat::R32Float,
         Format::Rg32Float => wgpu::TextureFormat::Rg32Float,
@@ -196,6 +198,6 @@ pub fn checked<T>(device: &wgpu::Device, make: impl FnOnce() -> Result<T>) -> Re
 }
 
 /// What the library has against a plan, as an error of the host.
-pub(super) fn refused(error: isophote_loader::Error) -> Error {
+pub fn refused(error: isophote_loader::Error) -> Error {
     error.at("the plan", "choose another style")
 }
