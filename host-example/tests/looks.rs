@@ -5,10 +5,10 @@ mod support;
 
 use std::fs;
 
-use isophote_host::looks::{self, Look};
-use isophote_host::stylize::lengths::Lengths;
-use isophote_host::stylize::preset::Track;
-use isophote_host::stylize::style::{Setting, Style};
+use isophote_finishing::stylize::lengths::Lengths;
+use isophote_finishing::stylize::looks::{self, Look};
+use isophote_finishing::stylize::preset::Track;
+use isophote_finishing::stylize::style::{Setting, Style};
 use isophote_loader::catalogue::{Param, ParamKind};
 use isophote_loader::{Control, Input, Library};
 use isophote_pictures::pixels::{Pixels, Precision, Samples};

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use isophote_host::stylize::preset::Preset;
+use isophote_finishing::stylize::preset::Preset;
 use isophote_host::view::browser::entry::{Content, Group};
 use isophote_host::view::browser::listing::{self, Listing, Question};
 use isophote_host::view::document::{Document, Options};
@@ -369,7 +369,7 @@ fn looks_that_ship_are_copied_to_files_of_ones_own() {
     click(&mut harness, Role::Button, "Save a copy…");
     click(&mut harness, Role::Button, "Save");
     let copy = preset(&folder.path().join("linocut-copy.json"));
-    let shipped = isophote_host::looks::find("linocut").expect("it ships").preset;
+    let shipped = isophote_finishing::stylize::looks::find("linocut").expect("it ships").preset;
     assert_eq!(
         (copy.style, copy.params, copy.title.tags),
         (shipped.style, shipped.params, shipped.title.tags)

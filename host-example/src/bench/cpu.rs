@@ -4,9 +4,9 @@ use std::cell::Cell;
 
 use super::entry::{Entry, PassEntry};
 use super::{Subject, median, motion};
-use crate::apply::memory;
-use crate::stylize::style::Style;
 use isophote_files::error::{AtPlace, Result};
+use isophote_finishing::apply::memory;
+use isophote_finishing::stylize::style::Style;
 use isophote_loader::abi::{ISOPHOTE_GUIDE_MOTION, IsophoteRequest};
 use isophote_loader::process::PassTime;
 use isophote_loader::{Control, Input, Library};

@@ -12,8 +12,8 @@ pub mod sequence;
 mod throughput;
 mod timer;
 
+use isophote_finishing::stylize::style::Setting;
 use isophote_pictures::pixels::{Pixels, Samples};
-use crate::stylize::style::Setting;
 
 /// What is measured: a node, with other values than the defaults where they are given.
 #[derive(Debug)]

@@ -2,13 +2,13 @@
 
 use super::Subject;
 use super::throughput::{Throughput, measure};
-use crate::apply::backend::Backend;
-use crate::apply::filter::{Filter, Look, Planner};
-use crate::apply::memory::{self, Bytes};
-use crate::stylize::lengths::Lengths;
-use crate::stylize::style::Style;
 use isophote_files::error::{Error, Result};
 use isophote_files::output;
+use isophote_finishing::apply::backend::Backend;
+use isophote_finishing::apply::filter::{Filter, Look, Planner};
+use isophote_finishing::apply::memory::{self, Bytes};
+use isophote_finishing::stylize::lengths::Lengths;
+use isophote_finishing::stylize::style::Style;
 use isophote_loader::Library;
 use isophote_pictures::pixels::Pixels;
 

@@ -7,19 +7,19 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use crate::apply::filter::{Filter, Planner};
-use crate::apply::masks::Masks;
-use crate::apply::memory::Budget;
-use crate::apply::reader::{Footage, Reader};
-use crate::apply::reel::{Held, Window};
-use crate::apply::report::Report;
-use crate::apply::sequence::Run;
-use crate::apply::tasks::Task;
 use isophote_files::error::{Error, Result};
 use isophote_files::files::Existing;
 use isophote_files::limits::Threads;
 use isophote_files::replacing::Consent;
 use isophote_files::stop::Stop;
+use isophote_finishing::apply::filter::{Filter, Planner};
+use isophote_finishing::apply::masks::Masks;
+use isophote_finishing::apply::memory::Budget;
+use isophote_finishing::apply::reader::{Footage, Reader};
+use isophote_finishing::apply::reel::{Held, Window};
+use isophote_finishing::apply::report::Report;
+use isophote_finishing::apply::sequence::Run;
+use isophote_finishing::apply::tasks::Task;
 use isophote_pictures::exr::{Selection, components};
 use isophote_pictures::floats::{self, Picture, Precision};
 use isophote_pictures::pixels::Pixels;

@@ -5,12 +5,12 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::apply::ApplyArgs;
-use crate::apply::filter::Planner;
-use crate::apply::masks::MaskChoice;
-use crate::apply::tasks::{Task, Tasks};
-use crate::stylize::style;
 use isophote_files::error::Result;
 use isophote_files::replacing::{Consent, Inputs, Made};
+use isophote_finishing::apply::filter::Planner;
+use isophote_finishing::apply::masks::MaskChoice;
+use isophote_finishing::apply::tasks::{Task, Tasks};
+use isophote_finishing::stylize::style;
 use isophote_pictures::exr::MaskSource;
 
 /// The word for motion that is estimated.

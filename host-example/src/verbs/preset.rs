@@ -7,15 +7,15 @@ use clap::{Args, Subcommand};
 use serde_json::Value;
 
 use super::shared::ForceArgs;
-use crate::looks::{self, Look};
-use crate::stylize::preset::{self, Preset, Track};
-use crate::stylize::source;
-use crate::stylize::style::{Setting, Style};
-use crate::stylize::title::{self, Title};
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::identity::is_same;
 use isophote_files::replacing::{Consent, Inputs, Made};
 use isophote_files::{files, output};
+use isophote_finishing::stylize::looks::{self, Look};
+use isophote_finishing::stylize::preset::{self, Preset, Track};
+use isophote_finishing::stylize::source;
+use isophote_finishing::stylize::style::{Setting, Style};
+use isophote_finishing::stylize::title::{self, Title};
 use isophote_loader::Library;
 use isophote_loader::catalogue::ParamKind;
 

@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use crate::stylize::lengths::Lengths;
-use crate::stylize::precision::Precision;
-use crate::stylize::style::Style;
 use isophote_files::error::Result;
 use isophote_files::files::Existing;
 use isophote_files::output;
 use isophote_files::replacing::Consent;
+use isophote_finishing::stylize::lengths::Lengths;
+use isophote_finishing::stylize::precision::Precision;
+use isophote_finishing::stylize::style::Style;
 use isophote_pictures::pixels::MOST_PIXELS;
 use isophote_scene::Scene;
 

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::shared::ForceArgs;
-use crate::sheet::{arranged, cells};
 use isophote_files::error::{Error, Result};
 use isophote_files::files;
 use isophote_files::limits;
 use isophote_files::replacing::{Inputs, Made};
+use isophote_finishing::sheet::{arranged, cells};
 
 /// Options of `sheet`.
 #[derive(Args, Debug)]

@@ -6,7 +6,6 @@ use clap::Args;
 
 use super::shared::{LengthArgs, PrecisionArgs, ReadingArgs, parse_size};
 use super::staging::StagingArgs;
-use crate::stylize::style::{Setting, Style};
 use crate::view;
 use crate::view::document::kind::Kind;
 use crate::view::document::{self, Document};
@@ -16,6 +15,7 @@ use crate::view::scenery::{Lighting, Scenery, Staging};
 use crate::view::session::Session;
 use crate::view::settings::Settings;
 use isophote_files::error::{AtPlace, Result};
+use isophote_finishing::stylize::style::{Setting, Style};
 use isophote_loader::Library;
 
 /// The look of a window that was never open.

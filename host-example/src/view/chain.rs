@@ -6,8 +6,8 @@
 
 use serde_json::{Map, Value as Json, json};
 
-use crate::stylize::style::Style;
 use isophote_files::error::{AtPlace, Error, Result};
+use isophote_finishing::stylize::style::Style;
 use isophote_loader::Library;
 use isophote_loader::catalogue::{Kind, Node};
 

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::reel::Reel;
 use super::session::Session;
-use crate::stylize::lengths::Lengths;
-use crate::stylize::precision::Precision;
+use isophote_finishing::stylize::lengths::Lengths;
+use isophote_finishing::stylize::precision::Precision;
 use isophote_pictures::space::srgb_encode;
 use isophote_render::background::Background;
 use isophote_scene::floor;

@@ -16,10 +16,10 @@ use std::time::Duration;
 use serde_json::Value;
 
 use super::document::kind::Kind;
-use crate::video::{self, Film};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::frames::Pattern;
+use isophote_finishing::video::{self, Film};
 use isophote_pictures::exr::Selection;
 use isophote_pictures::read;
 

@@ -4,8 +4,8 @@ use std::collections::HashSet;
 
 use super::look::Look;
 use super::value::Value;
-use crate::stylize::frame_request;
 use isophote_files::error::Result;
+use isophote_finishing::stylize::frame_request;
 use isophote_loader::Library;
 use isophote_loader::Plan;
 use isophote_loader::abi::IsophoteRequest;

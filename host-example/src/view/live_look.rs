@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use super::look::{Knob, Look};
 use super::worker::{Wake, Worker};
-use crate::stylize::Stylizer;
-use crate::stylize::precision::Precision;
-use crate::stylize::preset::Track;
-use crate::stylize::style::Setting;
 use isophote_example::kernels::Kernels;
 use isophote_example::plan_runner::Counts;
 use isophote_files::error::{Error, Result};
+use isophote_finishing::stylize::Stylizer;
+use isophote_finishing::stylize::precision::Precision;
+use isophote_finishing::stylize::preset::Track;
+use isophote_finishing::stylize::style::Setting;
 use isophote_loader::Library;
 use isophote_loader::abi::{IsophoteRequest, IsophoteSpace};
 use isophote_loader::catalogue::Kind;

@@ -7,12 +7,12 @@ use serde_json::Value as Json;
 
 use super::chain::{Chain, Watched};
 use super::value::Value;
-use crate::stylize::preset::{self, Preset, Track};
-use crate::stylize::source;
-use crate::stylize::style::{Setting, Style};
-use crate::stylize::title::Title;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::files::{self, Existing};
+use isophote_finishing::stylize::preset::{self, Preset, Track};
+use isophote_finishing::stylize::source;
+use isophote_finishing::stylize::style::{Setting, Style};
+use isophote_finishing::stylize::title::Title;
 use isophote_loader::Library;
 use isophote_loader::catalogue::Param;
 

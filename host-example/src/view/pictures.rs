@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use super::canvas::Numbers;
 use super::document::frame::Frame;
-use crate::stylize::Stylizer;
 use isophote_example::kernels::checked;
 use isophote_files::error::{Error, Result};
+use isophote_finishing::stylize::Stylizer;
 use isophote_loader::abi::{
     ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_MOTION_FORWARD, ISOPHOTE_GUIDE_NORMAL,
     ISOPHOTE_GUIDE_OBJECT_ID, ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR,

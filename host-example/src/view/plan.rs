@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::document::Frames;
 use super::document::kind::Kind;
-use crate::video;
 use isophote_files::frames;
+use isophote_finishing::video;
 
 /// Frames of a turntable, unless others are asked for.
 const TURN: u32 = 96;

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use crate::stylize::precision::Precision;
 use isophote_files::error::Result;
 use isophote_files::output;
+use isophote_finishing::stylize::precision::Precision;
 
 /// Frames of one look and size.
 #[derive(Clone, Debug)]

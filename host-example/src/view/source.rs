@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::canvas::Numbers;
 use super::pictures::PictureSource;
 use super::scenery::{Scenery, is_same};
-use crate::stylize::Stylizer;
 use isophote_files::error::Result;
+use isophote_finishing::stylize::Stylizer;
 use isophote_loader::abi::{
     ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
     ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_LINEAR, IsophoteRequest,

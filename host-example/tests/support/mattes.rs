@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use exr::prelude::*;
-use isophote_host::apply::masks::{MaskChoice, Masks};
+use isophote_finishing::apply::masks::{MaskChoice, Masks};
 use isophote_pictures::exr::{MaskSource, OnUnknown, Selection};
 use isophote_pictures::read;
 

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::twins::Twin;
 use crate::bench::entry::Entry;
 use crate::bench::throughput::Throughput;
-use crate::stylize::precision::Precision;
+use isophote_finishing::stylize::precision::Precision;
 
 /// All that was measured.
 #[derive(Debug, Default, Serialize)]

@@ -12,17 +12,17 @@ use self::found::{Card, Compiled, Loop, Sequence};
 use super::gpu::Bench;
 use super::throughput;
 use super::{Subject, median, picture};
-use crate::apply::backend::Backend;
-use crate::apply::filter::{Filter, Look, Planner};
-use crate::apply::memory;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::files::Existing;
 use isophote_files::output;
-use isophote_render::gpu::Gpu;
-use crate::stylize::lengths::Lengths;
-use crate::stylize::precision::Precision;
-use crate::stylize::style::Style;
+use isophote_finishing::apply::backend::Backend;
+use isophote_finishing::apply::filter::{Filter, Look, Planner};
+use isophote_finishing::apply::memory;
+use isophote_finishing::stylize::lengths::Lengths;
+use isophote_finishing::stylize::precision::Precision;
+use isophote_finishing::stylize::style::Style;
 use isophote_loader::Library;
+use isophote_render::gpu::Gpu;
 
 /// The style of the loop and of the sequences.
 const STYLE: &str = "cartoon";

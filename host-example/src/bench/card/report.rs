@@ -7,10 +7,10 @@ use serde_json::{Value, json};
 
 use super::found::Card;
 use crate::bench::entry::Entry;
-use crate::stylize::precision::Precision;
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::output;
+use isophote_finishing::stylize::precision::Precision;
 
 /// Names of the reports.
 const NAMES: [&str; 2] = ["card.md", "card.json"];

@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use crate::bench::Subject;
-use crate::stylize::precision::Precision;
-use crate::stylize::style::Style;
 use isophote_files::error::{AtPlace, Result};
+use isophote_finishing::stylize::precision::Precision;
+use isophote_finishing::stylize::style::Style;
 use isophote_loader::device::Device;
 use isophote_loader::{Control, Input, Library};
 use isophote_pictures::pixels::{Pixels, Precision as Samples};

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::stylize::title::Title;
 use crate::view::look::Look;
+use isophote_finishing::stylize::title::Title;
 
 /// Where a look belongs.
 #[derive(Clone, Debug, PartialEq, Eq)]

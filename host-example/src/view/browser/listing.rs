@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::entry::{Content, Group};
-use crate::looks;
-use crate::stylize::title::Title;
 use crate::view::look::{Look, PLAIN};
 use isophote_files::error::Error;
+use isophote_finishing::stylize::looks;
+use isophote_finishing::stylize::title::Title;
 use isophote_loader::Library;
 
 /// Most folders within folders.

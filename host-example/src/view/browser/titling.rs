@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::stylize::preset::{self, Preset};
-use crate::stylize::source;
-use crate::stylize::title::{Title, is_line};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
+use isophote_finishing::stylize::preset::{self, Preset};
+use isophote_finishing::stylize::source;
+use isophote_finishing::stylize::title::{Title, is_line};
 
 /// What is typed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

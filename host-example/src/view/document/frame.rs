@@ -1,8 +1,8 @@
 //! A picture in main memory as the library takes it, with everything that `apply` would hand over beside it.
 
-use crate::apply::asked::Asked;
 use isophote_files::error::{Error, Result};
 use isophote_files::limits;
+use isophote_finishing::apply::asked::Asked;
 use isophote_loader::abi::{ISOPHOTE_ALPHA_EMISSIVE, IsophoteRequest};
 use isophote_pictures::convert;
 use isophote_pictures::exr::Guide;

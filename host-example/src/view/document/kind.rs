@@ -3,10 +3,10 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use crate::video;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::{self, Pattern};
 use isophote_files::input;
+use isophote_finishing::video;
 
 /// Kinds of documents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -21,13 +21,13 @@ use self::loading::Loading;
 use self::player::Player;
 use self::source::{Reading, Source};
 use self::store::Store;
-use isophote_pictures::exr::{Guide, Offers, Selection};
-use isophote_pictures::space::Space;
-use crate::apply::memory;
-use isophote_pictures::read;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::{self, Pattern};
-use crate::video::Clip;
+use isophote_finishing::apply::memory;
+use isophote_finishing::video::Clip;
+use isophote_pictures::exr::{Guide, Offers, Selection};
+use isophote_pictures::read;
+use isophote_pictures::space::Space;
 
 /// Frames of a sequence that are opened to find out what can be chosen, where the first cannot be read.
 const ATTEMPTS: usize = 8;

@@ -4,10 +4,10 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use super::frame::Frame;
-use crate::video::Clip;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::Pattern;
 use isophote_files::limits;
+use isophote_finishing::video::Clip;
 use isophote_pictures::exr::{Picture, Selection};
 use isophote_pictures::read::{self, ImageState, Opened, Source as Read};
 use isophote_pictures::space::Space;

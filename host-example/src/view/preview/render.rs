@@ -6,13 +6,13 @@ use std::sync::Arc;
 use egui::ColorImage;
 
 use super::picture::{self, Meaning, Picture};
-use crate::apply::filter;
-use crate::stylize::style::Style;
 use crate::view::document::frame::Frame;
 use crate::view::document::reduce;
 use crate::view::look::Look;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::limits;
+use isophote_finishing::apply::filter;
+use isophote_finishing::stylize::style::Style;
 use isophote_loader::abi::{ISOPHOTE_ERROR_CANCELLED, IsophoteRequest};
 use isophote_loader::catalogue::Kind;
 use isophote_loader::process::Part;

@@ -4,7 +4,6 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::Session;
-use crate::stylize::title::Title;
 use crate::view::browser::MOST_COMPARED;
 use crate::view::browser::entry::Content;
 use crate::view::browser::listing::Listing;
@@ -16,6 +15,7 @@ use crate::view::preview::picture::Picture;
 use crate::view::saving::Saving;
 use crate::view::viewport::Compare;
 use isophote_files::error::Error;
+use isophote_finishing::stylize::title::Title;
 
 impl Session {
     /// Whether something else is shown instead of the picture.

@@ -1,8 +1,8 @@
 //! Closing the window without losing what was done in it, and closing what is open in it.
 
 use super::Session;
-use crate::stylize::preset::Preset;
 use crate::view::leaving::Leaving;
+use isophote_finishing::stylize::preset::Preset;
 
 impl Session {
     /// Looks that are in no file as they are now, by their places: closing the window loses them.

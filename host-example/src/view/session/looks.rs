@@ -4,12 +4,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::Session;
-use crate::stylize::lengths::Lengths;
-use crate::stylize::style::Setting;
 use crate::view::chain::Chain;
 use crate::view::look::{Knob, Look};
 use crate::view::value::Value;
 use isophote_files::error::Result;
+use isophote_finishing::stylize::lengths::Lengths;
+use isophote_finishing::stylize::style::Setting;
 use isophote_loader::Library;
 
 impl Session {

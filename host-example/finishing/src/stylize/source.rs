@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::looks;
+use crate::stylize::looks;
 use isophote_files::error::{Error, Result};
 use isophote_files::input;
 

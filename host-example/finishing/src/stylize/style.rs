@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 use super::lengths::Lengths;
 use super::preset::{self, Animated, Preset, Track};
 use super::source;
-use crate::looks;
+use crate::stylize::looks;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::{frames, output};
 use isophote_loader::abi::IsophoteRequest;

@@ -6,8 +6,8 @@ use std::{env, fs};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo::rerun-if-changed=build.rs");
-    println!("cargo::rerun-if-changed=looks");
-    let folder = Path::new(&env::var("CARGO_MANIFEST_DIR")?).join("looks");
+    println!("cargo::rerun-if-changed=../looks");
+    let folder = Path::new(&env::var("CARGO_MANIFEST_DIR")?).join("../looks");
     let mut list = String::from("[\n");
     for id in fs::read_to_string(folder.join("order.txt"))?.split_whitespace() {
         writeln!(list, "    ({id:?}, include_str!({:?})),", folder.join(format!("{id}.json")))?;

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Map, Value, json};
 
 use super::masks::MaskChoice;
-use crate::looks;
+use crate::stylize::looks;
 use crate::stylize::preset::{self, Preset};
 use crate::stylize::source;
 use crate::stylize::style::Style;

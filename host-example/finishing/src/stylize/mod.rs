@@ -5,6 +5,7 @@
 //! is one submission.
 
 pub mod lengths;
+pub mod looks;
 pub mod precision;
 pub mod preset;
 pub mod source;
@@ -13,12 +14,11 @@ pub mod title;
 
 use std::sync::Arc;
 
+use self::style::{Setting, Style};
 use isophote_example::history::Past;
 use isophote_example::kernels::Kernels;
 use isophote_example::plan_runner::{Counts, PlanRunner};
-use self::style::{Setting, Style};
 use isophote_files::error::{AtPlace, Result};
-use isophote_render::targets::{Target, Targets};
 use isophote_loader::abi::{
     ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
     ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_LINEAR, IsophoteHistory, IsophoteRequest,
@@ -26,6 +26,7 @@ use isophote_loader::abi::{
 use isophote_loader::catalogue::Kind;
 use isophote_loader::plan::{Change, Role};
 use isophote_loader::{Library, Plan};
+use isophote_render::targets::{Target, Targets};
 
 /// A style for frames of one size, ready to be recorded.
 #[derive(Debug)]
