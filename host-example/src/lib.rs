@@ -5,4 +5,3 @@
 pub mod bench;
 pub mod cli;
 pub mod verbs;
-pub mod view;

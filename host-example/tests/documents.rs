@@ -16,9 +16,6 @@ use isophote_finishing::apply::filter::{self, Filter, Look};
 use isophote_finishing::apply::memory::Budget;
 use isophote_finishing::apply::reel::{Held, Window, guide_bit};
 use isophote_finishing::stylize::style::Style;
-use isophote_host::view::document::frame::Frame;
-use isophote_host::view::document::kind::Kind;
-use isophote_host::view::document::{Document, Options};
 use isophote_loader::abi::IsophoteRequest;
 use isophote_loader::{Control, Input, Library};
 use isophote_pictures::exr::{Guide, Selection};
@@ -28,6 +25,9 @@ use isophote_pictures::space::Space;
 use isophote_pictures::write::Format;
 use isophote_render::gpu::Gpu;
 use isophote_render::readback::Readback;
+use isophote_window::document::frame::Frame;
+use isophote_window::document::kind::Kind;
+use isophote_window::document::{Document, Options};
 
 use support::{assets, folder, has_ffmpeg, isophote, picture, succeeds};
 

@@ -6,9 +6,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use isophote_host::view::document::kind::Kind;
-use isophote_host::view::document::{Document, Options};
-use isophote_host::view::export::{Export, Job, Progress, State};
+use isophote_window::document::kind::Kind;
+use isophote_window::document::{Document, Options};
+use isophote_window::export::{Export, Job, Progress, State};
 
 use support::{cube, folder, isophote, listing, picture, succeeds};
 

@@ -4,15 +4,15 @@ mod support;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use isophote_host::view::chain::{self, Chain, Watched};
-use isophote_host::view::look::Look;
-use isophote_host::view::scenery::{Scenery, Staging};
-use isophote_host::view::session::Session;
-use isophote_host::view::settings::Settings;
-use isophote_host::view::value::Value;
-use isophote_host::view::{command, ui};
 use isophote_loader::Library;
 use isophote_scene::Scene;
+use isophote_window::chain::{self, Chain, Watched};
+use isophote_window::look::Look;
+use isophote_window::scenery::{Scenery, Staging};
+use isophote_window::session::Session;
+use isophote_window::settings::Settings;
+use isophote_window::value::Value;
+use isophote_window::{command, ui};
 
 fn library() -> Library {
     Library::from_file(support::library()).unwrap()

@@ -8,12 +8,12 @@ use std::path::Path;
 use std::time::Duration;
 
 use egui::accesskit::Role;
-use isophote_host::view::document::{Document, Options};
-use isophote_host::view::look::Look;
-use isophote_host::view::reel::Reel;
-use isophote_host::view::session::Session;
-use isophote_host::view::settings::Settings;
 use isophote_loader::Library;
+use isophote_window::document::{Document, Options};
+use isophote_window::look::Look;
+use isophote_window::reel::Reel;
+use isophote_window::session::Session;
+use isophote_window::settings::Settings;
 
 use support::others::{Cover, drop_files};
 use support::places::{places, tabs_to};

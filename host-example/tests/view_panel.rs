@@ -8,17 +8,17 @@ use std::collections::HashMap;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use isophote_files::files::Existing;
-use isophote_host::view::document::{Document, Options};
-use isophote_host::view::look::Look;
-use isophote_host::view::reel::Reel;
-use isophote_host::view::scenery::{Scenery, Staging};
-use isophote_host::view::session::{Session, Wish};
-use isophote_host::view::settings::Settings;
-use isophote_host::view::ui;
-use isophote_host::view::value::Value;
 use isophote_loader::Library;
 use isophote_pictures::floats::{self, Layer, Picture, Precision};
 use isophote_scene::Scene;
+use isophote_window::document::{Document, Options};
+use isophote_window::look::Look;
+use isophote_window::reel::Reel;
+use isophote_window::scenery::{Scenery, Staging};
+use isophote_window::session::{Session, Wish};
+use isophote_window::settings::Settings;
+use isophote_window::ui;
+use isophote_window::value::Value;
 
 /// A session of all styles with a scene.
 fn session() -> Session {

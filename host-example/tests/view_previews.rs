@@ -8,13 +8,13 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 use egui::{Color32, ColorImage};
-use isophote_host::view::document::{Document, Options, reduce};
-use isophote_host::view::look::Look;
-use isophote_host::view::preview::picture::Picture;
-use isophote_host::view::preview::queue::Queue;
-use isophote_host::view::preview::render::{FINENESS, Order, Renderer};
-use isophote_host::view::preview::{Place, Previews};
 use isophote_loader::Library;
+use isophote_window::document::{Document, Options, reduce};
+use isophote_window::look::Look;
+use isophote_window::preview::picture::Picture;
+use isophote_window::preview::queue::Queue;
+use isophote_window::preview::render::{FINENESS, Order, Renderer};
+use isophote_window::preview::{Place, Previews};
 
 /// This only ends a test that hangs.
 const PATIENCE: Duration = Duration::from_secs(120);

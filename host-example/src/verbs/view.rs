@@ -6,24 +6,23 @@ use clap::Args;
 
 use super::shared::{LengthArgs, PrecisionArgs, ReadingArgs, parse_size};
 use super::staging::StagingArgs;
-use crate::view;
-use crate::view::document::kind::Kind;
-use crate::view::document::{self, Document};
-use crate::view::look::{Look, PLAIN};
-use crate::view::reel::Reel;
-use crate::view::scenery::{Lighting, Scenery, Staging};
-use crate::view::session::Session;
-use crate::view::settings::Settings;
 use isophote_files::error::{AtPlace, Result};
 use isophote_finishing::stylize::style::{Setting, Style};
 use isophote_loader::Library;
+use isophote_window::document::kind::Kind;
+use isophote_window::document::{self, Document};
+use isophote_window::look::{Look, PLAIN};
+use isophote_window::reel::Reel;
+use isophote_window::scenery::{Lighting, Scenery, Staging};
+use isophote_window::session::Session;
+use isophote_window::settings::Settings;
 
 /// The look of a window that was never open.
 const FIRST: &str = "cartoon";
 
 /// Options of `view`.
 #[derive(Args, Debug)]
-#[command(after_help = view::keys())]
+#[command(after_help = isophote_window::keys())]
 pub struct ViewArgs {
     /// A scene (.gltf, .glb or .obj), a picture (PNG, JPEG, TIFF, WebP, HDR or EXR), a sequence (shot.####.exr) or a video.
     /// Without one the window asks what to open.
@@ -74,7 +73,7 @@ pub fn run(args: &ViewArgs) -> Result<()> {
     if let Some(path) = &args.file {
         open(&mut session, path, args)?;
     }
-    view::show(session, args.size, args.report)
+    isophote_window::show(session, args.size, args.report)
 }
 
 /// Opens what was named, before there is a window.

@@ -3,8 +3,8 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use isophote_host::view::session::Session;
-use isophote_host::view::ui;
+use isophote_window::session::Session;
+use isophote_window::ui;
 
 /// Places of controls in a window of a size that shows a session: the same controls are laid out once more and found by their
 /// labels and roles.
