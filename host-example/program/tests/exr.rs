@@ -2,7 +2,7 @@
 //! crate's own reader, which the program does not use for this.
 
 mod support;
-#[path = "../exr-edit/tests/support/two_parts.rs"]
+#[path = "../../exr-edit/tests/support/two_parts.rs"]
 mod two_parts;
 
 use std::fs;

@@ -1,4 +1,10 @@
-//! The sample host: renders scenes, stylizes what it renders, and stylizes pictures.
+//! The program `isophote`: renders scenes, stylizes what it renders, and stylizes pictures.
+
+#![forbid(unsafe_code)]
+
+mod bench;
+mod cli;
+mod verbs;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -7,8 +13,9 @@ use clap::Parser;
 use clap::error::ErrorKind;
 use isophote_files::error::Error;
 use isophote_files::{limits, output};
-use isophote_host::cli::Cli;
 use isophote_loader::printable;
+
+use cli::Cli;
 use isophote_render::drivers;
 
 /// The program starts where the C library is older.
