@@ -201,3 +201,8 @@ pub fn checked<T>(device: &wgpu::Device, make: impl FnOnce() -> Result<T>) -> Re
 pub fn refused(error: isophote_loader::Error) -> Error {
     error.at("the plan", "choose another style")
 }
+
+/// The error of what cannot be, unless the program is wrong.
+pub fn mistaken(problem: String) -> Error {
+    Error::failure(problem, "this is a mistake in the program; please report it")
+}

@@ -1,8 +1,8 @@
 //! A plan of the library on the host's own device, with nothing but wgpu: **the example to copy**.
 //!
 //! The library says what is to be computed, as data: textures, compute passes, uniform bytes and shaders. The
-//! rest is up to the host, and all of it is here and in [`kernels`](crate::kernels), `textures.rs` and
-//! `uniforms.rs`:
+//! rest is up to the host, and all of it is here and in [`kernels`](crate::kernels), `passes.rs`, `textures.rs`
+//! and `uniforms.rs`:
 //!
 //! 1. [`Kernels`] compiles the shader of a kernel when a plan first names it.
 //! 2. [`PlanRunner::new`] makes the plan's textures and one buffer for all uniform blocks.
@@ -22,10 +22,11 @@ use std::ops::AddAssign;
 use std::sync::Arc;
 
 use crate::history::{self, Past, Rings};
-use crate::kernels::{Kernel, Kernels, checked, refused};
+use crate::kernels::{Kernels, mistaken, refused};
+use crate::passes::{ReadyPass, unbound};
 use crate::textures::{self, COPIED, Slot};
-use crate::uniforms::{Block, Layout, Uniforms};
-use isophote_files::error::{Error, Result};
+use crate::uniforms::{Layout, Uniforms};
+use isophote_files::error::Result;
 use isophote_loader::Plan;
 use isophote_loader::plan::Role;
 
@@ -59,24 +60,12 @@ pub struct PlanRunner {
     counts: Counts,
 }
 
-#[derive(Debug)]
-struct ReadyPass {
-    kernel: Kernel,
-    grid: Block,
-    params: Option<Block>,
-    /// Indices of the textures read and written.
-    textures: Vec<u32>,
-    workgroups: [u32; 3],
-    /// None until all textures are there; one for all frames, or as many as take turns.
-    groups: Vec<wgpu::BindGroup>,
-}
-
 impl PlanRunner {
     /// Compiles what `plan` needs and makes its textures, but for the inputs, which are the host's. `past` says what this
     /// and later plans read of frames before.
     ///
     /// # Errors
-    /// [`Error::Failure`] when the device refuses or has no memory.
+    /// [`Error::Failure`](isophote_files::error::Error::Failure) when the device refuses or has no memory.
     pub fn new(kernels: &Arc<Kernels>, plan: &Plan, past: Past) -> Result<Self> {
         let rings = Rings::new(&past);
         Self::build(kernels, plan, past, (Vec::new(), rings), Counts::default())
@@ -108,20 +97,12 @@ impl PlanRunner {
         let mut layout = Layout::new(device);
         let mut passes = Vec::new();
         for (index, pass) in (0..).zip(plan.passes().map_err(refused)?) {
-            let named: Vec<u32> = pass.inputs.iter().chain(pass.outputs).copied().collect();
-            if named.iter().any(|at| *at as usize >= wanted.len()) {
+            if pass.inputs.iter().chain(pass.outputs).any(|at| *at as usize >= wanted.len()) {
                 return Err(mistaken(format!("kernel '{}' names an unknown texture", pass.kernel)));
             }
             let (kernel, is_new) = kernels.get(plan, index, &pass, &wanted)?;
             counts.objects += u64::from(is_new);
-            passes.push(ReadyPass {
-                kernel,
-                grid: layout.place(pass.grid),
-                params: Some(pass.params).filter(|p| !p.is_empty()).map(|params| layout.place(params)),
-                textures: named,
-                workgroups: pass.workgroups,
-                groups: Vec::new(),
-            });
+            passes.push(ReadyPass::new(kernel, &pass, &mut layout));
         }
         let uniforms = Uniforms::new(device, &layout)?;
         counts.objects += 1;
@@ -135,14 +116,12 @@ impl PlanRunner {
     /// none where the bytes are the same.
     ///
     /// # Errors
-    /// [`Error::Failure`] when the library fails.
+    /// [`Error::Failure`](isophote_files::error::Error::Failure) when the library fails.
     pub fn repack(&mut self, plan: &Plan) -> Result<()> {
         let mut is_changed = false;
         for (ready, pass) in self.passes.iter().zip(plan.passes().map_err(refused)?) {
             is_changed |= self.uniforms.put(ready.grid, pass.grid);
-            if let Some(params) = ready.params {
-                is_changed |= self.uniforms.put(params, pass.params);
-            }
+            is_changed |= ready.params.is_some_and(|params| self.uniforms.put(params, pass.params));
         }
         if is_changed {
             self.uniforms.upload(self.kernels.queue());
@@ -158,7 +137,7 @@ impl PlanRunner {
     /// its first texel is the window's.
     ///
     /// # Errors
-    /// [`Error::Failure`] for an input that is missing or too small, and when the device refuses a view.
+    /// [`Error::Failure`](isophote_files::error::Error::Failure) for an input that is missing or too small, and when the device refuses a view.
     pub fn bind(&mut self, inputs: &[(&str, &wgpu::TextureView)]) -> Result<()> {
         let given = |name: &str| {
             let found = inputs.iter().find(|(given, _)| *given == name).map(|(_, view)| *view);
@@ -196,15 +175,7 @@ impl PlanRunner {
     /// Makes the bind groups of passes whose textures are others now.
     fn bind_passes(&mut self) -> Result<()> {
         for pass in self.passes.iter_mut().filter(|p| p.groups.is_empty()) {
-            let slots = pass.textures.iter().filter_map(|index| self.textures.get(*index as usize));
-            let turns = slots.map(|slot| slot.views.len()).max().unwrap_or(1);
-            for turn in 0..turns {
-                let group = checked(self.kernels.device(), || {
-                    bind_group(&self.kernels, pass, &self.uniforms, &self.textures, turn)
-                })?;
-                pass.groups.push(group);
-                self.counts.objects += 1;
-            }
+            self.counts.objects += pass.bind(&self.kernels, &self.uniforms, &self.textures)?;
         }
         Ok(())
     }
@@ -212,7 +183,7 @@ impl PlanRunner {
     /// What the plan computes, until [`PlanRunner::rebuild`]; it can be sampled and copied from.
     ///
     /// # Errors
-    /// [`Error::Failure`] when the plan has no output.
+    /// [`Error::Failure`](isophote_files::error::Error::Failure) when the plan has no output.
     pub fn output(&self) -> Result<&wgpu::TextureView> {
         let mut outputs = self.textures.iter().filter(|slot| slot.role == Role::Output);
         let output = outputs.find(|slot| !history::is_stage(&slot.name));
@@ -222,7 +193,7 @@ impl PlanRunner {
     /// Records all passes of a frame; the next call is of the next one.
     ///
     /// # Errors
-    /// [`Error::Failure`] when the inputs are not bound.
+    /// [`Error::Failure`](isophote_files::error::Error::Failure) when the inputs are not bound.
     pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
         self.encode_some(encoder, 0, usize::MAX).map(|_| ())
     }
@@ -254,16 +225,10 @@ impl PlanRunner {
     /// Records the pass of an index alone, for hosts that measure each.
     ///
     /// # Errors
-    /// [`Error::Failure`] when there is no such pass, or its inputs are not bound.
+    /// [`Error::Failure`](isophote_files::error::Error::Failure) when there is no such pass, or its inputs are not bound.
     pub fn encode_pass(&self, compute: &mut wgpu::ComputePass<'_>, index: usize) -> Result<()> {
         let pass = self.passes.get(index).ok_or_else(unbound)?;
-        let turn = if pass.groups.len() == self.rings.turns() { self.rings.turn() } else { 0 };
-        let group = pass.groups.get(turn).ok_or_else(unbound)?;
-        let [x, y, z] = pass.workgroups;
-        compute.set_pipeline(&pass.kernel.pipeline);
-        compute.set_bind_group(0, group, &[]);
-        compute.dispatch_workgroups(x, y, z);
-        Ok(())
+        pass.encode(compute, if pass.groups.len() == self.rings.turns() { self.rings.turn() } else { 0 })
     }
 
     /// The kernels of its device.
@@ -275,41 +240,4 @@ impl PlanRunner {
     pub fn counts(&self) -> Counts {
         self.counts
     }
-}
-
-fn bind_group(
-    kernels: &Kernels,
-    pass: &ReadyPass,
-    uniforms: &Uniforms,
-    textures: &[Slot],
-    turn: usize,
-) -> Result<wgpu::BindGroup> {
-    let blocks = [(0, pass.grid)].into_iter().chain(pass.params.map(|block| (1, block)));
-    let mut entries: Vec<wgpu::BindGroupEntry<'_>> = blocks
-        .map(|(binding, block)| wgpu::BindGroupEntry { binding, resource: uniforms.binding(block) })
-        .collect();
-    for (binding, index) in (2..).zip(&pass.textures) {
-        let slot = textures.get(*index as usize).ok_or_else(unbound)?;
-        let view = slot.views.get(turn).or(slot.views.first()).ok_or_else(unbound)?;
-        entries.push(wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) });
-    }
-    if let Some(binding) = pass.kernel.sampler {
-        entries.push(wgpu::BindGroupEntry {
-            binding,
-            resource: wgpu::BindingResource::Sampler(kernels.sampler()),
-        });
-    }
-    Ok(kernels.device().create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("pass of a plan"),
-        layout: &pass.kernel.layout,
-        entries: &entries,
-    }))
-}
-
-fn unbound() -> Error {
-    mistaken("a pass is to be recorded before its textures are bound".into())
-}
-
-fn mistaken(problem: String) -> Error {
-    Error::failure(problem, "this is a mistake in the program; please report it")
 }

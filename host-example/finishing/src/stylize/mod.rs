@@ -15,34 +15,22 @@ pub mod title;
 use std::sync::Arc;
 
 use self::style::{Setting, Style};
+use isophote_example::frame_runner::{FrameRunner, Named};
+use isophote_example::guides;
 use isophote_example::history::Past;
 use isophote_example::kernels::Kernels;
-use isophote_example::plan_runner::{Counts, PlanRunner};
+use isophote_example::plan_runner::Counts;
 use isophote_files::error::{AtPlace, Result};
-use isophote_loader::abi::{
-    ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
-    ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_LINEAR, IsophoteHistory, IsophoteRequest,
-};
+use isophote_loader::abi::IsophoteRequest;
 use isophote_loader::catalogue::Kind;
-use isophote_loader::plan::{Change, Role};
 use isophote_loader::{Library, Plan};
 use isophote_render::targets::{Target, Targets};
 
 /// A style for frames of one size, ready to be recorded.
 #[derive(Debug)]
 pub struct Stylizer {
-    library: Library,
     style: Style,
-    request: IsophoteRequest,
-    plan: Plan,
-    /// What plans read of frames before, once enough are known.
-    past: Past,
-    /// Frames before the next one that were recorded, at most those that the style depends on.
-    known: usize,
-    /// How many of them the plan reads.
-    planned: usize,
-    runner: PlanRunner,
-    output: wgpu::TextureView,
+    frames: FrameRunner,
     edited: bool,
 }
 
@@ -67,17 +55,13 @@ impl Stylizer {
         style: Style,
         request: IsophoteRequest,
     ) -> Result<Self> {
-        let past = style.past(library, &request)?;
-        let plan = style.plan(library, &request, 0)?;
-        let runner = PlanRunner::new(kernels, &plan, past.clone())?;
-        let output = runner.output()?.clone();
-        let library = library.clone();
-        Ok(Self { library, style, request, plan, past, known: 0, planned: 0, runner, output, edited: false })
+        let frames = FrameRunner::new(kernels, library, style.named(), request)?;
+        Ok(Self { style, frames, edited: false })
     }
 
     /// Frames before its own that a frame depends on.
     pub fn depth(&self) -> usize {
-        self.past.frames
+        self.frames.depth()
     }
 
     /// Whether the renderer must [add rest positions](isophote_render::renderer::Renderer::add_rest_positions) before targets are bound.
@@ -90,7 +74,7 @@ impl Stylizer {
 
     /// Takes the next frame for the first: those before are of another shot.
     pub fn forget(&mut self) {
-        self.known = 0;
+        self.frames.forget();
     }
 
     /// Whether the output is a colour (linear Rec.709, premultiplied alpha, `Rgba32Float`) or a scalar
@@ -102,7 +86,7 @@ impl Stylizer {
     /// What [`Stylizer::encode`] writes. Another one after [`Stylizer::resize`], and after
     /// [`Stylizer::update`] when that says so.
     pub fn output(&self) -> &wgpu::TextureView {
-        &self.output
+        self.frames.output()
     }
 
     /// Sets a parameter; it takes effect with the next [`Stylizer::update`].
@@ -121,8 +105,8 @@ impl Stylizer {
     /// # Errors
     /// As [`Style::at_frame`].
     pub fn at_frame(&mut self, frame: i64) -> Result<()> {
-        self.edited |= self.style.at_frame(frame)? || self.request.frame != frame;
-        self.request.frame = frame;
+        self.edited |= self.style.at_frame(frame)? || self.frames.request().frame != frame;
+        self.frames.number(frame);
         Ok(())
     }
 
@@ -133,35 +117,7 @@ impl Stylizer {
     /// [`isophote_files::error::Error::Failure`] when the device refuses; the style must then be made anew.
     pub fn update(&mut self) -> Result<bool> {
         let is_edited = std::mem::take(&mut self.edited);
-        if is_edited {
-            let past = self.style.past(&self.library, &self.request)?;
-            if past != self.past {
-                (self.past, self.known) = (past, 0);
-                self.replan(0)?;
-                return Ok(true);
-            }
-        }
-        if self.known != self.planned {
-            self.replan(self.known)?;
-            return Ok(true);
-        }
-        if !is_edited {
-            return Ok(false);
-        }
-        let refused = |e: isophote_loader::Error| e.at(&self.style.name, "choose another value");
-        if self.plan.update(&self.style.graph, &self.request).map_err(refused)? == Change::Uniforms {
-            self.runner.repack(&self.plan)?;
-            return Ok(false);
-        }
-        self.rebuild()?;
-        Ok(true)
-    }
-
-    /// Plans for so many known frames before.
-    fn replan(&mut self, known: usize) -> Result<()> {
-        self.plan = self.style.plan(&self.library, &self.request, known)?;
-        self.planned = known;
-        self.rebuild()
+        self.frames.update(self.style.named(), is_edited)
     }
 
     /// Changes the size of the frames; [`Stylizer::bind`] must be called then.
@@ -170,7 +126,7 @@ impl Stylizer {
     /// [`isophote_files::error::Error::Input`] for impossible sizes, [`isophote_files::error::Error::Failure`] when the device refuses; the style must then be
     /// made anew.
     pub fn resize(&mut self, size: (u32, u32)) -> Result<()> {
-        self.resize_at_scale(size, self.request.scale)
+        self.resize_at_scale(size, self.frames.request().scale)
     }
 
     /// As [`Stylizer::resize`], where `scale` is the size over that of the full picture.
@@ -178,15 +134,10 @@ impl Stylizer {
     /// # Errors
     /// As [`Stylizer::resize`].
     pub fn resize_at_scale(&mut self, size: (u32, u32), scale: f32) -> Result<()> {
-        let request = IsophoteRequest { width: size.0, height: size.1, scale, ..self.request };
-        if request == self.request {
-            return Ok(());
+        if self.frames.resize(self.style.named(), size, scale)? {
+            self.edited = false;
         }
-        self.past = self.style.past(&self.library, &request)?;
-        self.request = request;
-        self.edited = false;
-        self.forget();
-        self.replan(0)
+        Ok(())
     }
 
     /// Compiles what later frames need too, where they look at those before, so that none of them waits for it.
@@ -194,15 +145,7 @@ impl Stylizer {
     /// # Errors
     /// [`isophote_files::error::Error::Failure`] when the device refuses.
     pub fn compile_all(&self) -> Result<()> {
-        (1..=self.past.frames).try_for_each(|known| {
-            self.runner.kernels().compile(&self.style.plan(&self.library, &self.request, known)?)
-        })
-    }
-
-    fn rebuild(&mut self) -> Result<()> {
-        self.runner.rebuild(&self.plan, self.past.clone())?;
-        self.output = self.runner.output()?.clone();
-        Ok(())
+        self.frames.compile_all(self.style.named())
     }
 
     /// Reads these targets from now on, with the colour that is display-referred, which must have the size given
@@ -227,21 +170,11 @@ impl Stylizer {
     /// # Errors
     /// As [`Stylizer::bind`].
     pub fn bind_inputs(&mut self, inputs: &[(&str, &wgpu::TextureView)]) -> Result<()> {
-        self.runner.bind(inputs)
+        self.frames.bind(inputs)
     }
 
     fn bind_with(&mut self, color: &Target, targets: &Targets) -> Result<()> {
-        // Where nobody wants rest positions no plan reads them, and anything may stand for them.
-        let rest = targets.rest.as_ref().unwrap_or(&targets.normal);
-        let inputs = [
-            ("color", &color.view),
-            ("normal", &targets.normal.view),
-            ("depth", &targets.depth.view),
-            ("object_id", &targets.object_id.view),
-            ("motion", &targets.motion.view),
-            ("rest_position", &rest.view),
-        ];
-        self.runner.bind(&inputs)
+        self.frames.bind(&guides::inputs(color, targets))
     }
 
     /// Records the whole style on a frame; the next call is of the next one. Nothing is created and nothing submitted.
@@ -249,9 +182,7 @@ impl Stylizer {
     /// # Errors
     /// [`isophote_files::error::Error::Failure`] when nothing is bound.
     pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
-        self.runner.encode(encoder)?;
-        self.known = (self.planned + 1).min(self.past.frames);
-        Ok(())
+        self.frames.encode(encoder)
     }
 
     /// As [`Stylizer::encode`], so many passes from one on; says whether the last was among them.
@@ -264,58 +195,40 @@ impl Stylizer {
         from: usize,
         count: usize,
     ) -> Result<bool> {
-        let is_whole = self.runner.encode_some(encoder, from, count)?;
-        if is_whole {
-            self.known = (self.planned + 1).min(self.past.frames);
-        }
-        Ok(is_whole)
+        self.frames.encode_some(encoder, from, count)
     }
 
     /// The passes with their textures.
     pub fn plan(&self) -> &Plan {
-        &self.plan
+        self.frames.plan()
     }
 
     /// What was made on the device for this style so far.
     pub fn counts(&self) -> Counts {
-        self.runner.counts()
+        self.frames.counts()
     }
 }
 
 impl Style {
+    /// Graph with its name.
+    fn named(&self) -> Named<'_> {
+        Named { name: &self.name, graph: &self.graph }
+    }
+
     /// The plan of a frame where so many frames before it are known.
     ///
     /// # Errors
-    /// [`isophote_files::error::Error::Input`] when an input that the style needs is open.
+    /// As [`Named::plan`].
     pub fn plan(&self, library: &Library, request: &IsophoteRequest, known: usize) -> Result<Plan> {
-        let history = IsophoteHistory { past: known as u32, max_motion: 0.0 };
-        let plan = match library.frames(&self.graph) {
-            Ok([0, 0]) => self.graph.plan(request),
-            Ok(_) => library.plan_in_order(&self.graph, request, &history),
-            Err(refusal) => Err(refusal),
-        };
-        plan.map_err(|e| {
-            e.at(
-                &self.name,
-                "choose a style whose inputs are color, normal, depth, object_id, motion or rest_position, or another size",
-            )
-        })
+        self.named().plan(library, request, known)
     }
 
     /// What frames read of those before, where all are known.
     ///
     /// # Errors
-    /// As [`Style::plan`].
+    /// As [`Named::plan`].
     pub fn past(&self, library: &Library, request: &IsophoteRequest) -> Result<Past> {
-        let refused = |e: isophote_loader::Error| e.at(&self.name, "choose another style");
-        let [frames, _] = library.frames(&self.graph).map_err(refused)?;
-        if frames == 0 {
-            return Ok(Past::default());
-        }
-        let plan = self.plan(library, request, frames as usize)?;
-        let textures = plan.textures().map_err(refused)?;
-        let inputs = textures.iter().filter(|t| t.role == Role::Input).map(|t| t.name);
-        Ok(Past::of(inputs))
+        self.named().past(library, request)
     }
 }
 
@@ -324,14 +237,6 @@ impl Style {
 /// # Errors
 /// [`isophote_files::error::Error::Input`] for impossible sizes.
 pub fn frame_request(library: &Library, style: &Style, size: (u32, u32)) -> Result<IsophoteRequest> {
-    let request = style.request(library, size).map_err(|e| e.at("--size", "choose another size"))?;
-    Ok(IsophoteRequest {
-        space: ISOPHOTE_SPACE_LINEAR,
-        guides: ISOPHOTE_GUIDE_NORMAL
-            | ISOPHOTE_GUIDE_DEPTH
-            | ISOPHOTE_GUIDE_OBJECT_ID
-            | ISOPHOTE_GUIDE_MOTION
-            | ISOPHOTE_GUIDE_REST_POSITION,
-        ..request
-    })
+    guides::request(library, size, style.lengths.reference_height())
+        .map_err(|e| e.at("--size", "choose another size"))
 }
