@@ -6,6 +6,7 @@
 //! | [`video`] | videos, frame by frame through ffmpeg |
 //! | [`sheet`] | contact sheets |
 //! | [`shot`] | frames of a scene, rendered and stylized |
+//! | [`staging`] | options of scenes, as command lines have them |
 //! | [`stylize`] | styles, presets and looks, and what stylizes a frame on the renderer's device |
 
 #![forbid(unsafe_code)]
@@ -13,5 +14,6 @@
 pub mod apply;
 pub mod sheet;
 pub mod shot;
+pub mod staging;
 pub mod stylize;
 pub mod video;

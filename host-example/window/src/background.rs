@@ -269,7 +269,7 @@ impl Background {
         let started = preset.and_then(|preset| {
             let mut job = export::Job::new(plan.kind, file, Path::new(&plan.path), preset);
             (job.frames, job.turntable) = (plan.frames(), plan.what == What::Turntable);
-            let mut words = match &session.reel {
+            let mut words: Vec<String> = match &session.reel {
                 Some(reel) => {
                     job.rate = reel.rate;
                     command::selection(reel)
@@ -277,22 +277,14 @@ impl Background {
                 None => {
                     let [width, height] = plan.size;
                     let size = ["--size".to_owned(), format!("{width}x{height}")];
-                    size.into_iter().chain(command::staging(session)).collect()
+                    let is_turntable = plan.what == What::Turntable;
+                    size.into_iter().chain(command::staging(session, is_turntable)).collect()
                 }
             };
             match plan.what {
-                // It goes around by itself, wherever the file's camera stands.
-                What::Turntable => {
-                    if let Some(at) = words.iter().position(|word| word == "--camera") {
-                        words.drain(at..at + 2);
-                    }
-                }
-                What::Animation => {
-                    words.push("--animate".into());
-                    words.extend(command::animation(session));
-                }
+                What::Animation => words.extend(command::animation(session)),
                 What::Picture if session.reel.is_none() => words.extend(command::moment(session)),
-                What::Picture | What::Frames => {}
+                What::Picture | What::Turntable | What::Frames => {}
             }
             words.extend(command::precision(session));
             job.arguments = words.into_iter().map(Into::into).collect();

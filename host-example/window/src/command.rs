@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use super::reel::Reel;
+use super::scenery::Scenery;
 use super::session::Session;
+use isophote_finishing::staging::{Behind, MotionArgs, StagingArgs};
 use isophote_finishing::stylize::lengths::Lengths;
 use isophote_finishing::stylize::precision::Precision;
-use isophote_pictures::space::srgb_encode;
 use isophote_render::background::Background;
 use isophote_scene::floor;
 
@@ -26,7 +27,7 @@ pub fn line(session: &Session) -> String {
             words.extend(["render".to_owned(), input, "picture.png".to_owned()]);
             let (width, height) = session.nominal_size();
             words.extend(["--size".to_owned(), format!("{width}x{height}")]);
-            words.extend(staging(session).iter().chain(&moment(session)).map(|word| quoted(word)));
+            words.extend(staging(session, false).iter().chain(&moment(session)).map(|word| quoted(word)));
             if !look.is_plain() {
                 words.push(format!("--style {style}"));
             }
@@ -81,65 +82,59 @@ pub fn moment(session: &Session) -> Vec<String> {
     else {
         return Vec::new();
     };
-    let words = ["--animate".into(), "--start".into(), format!("{:.4}", scenery.time().0)];
-    words.into_iter().chain(animation(session)).collect()
+    MotionArgs { start: scenery.time().0, ..motion(scenery) }.words()
 }
 
-/// The option of `render` for an animation that is not the first.
+/// Options of `render` that play the animation from its start.
 pub fn animation(session: &Session) -> Vec<String> {
-    let index = session.scenery.as_ref().map_or(0, |scenery| scenery.animation);
-    if index == 0 { Vec::new() } else { vec!["--animation".into(), index.to_string()] }
+    session.scenery.as_ref().map_or_else(Vec::new, |scenery| motion(scenery).words())
 }
 
-/// Options of `render` for camera and light, where they are not as they are without being asked for.
-pub fn staging(session: &Session) -> Vec<String> {
+fn motion(scenery: &Scenery) -> MotionArgs {
+    // The first plays where none is named.
+    let animation = Some(scenery.animation).filter(|index| *index > 0).map(|index| index.to_string());
+    MotionArgs { animate: true, animation, start: 0.0 }
+}
+
+/// Options of `render` for the file, camera and light, where they are not as they are without being asked for. A turntable
+/// goes around by itself, wherever the file's camera stands.
+pub fn staging(session: &Session, is_turntable: bool) -> Vec<String> {
     let [_, area] = session.viewport.halves();
     let Some(scenery) = &session.scenery else { return Vec::new() };
-    let mut words = scenery.reading.clone();
-    let mut add = |option: &str, value: String| words.extend([option.to_owned(), value]);
+    let mut staging = StagingArgs {
+        light: scenery.sun_from_here(),
+        exposure: scenery.lighting.exposure,
+        background: behind(scenery),
+        ..StagingArgs::default()
+    };
     match scenery.camera() {
         Some(node) => {
             let index = scenery.cameras().into_iter().position(|(known, _)| known == node);
-            if let Some(index) = index.filter(|index| *index > 0) {
-                add("--camera", index.to_string());
-            }
+            let index = index.filter(|index| *index > 0 && !is_turntable);
+            staging.camera = index.map(|index| index.to_string());
         }
         None => {
             let framed = scenery.framed(area.width / area.height);
-            add("--azimuth", format!("{:.3}", framed.azimuth));
-            add("--elevation", format!("{:.3}", framed.elevation));
-            add("--distance", format!("{:.4}", framed.distance));
-            if let Some([x, y, z]) = framed.target.map(|target| target.to_array()) {
-                add("--target", format!("{x},{y},{z}"));
-            }
-            if let Some(fov) = framed.fov {
-                add("--fov", fov.to_string());
-            }
+            staging.azimuth = Some(framed.azimuth);
+            staging.elevation = Some(framed.elevation);
+            staging.distance = Some(framed.distance);
+            (staging.target, staging.fov) = (framed.target, framed.fov);
         }
-    }
-    if let Some(sun) = scenery.sun_from_here() {
-        add("--light", format!("{:.2},{:.2}", sun.azimuth.to_degrees(), sun.elevation.to_degrees()));
-    }
-    if scenery.lighting.exposure != 0.0 {
-        add("--exposure", format!("{:.3}", scenery.lighting.exposure));
-    }
-    match &scenery.lighting.background {
-        Background::Transparent => add("--background", "transparent".into()),
-        Background::Color(color) => {
-            let [r, g, b] = color.to_array().map(|v| (srgb_encode(v) * 255.0).round() as u8);
-            add("--background", format!("#{r:02x}{g:02x}{b:02x}"));
-        }
-        Background::Environment(_) => {
-            if let Some(file) = &scenery.lighting.surroundings {
-                add("--background", file.to_string_lossy().into_owned());
-            }
-        }
-        Background::Sky => {}
     }
     if scenery.ground != floor::lacks_floor(&scenery.scene) {
-        words.push(if scenery.ground { "--ground".into() } else { "--no-ground".into() });
+        (staging.ground, staging.no_ground) = (scenery.ground, !scenery.ground);
     }
-    words
+    [scenery.reading.words(), staging.words()].concat()
+}
+
+/// What is behind the scene, as it is written.
+fn behind(scenery: &Scenery) -> Behind {
+    match (&scenery.lighting.background, &scenery.lighting.surroundings) {
+        (Background::Transparent, _) => Behind::Transparent,
+        (Background::Color(color), _) => Behind::Color(*color),
+        (Background::Environment(_), Some(file)) => Behind::File(file.clone()),
+        (Background::Environment(_), None) | (Background::Sky, _) => Behind::Sky,
+    }
 }
 
 /// A path as a shell takes it, and the program not for an option.

@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use glam::Vec3;
 
+use isophote_finishing::staging::ReadingArgs;
 use isophote_render::background::Background;
 use isophote_render::look::Look as Light;
 use isophote_scene::Scene;
@@ -25,7 +26,7 @@ pub struct Staging {
     /// Whether the scene casts its shadow on an invisible ground.
     pub ground: bool,
     /// Options that the file was read with.
-    pub reading: Vec<String>,
+    pub reading: ReadingArgs,
 }
 
 /// Where a camera stands, as the options of `render` say it.
@@ -84,7 +85,7 @@ pub struct Scenery {
     /// Whether the scene casts its shadow on an invisible ground.
     pub ground: bool,
     /// Options that the file was read with.
-    pub reading: Vec<String>,
+    pub reading: ReadingArgs,
     /// Whether time passes.
     pub playing: bool,
     /// Which animation plays.

@@ -11,5 +11,4 @@ pub mod preset;
 pub mod render;
 mod shared;
 pub mod sheet;
-mod staging;
 pub mod view;

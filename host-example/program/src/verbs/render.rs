@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::shared::{ForceArgs, LengthArgs, PrecisionArgs, SceneArgs, parse_size};
-use super::staging::StagingArgs;
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::frames::{FrameList, Pattern};
@@ -16,6 +15,7 @@ use isophote_files::stop::Stop;
 use isophote_finishing::apply::report::{Outcome, Report};
 use isophote_finishing::apply::tasks::Task;
 use isophote_finishing::shot::{Options, Shot};
+use isophote_finishing::staging::{MotionArgs, StagingArgs};
 use isophote_finishing::stylize::style::{Setting, Style};
 use isophote_finishing::video::{self, Film};
 use isophote_loader::Library;
@@ -56,15 +56,8 @@ pub struct RenderArgs {
     /// Turns the camera once around the scene over all frames.
     #[arg(long, conflicts_with = "camera")]
     turntable: bool,
-    /// Plays the file's animation, in a loop.
-    #[arg(long)]
-    animate: bool,
-    /// Which animation plays, by name or by number from 0; the first if not given.
-    #[arg(long, value_name = "NAME")]
-    animation: Option<String>,
-    /// Time of frame 1 in the animation in seconds.
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true)]
-    start: f32,
+    #[command(flatten)]
+    motion: MotionArgs,
     /// Frames per second of the animation, and of a video.
     #[arg(long, value_name = "N", default_value_t = 24.0)]
     fps: f32,
@@ -258,7 +251,7 @@ impl RenderArgs {
                 "choose a style with --style",
             ));
         }
-        if !self.fps.is_finite() || self.fps <= 0.0 || !self.start.is_finite() {
+        if !self.fps.is_finite() || self.fps <= 0.0 || !self.motion.start.is_finite() {
             return Err(Error::input(
                 "--fps, --start",
                 "must be finite, and frames per second above 0",
@@ -278,39 +271,17 @@ impl RenderArgs {
             range: (first, last.abs_diff(first) + 1),
             turntable: self.turntable,
             framing: self.staging.framing(),
-            camera: self.staging.camera(scene)?,
-            light: self.staging.light(),
-            exposure: self.staging.exposure(),
-            background: self.staging.background()?,
-            ground: self.staging.ground(scene),
-            animation: choose_animation(self, scene)?,
-            start: self.start,
+            camera: self.staging.find_camera(scene)?,
+            light: self.staging.light,
+            exposure: self.staging.exposure,
+            background: self.staging.read_background()?,
+            ground: self.staging.has_ground(scene),
+            animation: self.motion.choose(&self.scene.scene, scene)?,
+            start: self.motion.start,
             fps: self.fps,
             scene_referred: is_exr && !self.tone_mapped,
             rest_positions: is_exr,
         })
-    }
-}
-
-fn choose_animation(args: &RenderArgs, scene: &Scene) -> Result<Option<usize>> {
-    match &args.animation {
-        Some(name) => {
-            let known: Vec<&str> = scene.animations.iter().map(|a| a.name.as_str()).collect();
-            scene.find_animation(name).map(Some).ok_or_else(|| {
-                let fix = if known.is_empty() {
-                    "the scene has no animations".to_owned()
-                } else {
-                    format!("choose from {}", known.join(", "))
-                };
-                Error::input("--animation", format!("'{name}' is not an animation of the scene"), fix)
-            })
-        }
-        None if args.animate && scene.animations.is_empty() => Err(Error::file(
-            &args.scene.scene,
-            "has no animation to play",
-            "leave out --animate or use --turntable",
-        )),
-        None => Ok(args.animate.then_some(0)),
     }
 }
 

@@ -1,13 +1,13 @@
 //! Arguments that several verbs have.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use isophote_files::error::Result;
 use isophote_files::files::Existing;
-use isophote_files::output;
 use isophote_files::replacing::Consent;
+use isophote_finishing::staging::ReadingArgs;
 use isophote_finishing::stylize::lengths::Lengths;
 use isophote_finishing::stylize::precision::Precision;
 use isophote_finishing::stylize::style::Style;
@@ -24,26 +24,6 @@ pub struct SceneArgs {
     pub reading: ReadingArgs,
 }
 
-/// How scenes are read.
-#[derive(Args, Debug)]
-pub struct ReadingArgs {
-    /// Image that colours an OBJ without textures.
-    #[arg(long, value_name = "FILE")]
-    pub texture: Option<PathBuf>,
-    /// Which axis of the file points up: z turns scenes of programs that have it so.
-    #[arg(long, value_name = "AXIS", default_value = "y")]
-    pub up: Up,
-}
-
-/// An axis that points up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Up {
-    /// As glTF has it.
-    Y,
-    /// As CAD programs and scanners have it.
-    Z,
-}
-
 impl SceneArgs {
     /// Loads the scene and prints its warnings.
     ///
@@ -51,31 +31,6 @@ impl SceneArgs {
     /// As [`Scene::load`].
     pub fn load(&self) -> Result<Scene> {
         self.reading.load(&self.scene)
-    }
-}
-
-impl ReadingArgs {
-    /// The options as they are written.
-    pub fn words(&self) -> Vec<String> {
-        let texture =
-            self.texture.iter().flat_map(|file| ["--texture".to_owned(), file.display().to_string()]);
-        let up = (self.up == Up::Z).then(|| ["--up", "z"].map(str::to_owned));
-        texture.chain(up.into_iter().flatten()).collect()
-    }
-
-    /// Loads a scene and prints its warnings.
-    ///
-    /// # Errors
-    /// As [`Scene::load`].
-    pub fn load(&self, path: &Path) -> Result<Scene> {
-        let mut scene = Scene::load(path, self.texture.as_deref())?;
-        if self.up == Up::Z {
-            scene.turn_z_up();
-        }
-        for warning in &scene.warnings {
-            output::warn(format_args!("{}: {warning}", path.display()));
-        }
-        Ok(scene)
     }
 }
 

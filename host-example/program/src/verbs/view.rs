@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::shared::{LengthArgs, PrecisionArgs, ReadingArgs, parse_size};
-use super::staging::StagingArgs;
+use super::shared::{LengthArgs, PrecisionArgs, parse_size};
 use isophote_files::error::{AtPlace, Result};
+use isophote_finishing::staging::{ReadingArgs, StagingArgs};
 use isophote_finishing::stylize::style::{Setting, Style};
 use isophote_loader::Library;
 use isophote_window::document::kind::Kind;
@@ -86,15 +86,15 @@ fn open(session: &mut Session, path: &Path, args: &ViewArgs) -> Result<()> {
     let scene = args.reading.load(path)?;
     let staging = Staging {
         framing: args.staging.framing(),
-        camera: args.staging.camera(&scene)?,
+        camera: args.staging.find_camera(&scene)?,
         lighting: Lighting {
-            sun: args.staging.light(),
-            exposure: args.staging.exposure(),
-            background: args.staging.background()?,
+            sun: args.staging.light,
+            exposure: args.staging.exposure,
+            background: args.staging.read_background()?,
             surroundings: args.staging.surroundings(),
         },
-        ground: args.staging.ground(&scene),
-        reading: args.reading.words(),
+        ground: args.staging.has_ground(&scene),
+        reading: args.reading.clone(),
     };
     let (width, height) = args.size.or(session.settings.window).unwrap_or((16, 10));
     let scenery = Scenery::new(scene, staging, width as f32 / height as f32);
