@@ -2,8 +2,6 @@
 //! crate's own reader, which the program does not use for this.
 
 mod support;
-#[path = "../../exr-edit/tests/support/two_parts.rs"]
-mod two_parts;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,6 +10,7 @@ use std::time::{Duration, Instant};
 use exr::prelude::*;
 use isophote_loader::{Control, Input, Library, abi};
 use isophote_pictures::pixels::{Pixels, Precision, Samples};
+use isophote_tests::two_parts;
 
 use support::{IN_PIXELS, assets, fails, folder, isophote, listing, succeeds};
 

@@ -1,4 +1,4 @@
-//! A file of two parts, of which the second may be under any compression: its chunks are bytes that nobody reads.
+//! An EXR file of two parts, of which the second may be under any compression: its chunks are bytes that nobody reads.
 
 /// Columns and rows of both parts.
 pub const SIZE: (usize, usize) = (5, 300);
