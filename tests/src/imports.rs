@@ -7,7 +7,7 @@
 
 mod graph;
 mod modules;
-mod tokens;
+pub(crate) mod tokens;
 
 use graph::Imports;
 use std::path::{Path, PathBuf};
@@ -19,11 +19,25 @@ use std::path::{Path, PathBuf};
 /// When a file cannot be read.
 pub fn circles(root: &Path) -> Vec<String> {
     let root = root.canonicalize().unwrap();
+    all(&root).circles(&root)
+}
+
+/// Imports of files in one folder below `root` from files in another, as `file imports from file`.
+///
+/// # Panics
+/// When a file cannot be read.
+pub fn between(root: &Path, from: &str, to: &str) -> Vec<String> {
+    let root = root.canonicalize().unwrap();
+    all(&root).between(&root, from, to)
+}
+
+/// Imports of all packages below `root`.
+fn all(root: &Path) -> Imports {
     let mut imports = Imports::default();
-    for package in packages(&root) {
+    for package in packages(root) {
         modules::read_package(&package, &mut imports);
     }
-    imports.circles(&root)
+    imports
 }
 
 /// Folders with a `Cargo.toml` that describes a package, without build results.

@@ -1,6 +1,6 @@
 //! No two files import each other, directly or around a circle.
 
-use isophote_tests::imports::circles;
+use isophote_tests::imports::{between, circles};
 use std::path::Path;
 
 #[test]
@@ -11,6 +11,30 @@ fn no_two_files_import_each_other() {
         "files import each other:\n{}",
         circles.iter().map(|c| format!("{c}\n")).collect::<String>()
     );
+}
+
+#[test]
+fn rooms_of_the_library_import_only_what_stands_below_them() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let between = |from: &str, to: &str| {
+        let [from, to] = [from, to].map(|room| format!("nodes/library/src/{room}"));
+        between(&root, &from, &to)
+    };
+    // Each with what may import it, and never the other way round.
+    let rooms = ["kernels/simd", "kernels/shared", "kernels/trace", "stages", "nodes"];
+    for (at, above) in rooms.iter().enumerate() {
+        let below = &rooms[..at];
+        assert!(
+            at == 0 || below.iter().any(|room| !between(above, room).is_empty()),
+            "{above} imports nothing"
+        );
+        for room in below {
+            let wrong = between(room, above);
+            assert!(wrong.is_empty(), "{room} stands below {above}:\n{}", wrong.join("\n"));
+        }
+    }
+    let wrong = between("nodes", "nodes");
+    assert!(wrong.is_empty(), "nodes import stages and kernels, never each other:\n{}", wrong.join("\n"));
 }
 
 /// Circles of a package with these files.

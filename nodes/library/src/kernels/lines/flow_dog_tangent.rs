@@ -11,8 +11,8 @@ use crate::kernels::shared::sampling::sample_linear2;
 use crate::kernels::shared::stream::{Field, FieldView, Integrator, Stream, half_length};
 use crate::kernels::shared::tensor::tangent;
 use crate::kernels::simd::pixels::Block;
-use crate::kernels::simd::tile_copy::{TWO, TileCopy};
-use crate::kernels::simd::trace::{AlongLines, FieldCopy, Inputs, Lines, along_lines, both_sides};
+use crate::kernels::trace::tile_copy::{TWO, TileCopy};
+use crate::kernels::trace::{AlongLines, FieldCopy, Inputs, Lines, along_lines, both_sides};
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 

@@ -14,7 +14,7 @@ use crate::kernels::shared::sampling::sample_linear2;
 use crate::kernels::shared::stream::{FieldView, Integrator, Stream, half_length};
 use crate::kernels::shared::tensor::tangent;
 use crate::kernels::simd::pixels::{Block, for_blocks, write};
-use crate::kernels::simd::trace::Lines;
+use crate::kernels::trace::Lines;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};

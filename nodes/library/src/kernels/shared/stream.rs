@@ -5,7 +5,7 @@
 //! cancel. A line is traced from its centre in one direction and then in the other. Lanes whose line
 //! has ended stay where they are while the others go on.
 //!
-//! [`trace`](crate::kernels::simd::trace) follows them.
+//! [`trace`](crate::kernels::trace) follows them.
 //!
 //! Cost: a step samples one tensor (Euler, two-step) or two (midpoint), bilinearly, and finds their axes; the
 //! first step of Euler's method and of the midpoint method saves one.
