@@ -2,8 +2,8 @@
 //! processor that multiplies and adds in one step. What they were is in `tests/data/bits.txt`, which `cargo xtask bless`
 //! makes anew, so that processors of other kinds are compared by running the same test.
 
+use isophote::Planned;
 use isophote::registry;
-use isophote::request::Planned;
 use isophote::spec::NodeSpec;
 use isophote_engine::cpu::{Control, CpuExecutor};
 use isophote_engine::dispatch::levels;

@@ -4,7 +4,7 @@
 //! Cost: 4 sigma_m steps per pixel, each one bilinear sample of two values and one (Euler, two-step) or two
 //! samples of orientation with their tangents, about 70 or 110 operations.
 
-use crate::choice::Numbered;
+use crate::declare::choice::Numbered;
 pub use crate::kernels::shaders::flow_dog_tangent::Params;
 use crate::kernels::shared::edge_threshold::{UNDECIDED, Xdog, edge_of_sums};
 use crate::kernels::shared::sampling::sample_linear2;

@@ -5,7 +5,7 @@
 //! Cost: the steps of the second pass times the samples of the first: about 4 sigma_m times 6 k sigma_e
 //! bilinear samples of two values.
 
-use crate::choice::Numbered;
+use crate::declare::choice::Numbered;
 use crate::kernels::lines::flow_dog_gradient::halfwidth;
 pub use crate::kernels::shaders::flow_dog_two_dimensional::Params;
 use crate::kernels::shared::edge_threshold::{Xdog, dog_of_sums, edge_of_sums};

@@ -15,7 +15,7 @@ use crate::kernels::shared::tensor::{tangent, tangent_along};
 use isophote_engine::View;
 use isophote_engine::fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
 
-crate::choice::numbered! {
+crate::declare::choice::numbered! {
     /// How a stream line goes on to its next point.
     pub enum Integrator {
         /// Euler's method, first order (2.176, 2.177).

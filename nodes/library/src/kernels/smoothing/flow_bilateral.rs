@@ -9,7 +9,7 @@
 //! Cost: 4 sigma steps per pixel, each one bilinear colour sample with one exponential (manual: four)
 //! and one (Euler) or two tensor samples with their tangents.
 
-use crate::choice::Numbered;
+use crate::declare::choice::Numbered;
 pub use crate::kernels::shaders::flow_bilateral::Params;
 use crate::kernels::shared::coverage::{Covered, premultiply};
 use crate::kernels::shared::sampling::{fetch4, sample_linear4};
@@ -40,7 +40,7 @@ crate::kernel!(flow_bilateral {
     },
 });
 
-crate::choice::choice! {
+crate::declare::choice::choice! {
     /// Where stream lines are sampled.
     pub enum Placement {
         /// At every pixel of length.

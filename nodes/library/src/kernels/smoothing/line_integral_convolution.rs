@@ -4,7 +4,7 @@
 //! Cost: 4 sigma / h steps per pixel, two fifths of it where steps are stretched, each one bilinear colour sample
 //! and one (Euler, two-step) or two tensor samples with their tangents, about 90 or 130 operations.
 
-use crate::choice::Numbered;
+use crate::declare::choice::Numbered;
 pub use crate::kernels::shaders::line_integral_convolution::Params;
 use crate::kernels::shared::coverage::{full_or, premultiply, unpremultiply};
 use crate::kernels::shared::sampling::sample_linear4;
@@ -41,7 +41,7 @@ crate::kernel!(line_integral_convolution {
     },
 });
 
-crate::choice::choice! {
+crate::declare::choice::choice! {
     /// How the length of the lines is adapted.
     pub enum Adapt {
         /// Not at all.

@@ -40,7 +40,7 @@ pub enum Direction {
     Tangent = 1,
 }
 
-crate::choice::choice! {
+crate::declare::choice::choice! {
     /// Where range weights are applied.
     pub enum Sampling {
         /// To the interpolated colour.

@@ -4,8 +4,8 @@
 use crate::kernels::structure::edge_tangent_flow::{self, Neighbours, Options, Window};
 use crate::kernels::structure::gradient_tensor::{self, Derivative, Measure};
 use crate::kernels::structure::{flow_maximum, flow_start};
-use crate::ports;
-use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
+use crate::declare::ports;
+use crate::declare::spec::{ImageKind, NodeSpec, Param, Port, Scope};
 use isophote_engine::ImageId;
 
 /// The node.

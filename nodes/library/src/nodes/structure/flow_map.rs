@@ -1,7 +1,7 @@
 //! Flow maps: orientation that an artist painted (§ 1.2), as game engines have it.
 
-use crate::ports;
-use crate::spec::{ImageKind, NodeSpec, Port, Scope};
+use crate::declare::ports;
+use crate::declare::spec::{ImageKind, NodeSpec, Port, Scope};
 use crate::stages::flow_map::{Flow, INVERT_Y, SOFTNESS, STRENGTH};
 use isophote_engine::ImageId;
 
@@ -45,7 +45,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
 mod tests {
     use crate::graph::GraphInput;
     use crate::kernels::shared::tensor::scalar;
-    use crate::request::Guides;
+    use crate::plan::request::Guides;
     use crate::{Graph, Planned, Request};
     use isophote_engine::cpu::{CallingThread, Control, CpuExecutor};
     use isophote_engine::{Image, Rect};
