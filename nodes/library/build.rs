@@ -27,8 +27,8 @@ const SHARED: &str = "shared";
 /// What only GPUs need, such as where a texture lies in the picture; it has no twins.
 const GPU: &str = "gpu";
 
-/// What only CPUs need, such as how pixels are read; it has no twins.
-const SIMD: &str = "simd";
+/// What only CPUs need, such as how pixels are read and lines followed; it has no twins.
+const CPU: [&str; 2] = ["simd", "trace"];
 
 /// Group and stem of a file.
 type Name = (String, String);
@@ -40,8 +40,8 @@ fn main() {
     println!("cargo::rerun-if-changed={}", shaders.display());
     println!("cargo::rerun-if-changed={}", twins.display());
 
-    let wgsl = files_in_groups(&shaders, "wgsl", GPU);
-    let rust = files_in_groups(&twins, "rs", SIMD);
+    let wgsl = files_in_groups(&shaders, "wgsl", &[GPU]);
+    let rust = files_in_groups(&twins, "rs", &CPU);
     let mut faults = without_twin(&wgsl, &rust);
     let mut kernels = BTreeMap::new();
     for (name, path) in &wgsl {
@@ -62,10 +62,15 @@ fn main() {
     fs::write(&target, text.unwrap_or_else(|fault| panic!("\n{fault}\n"))).expect("OUT_DIR is writable");
 }
 
-/// The files `DIR/<group>/<stem>.<ext>`, but for those of one group.
-fn files_in_groups(dir: &Path, ext: &str, except: &str) -> BTreeMap<Name, PathBuf> {
+/// The files `DIR/<group>/<stem>.<ext>`, but for those of some groups.
+fn files_in_groups(dir: &Path, ext: &str, except: &[&str]) -> BTreeMap<Name, PathBuf> {
     let mut files = BTreeMap::new();
-    for group in fs::read_dir(dir).into_iter().flatten().flatten().filter(|g| g.file_name() != except) {
+    for group in fs::read_dir(dir)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .filter(|g| !except.iter().any(|name| g.file_name() == *name))
+    {
         for file in fs::read_dir(group.path()).into_iter().flatten().flatten() {
             let path = file.path();
             if path.extension().is_some_and(|e| e == ext) {

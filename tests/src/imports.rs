@@ -7,7 +7,7 @@
 
 mod graph;
 mod modules;
-mod tokens;
+pub(crate) mod tokens;
 
 use graph::Imports;
 use std::collections::BTreeSet;
@@ -33,6 +33,16 @@ pub fn folder_circles(root: &Path) -> Vec<String> {
     read(&root).of_folders().circles(&root)
 }
 
+/// Imports of files in one folder below `root` from files in another, as `file imports from file`.
+///
+/// # Panics
+/// When a file cannot be read.
+pub fn between(root: &Path, from: &str, to: &str) -> Vec<String> {
+    let root = root.canonicalize().unwrap();
+    read(&root).between(&root, from, to)
+}
+
+/// Imports of all packages below `root`.
 fn read(root: &Path) -> Imports {
     let mut imports = Imports::default();
     for package in packages(root) {

@@ -1,7 +1,6 @@
 //! Running graphs and plans on the CPU.
 
-use isophote::request::Planned;
-use isophote::{Graph, Request};
+use isophote::{Graph, Planned, Request};
 use isophote_engine::cpu::{CallingThread, Control, CpuExecutor, Pool, Threads};
 use isophote_engine::{Image, Plan, Rect};
 use std::sync::OnceLock;

@@ -2,10 +2,9 @@
 //! processor that multiplies and adds in one step. What they were is in `tests/data/bits.txt`, which `cargo xtask bless`
 //! makes anew, so that processors of other kinds are compared by running the same test.
 
-use isophote::Value;
 use isophote::registry;
-use isophote::request::Planned;
 use isophote::spec::NodeSpec;
+use isophote::{Planned, Value};
 use isophote_engine::cpu::{Control, CpuExecutor};
 use isophote_engine::dispatch::levels;
 use isophote_engine::fearless_simd::Level;

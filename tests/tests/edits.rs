@@ -1,7 +1,7 @@
 //! Moving a slider rewrites uniform bytes in place: no pass changes, nothing is allocated, and the
 //! result is that of a plan made anew.
 
-use isophote::request::Change;
+use isophote::planned::Change;
 use isophote::spec::NodeSpec;
 use isophote::{Planned, Request, Value};
 use isophote_engine::Rect;

@@ -1,7 +1,7 @@
 //! No two files and no two folders import each other, directly or around a circle, and none is taken from another package by
 //! its path.
 
-use isophote_tests::imports::{circles, folder_circles, taken_from_elsewhere};
+use isophote_tests::imports::{between, circles, folder_circles, taken_from_elsewhere};
 use std::path::{Path, PathBuf};
 
 fn root() -> PathBuf {
@@ -28,6 +28,30 @@ fn no_two_folders_import_each_other() {
 fn no_file_is_taken_from_another_package() {
     let taken = taken_from_elsewhere(&root());
     assert!(taken.is_empty(), "import these by the name of their crate:\n{}", taken.join("\n"));
+}
+
+#[test]
+fn rooms_of_the_library_import_only_what_stands_below_them() {
+    let root = root();
+    let between = |from: &str, to: &str| {
+        let [from, to] = [from, to].map(|room| format!("nodes/library/src/{room}"));
+        between(&root, &from, &to)
+    };
+    // Each with what may import it, and never the other way round.
+    let rooms = ["kernels/simd", "kernels/shared", "kernels/trace", "stages", "nodes"];
+    for (at, above) in rooms.iter().enumerate() {
+        let below = &rooms[..at];
+        assert!(
+            at == 0 || below.iter().any(|room| !between(above, room).is_empty()),
+            "{above} imports nothing"
+        );
+        for room in below {
+            let wrong = between(room, above);
+            assert!(wrong.is_empty(), "{room} stands below {above}:\n{}", wrong.join("\n"));
+        }
+    }
+    let wrong = between("nodes", "nodes");
+    assert!(wrong.is_empty(), "nodes import stages and kernels, never each other:\n{}", wrong.join("\n"));
 }
 
 /// A package with these files below `src`.

@@ -55,7 +55,7 @@ fn every_kernel_is_one_shader_and_one_twin_of_its_name() {
     let mut shader_files = stems(&shaders::folder(), "wgsl");
     shader_files.retain(|s| !s.starts_with("gpu/"));
     let mut twins = stems(&root().join("nodes/library/src/kernels"), "rs");
-    twins.retain(|s| !s.starts_with("simd/"));
+    twins.retain(|s| !s.starts_with("simd/") && !s.starts_with("trace/"));
     assert_eq!(shader_files, twins);
     assert!(twins.iter().filter(|t| t.starts_with("shared/")).count() > 5);
     twins.retain(|t| !t.starts_with("shared/"));
@@ -81,7 +81,7 @@ fn every_group_is_one_of_the_house() {
     for dir in dirs {
         for entry in std::fs::read_dir(&dir).unwrap().flatten().filter(|e| e.path().is_dir()) {
             let name = entry.file_name().into_string().unwrap();
-            let is_drawer = ["shared", "gpu", "simd"].contains(&&*name);
+            let is_drawer = ["shared", "gpu", "simd", "trace"].contains(&&*name);
             assert!(GROUPS.contains(&&*name) || is_drawer, "{}", entry.path().display());
         }
     }

@@ -1,9 +1,9 @@
 //! No slider of a look is idle: over its whole range it changes the picture, visibly and ever farther, in each style and
 //! preset in which it has an effect at all.
 
-use isophote::request::{Guides, Planned};
+use isophote::request::Guides;
 use isophote::spec::{NodeSpec, Param};
-use isophote::{Graph, Request, Value};
+use isophote::{Graph, Planned, Request, Value};
 use isophote_engine::Image;
 use isophote_tests::run;
 use isophote_tests::scenery::forms;

@@ -1,8 +1,8 @@
 //! A part of a picture computed alone is the same part of the whole, bit for bit on the CPU, whatever
 //! the threads; other instruction sets differ by rounding only; a proxy looks like the full frame.
 
+use isophote::Planned;
 use isophote::Request;
-use isophote::request::Planned;
 use isophote::spec::{ImageKind, NodeSpec};
 use isophote_engine::cpu::{CallingThread, CpuExecutor, Pool, Threads};
 use isophote_engine::dispatch::levels;

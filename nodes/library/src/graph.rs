@@ -1,9 +1,12 @@
 //! Graphs: nodes, their parameter values and how they are connected.
 
+mod json;
+pub(crate) mod neighbours;
+
+use crate::declare::spec::{ImageKind, NodeSpec, Param, Port};
+use crate::declare::value::Value;
 use crate::error::{Error, Result, nearest};
 use crate::registry;
-use crate::spec::{ImageKind, NodeSpec, Param, Port};
-use crate::value::Value;
 use isophote_engine::program::Precision;
 
 /// A picture that enters a graph.

@@ -15,6 +15,7 @@
 //! has a single user lies in a folder of its user's name.
 
 pub mod simd;
+pub mod trace;
 
 include!(concat!(env!("OUT_DIR"), "/kernels.rs"));
 

@@ -10,36 +10,28 @@
 // Coefficients of polynomials lie near constants and are not them.
 #![allow(clippy::approx_constant)]
 
-pub mod choice;
 pub mod colour_space;
-mod describe;
+pub mod declare;
 pub mod error;
 pub mod frames;
 pub mod graph;
-mod json;
 pub mod kernels;
-mod lowered;
-mod neighbours;
 pub mod nodes;
-pub mod param;
-pub mod picture;
-mod ports;
+pub mod plan;
 pub mod registry;
-pub mod request;
-pub mod sequence;
-pub mod spec;
 mod stages;
-pub mod value;
 
 pub use colour_space::ColourSpace;
+pub use declare::value::Value;
+pub use declare::{choice, param, spec, value};
 pub use error::{Error, Result};
 pub use graph::{Graph, NodeId};
 pub use isophote_engine as engine;
-pub use lowered::Lowered;
-pub use picture::Request;
-pub use request::Planned;
+pub use plan::lowered::Lowered;
+pub use plan::planned::Planned;
+pub use plan::request::Request;
+pub use plan::{planned, request, sequence};
 pub use stages::optical_flow;
-pub use value::Value;
 
 /// The example of the documentation's page for Rust, compiled with the documentation tests.
 #[cfg(doctest)]

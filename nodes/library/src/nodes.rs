@@ -1,6 +1,6 @@
 //! The nodes: each file holds one node's declaration and how it composes kernels into a plan.
 
-use crate::spec::NodeSpec;
+use crate::declare::spec::NodeSpec;
 
 /// Declares the modules of all nodes and lists their specs. The one line a new node needs is its
 /// name here.

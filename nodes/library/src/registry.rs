@@ -1,8 +1,8 @@
 //! The list of nodes. Adding one is its file and one word here.
 
+use crate::declare::spec::NodeSpec;
 use crate::error::{Error, Result, nearest};
 use crate::nodes::NODES;
-use crate::spec::NodeSpec;
 
 /// Every node, in the order of the catalogue.
 pub fn nodes() -> &'static [&'static NodeSpec] {

@@ -3,7 +3,7 @@
 use isophote::engine::cpu::{CallingThread, Control, CpuExecutor};
 use isophote::engine::{Image, Rect};
 use isophote::graph::GraphInput;
-use isophote::request::Change;
+use isophote::planned::Change;
 use isophote::{Error, Graph, Planned, Request, Value};
 
 fn step_edge(width: u32, height: u32) -> Image {

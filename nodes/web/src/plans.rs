@@ -5,7 +5,7 @@ use crate::ask::{Picture, Request, region};
 use crate::catalogue::catalogue;
 use crate::look::Look;
 use isophote::engine::Rect;
-use isophote::request::Change;
+use isophote::planned::Change;
 use isophote::{Error, Graph, Lowered};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

@@ -3,8 +3,8 @@
 use crate::error::{Error, Result};
 use crate::{maker, styles};
 use isophote::param::Param;
-use isophote::picture::Guides;
 use isophote::registry;
+use isophote::request::Guides;
 use isophote::spec::{NodeSpec, Port};
 use isophote::value::Value;
 use isophote::{Graph, Planned, Request};

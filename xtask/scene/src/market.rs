@@ -2,7 +2,7 @@
 
 use super::materials::{Material, Model};
 use super::mesh::{Faces, Mesh};
-use super::noise::Random;
+use super::noise::{Random, catmull_rom};
 use glam::{Mat4, Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
@@ -171,8 +171,7 @@ fn smooth(outline: &[(f32, f32)], count: usize) -> Vec<Vec2> {
             let position = step as f32 / count as f32 * last as f32;
             let index = (position as usize).min(last - 1) as isize;
             let t = position - index as f32;
-            let (a, b, c, d) = (knot(index - 1), knot(index), knot(index + 1), knot(index + 2));
-            b + ((c - a) + ((a * 2.0 - b * 5.0 + c * 4.0 - d) + ((b - c) * 3.0 + d - a) * t) * t) * (0.5 * t)
+            catmull_rom([knot(index - 1), knot(index), knot(index + 1), knot(index + 2)], t)
         })
         .collect();
     points.iter_mut().for_each(|point| point.x = point.x.max(0.0));

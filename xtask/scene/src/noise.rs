@@ -56,6 +56,11 @@ pub fn smoothstep(low: f32, high: f32, value: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
+/// The point at `t` between the second and the third of four on a curve of Catmull and Rom.
+pub fn catmull_rom([a, b, c, d]: [Vec2; 4], t: f32) -> Vec2 {
+    b + ((c - a) + ((a * 2.0 - b * 5.0 + c * 4.0 - d) + ((b - c) * 3.0 + d - a) * t) * t) * (0.5 * t)
+}
+
 /// Linear interpolation.
 pub fn lerp(from: f32, to: f32, t: f32) -> f32 {
     from + (to - from) * t

@@ -3,7 +3,7 @@
 use super::elements::{Slope, arched_wall, smooth_column};
 use super::materials::{Material, Model};
 use super::mesh::{Faces, Mesh};
-use super::noise::smoothstep;
+use super::noise::{catmull_rom, smoothstep};
 use glam::{Mat4, Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
@@ -181,10 +181,7 @@ fn profile(height: f32) -> Vec2 {
     let knot = |offset: isize| BODY[(index as isize + offset).clamp(0, BODY.len() as isize - 1) as usize];
     let (p0, p1, p2, p3) = (knot(-1), knot(0), knot(1), knot(2));
     let t = (height - p1.0) / (p2.0 - p1.0);
-    let spline = |a: f32, b: f32, c: f32, d: f32| {
-        b + 0.5 * t * ((c - a) + t * ((2.0 * a - 5.0 * b + 4.0 * c - d) + t * (3.0 * (b - c) + d - a)))
-    };
-    Vec2::new(spline(p0.1, p1.1, p2.1, p3.1), spline(p0.2, p1.2, p2.2, p3.2))
+    catmull_rom([p0, p1, p2, p3].map(|knot| Vec2::new(knot.1, knot.2)), t)
 }
 
 /// The body under its clothes.

@@ -8,15 +8,15 @@
 //! * rows and columns around it: [`line_buffer`], or [`moment_buffer`] with squares of the colours;
 //! * a row or a column, with symmetric weights: [`window_sum`];
 //! * a straight line through it: [`line_taps`];
-//! * a curved line through it: [`trace`], over a [`tile_copy`];
+//! * a curved line through it: [`trace`](super::trace), over a [`tile_copy`](super::trace::tile_copy);
+//! * a pixel of another frame, where motion leads: [`carrying`];
 //! * the pixel of a coarser pyramid level: [`upsampling`].
 
+pub mod carrying;
 pub mod line_buffer;
 pub mod line_taps;
 pub mod moment_buffer;
 pub mod neighbours;
 pub mod pixels;
-pub mod tile_copy;
-pub mod trace;
 pub mod upsampling;
 pub mod window_sum;

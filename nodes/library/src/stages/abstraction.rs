@@ -1,9 +1,9 @@
 //! The bilateral filter of styles (§ 4.6): regions of like colour become flat, borders stay.
 
-use crate::choice::choice;
-use crate::kernels::lines::orientation_field;
+use crate::declare::choice::choice;
+use crate::declare::spec::{Param, Scope};
 use crate::kernels::smoothing::bilateral::Options;
-use crate::spec::{Param, Scope};
+use crate::kernels::structure::orientation_field;
 use crate::stages::bilateral::{self, Kernel};
 use crate::stages::{ADVANCED, LOOK, flow_bilateral, oriented_bilateral};
 use isophote_engine::{ImageId, PlanBuilder};

@@ -1,10 +1,10 @@
 //! The anisotropic Kuwahara filter at several scales (§ 5.4, 5.5).
 
-use crate::choice::choice;
+use crate::declare::choice::choice;
+use crate::declare::spec::{Param, Scope};
 use crate::kernels::painting::anisotropic_kuwahara::{self as polynomial, Options};
 use crate::kernels::painting::propagate_colour::{self, Options as Propagation};
 use crate::kernels::painting::{anisotropic_kuwahara_texture as texture, lanczos_half, propagate_tensor};
-use crate::spec::{Param, Scope};
 use crate::stages::flow_map::Flow;
 use crate::stages::generalized_kuwahara::sectors;
 use crate::stages::structure_tensor::{self, of_color_and_guides};

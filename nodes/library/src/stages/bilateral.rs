@@ -1,8 +1,8 @@
 //! One iteration of the bilateral filter (§ 3.2) or of its xy-separable form (§ 3.3).
 
-use crate::choice::choice;
+use crate::declare::choice::choice;
+use crate::declare::spec::Param;
 use crate::kernels::smoothing::bilateral::{self, Options, Window};
-use crate::spec::Param;
 use isophote_engine::{ImageId, PlanBuilder};
 
 pub(crate) const CUTOFF: Param = Param::float("cutoff", "Cut-off", 3.0, [1.0, 4.0]).slider(1.0, 3.0).doc(

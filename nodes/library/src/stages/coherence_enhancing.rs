@@ -1,10 +1,10 @@
 //! Coherence-enhancing filtering (§ 6): rounds of smoothing along stream lines and of sharpening across them.
 
-use crate::choice::choice;
+use crate::declare::choice::choice;
+use crate::declare::spec::{Param, Scope};
 use crate::kernels::coherence::carried_tensor;
 use crate::kernels::shared::stream::STRETCH;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
-use crate::spec::{Param, Scope};
 use crate::stages::flow_map::Flow;
 use crate::stages::shock::{self, Directed};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, compared, steadied, steadied_picture};

@@ -1,8 +1,8 @@
 //! Parameters of the extended difference of Gaussians (§ 4.2-4.4), which all line filters have.
 
-use crate::choice::choice;
+use crate::declare::choice::choice;
+use crate::declare::spec::{ImageKind, Param, Port, Scope};
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
-use crate::spec::{ImageKind, Param, Port, Scope};
 
 /// The output port of line filters.
 pub(crate) const EDGES: Port = Port {

@@ -1,10 +1,10 @@
 //! One iteration of the flow-based bilateral filter (§ 3.5), on a CIELAB image.
 
-use crate::choice::choice;
+use crate::declare::choice::choice;
+use crate::declare::spec::Param;
 use crate::kernels::shared::stream::Integrator;
 use crate::kernels::smoothing::flow_bilateral::{self, Placement};
 use crate::kernels::smoothing::oriented_bilateral::{self, Direction};
-use crate::spec::Param;
 use crate::stages::oriented_bilateral::SAMPLING;
 use isophote_engine::{ImageId, PlanBuilder};
 

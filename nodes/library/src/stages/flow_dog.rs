@@ -1,14 +1,14 @@
 //! The flow-based difference of Gaussians (§ 4.5), with lines where geometry breaks.
 
-use crate::choice::choice;
+use crate::declare::choice::choice;
+use crate::declare::spec::{ImageKind, Param, Port, Scope};
 use crate::kernels::lines::edge_area::{self, Shares};
 use crate::kernels::lines::flow_dog_two_dimensional::{self, Stepping};
 use crate::kernels::lines::{
     darken_by_lines, dog_columns, flow_dog_cabral_leedom, flow_dog_gradient, flow_dog_tangent, guide_lines,
-    orientation_field,
 };
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
-use crate::spec::{ImageKind, Param, Port, Scope};
+use crate::kernels::structure::orientation_field;
 use crate::stages::structure_tensor::of_color_and_guides;
 use crate::stages::tensor_options::{Guides, TensorOptions};
 use isophote_engine::{ImageId, PlanBuilder};

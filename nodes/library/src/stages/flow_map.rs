@@ -1,8 +1,8 @@
 //! Flow maps (§ 1.2): what nodes bend tensors of their own by.
 
+use crate::declare::spec::{Param, Scope};
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::structure::{flow_bend, flow_field};
-use crate::spec::{Param, Scope};
 use isophote_engine::{Class, ImageId, PlanBuilder};
 
 pub(crate) const STRENGTH: Param = Param::float("strength", "Strength", 1.0, [0.0, 1.0])

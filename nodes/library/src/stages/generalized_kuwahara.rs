@@ -1,6 +1,6 @@
 //! Parameters of Kuwahara filters by sectors (§ 5.3).
 
-use crate::spec::{Param, Scope};
+use crate::declare::spec::{Param, Scope};
 
 /// N.
 pub(crate) const SECTORS: Param = Param::int("sectors", "Sectors", 8, [4, 8])

@@ -1,8 +1,8 @@
 //! Line integral convolution (§ 2.9) as most nodes want it.
 
+use crate::declare::spec::Param;
 use crate::kernels::shared::stream::Integrator;
 use crate::kernels::smoothing::line_integral_convolution::{Adapt, Options};
-use crate::spec::Param;
 
 pub(crate) const SIGMA: Param = Param::float("sigma", "Sigma", 6.0, [0.0, 40.0])
     .neutral_at_zero()

@@ -1,9 +1,9 @@
 //! The lines of styles: the flow-based difference of Gaussians (§ 4.5) under the controls of artists.
 
+use crate::declare::spec::{Param, Scope};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::shared::stream::Integrator;
-use crate::spec::{Param, Scope};
 use crate::stages::flow_dog::{FlowDog, Kernel};
 use crate::stages::{ADVANCED, LOOK};
 

@@ -1,6 +1,8 @@
 //! Marks of hand and brush that belong to things: noise at rest positions, where they are known, else noise that motion
 //! carries, else noise on the screen. Paper stays on the screen.
 
+use crate::declare::ports::REST_POSITION;
+use crate::declare::spec::Scope;
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_blur::{self, Lines};
 use crate::kernels::structure::smooth_noise::{self, Layer};
@@ -8,8 +10,6 @@ use crate::kernels::structure::solid_noise::{self, Marks};
 use crate::kernels::structure::{noise, rest_footprint, rest_scale};
 use crate::kernels::time::carried_noise::{self, Layers};
 use crate::kernels::time::mark_chain::{self, Step};
-use crate::ports::REST_POSITION;
-use crate::spec::Scope;
 use isophote_engine::{Class, ImageId, math};
 
 /// White noise, smoothed by `sigma` pixels of the picture that is rendered.

@@ -12,7 +12,7 @@ use crate::kernels::time::{
 use inverse_search::Start;
 use isophote_engine::{ImageId, PlanBuilder};
 
-crate::choice::choice! {
+crate::declare::choice::choice! {
     /// How much is done for precision.
     pub enum Quality {
         /// At half the resolution, with few steps.

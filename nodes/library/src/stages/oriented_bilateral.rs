@@ -1,8 +1,8 @@
 //! One iteration of the orientation-aligned bilateral filter (§ 3.4), on a CIELAB image and with a tensor
 //! that stays the same throughout.
 
+use crate::declare::spec::Param;
 use crate::kernels::smoothing::oriented_bilateral::{self, Direction, Options, Sampling};
-use crate::spec::Param;
 use isophote_engine::{ImageId, PlanBuilder};
 
 pub(crate) const SIGMA_DG: Param = Param::float("sigma_dg", "Sigma along gradient", 3.0, [0.0, 40.0])

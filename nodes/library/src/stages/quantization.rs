@@ -1,6 +1,6 @@
 //! The soft quantization of styles (§ 4.6) under the controls of artists.
 
-use crate::spec::{Param, Scope};
+use crate::declare::spec::{Param, Scope};
 use crate::stages::LOOK;
 use crate::stages::quantize_luminance::BINS;
 

@@ -1,9 +1,9 @@
 //! Soft quantization of lightness (§ 4.6).
 
+use crate::declare::spec::{Param, Scope};
 use crate::kernels::colour::quantize_luminance::{self, Steepness, Steps};
 use crate::kernels::colour::tone_gradient;
 use crate::kernels::smoothing::gaussian_blur;
-use crate::spec::{Param, Scope};
 use isophote_engine::{Class, ImageId};
 
 pub(crate) const BINS: Param =

@@ -1,9 +1,9 @@
 //! Shock filters (§ 6.4), step by step.
 
+use crate::declare::spec::{Param, Scope};
 use crate::kernels::coherence::directed_shock::{self, Options};
 use crate::kernels::coherence::{laplacian, second_derivative, shock_step};
 use crate::kernels::smoothing::gaussian_blur;
-use crate::spec::{Param, Scope};
 use isophote_engine::{ImageId, PlanBuilder};
 
 pub(crate) const SIGMA_G: Param = Param::float("sigma_g", "Sigma g", 1.5, [0.2, 20.0])

@@ -5,6 +5,7 @@
 //! kept from frame to frame. A neighbour counts by a Gaussian over time, times the agreement of its smoothed colour, of
 //! depth, of object numbers, and of forward with backward motion, where there are such.
 
+use crate::declare::spec::{STEADINESS, Scope, WINDOW};
 use crate::kernels::lines::edge_area::Shares;
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::time::carried_share::{self, Neighbour};
@@ -12,7 +13,6 @@ use crate::kernels::time::guide_agreement::{self, Guide, Way};
 use crate::kernels::time::{
     carry_colour, carry_pair, carry_tensor, motion_chain, motion_import, return_agreement,
 };
-use crate::spec::{STEADINESS, Scope, WINDOW};
 use isophote_engine::{Class, ImageId};
 
 /// How colours of frames are compared.

@@ -1,12 +1,12 @@
 //! Structure tensors (§ 2.2-2.4, 2.7.3, 2.8) for nodes that follow them; equal passes are shared by the plan.
 
+use crate::declare::spec::Scope;
 use crate::kernels::colour::rgb_to_lab;
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::structure::gradient_tensor::{self, Measure};
 use crate::kernels::structure::{
     colour_restrict, guide_tensor, jacobi_step, oversampled_tensor, tensor_combine, tensor_restrict,
 };
-use crate::spec::Scope;
 use crate::stages::flow_map;
 use crate::stages::tensor_options::{Guides, Space, TensorOptions};
 use isophote_engine::{Class, ImageId, PlanBuilder};

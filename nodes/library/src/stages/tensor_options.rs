@@ -1,9 +1,9 @@
 //! How a structure tensor is made: the parameters and their values, and the guide images that count in it.
 
-use crate::choice::choice;
+use crate::declare::choice::choice;
+use crate::declare::spec::{Param, Scope};
 use crate::kernels::structure::gradient_tensor::Derivative;
 use crate::kernels::structure::guide_tensor::Guide;
-use crate::spec::{Param, Scope};
 use isophote_engine::ImageId;
 
 choice! {

@@ -1,7 +1,7 @@
 //! Tones and saturation of styles.
 
+use crate::declare::spec::{Param, Scope};
 use crate::kernels::colour::tone_curve::{self, Params};
-use crate::spec::{Param, Scope};
 use crate::stages::LOOK;
 use isophote_engine::ImageId;
 

@@ -1,9 +1,9 @@
 //! Sharpening by warping (§ 4.6).
 
+use crate::declare::spec::Param;
 use crate::kernels::colour::luma_gradient;
 use crate::kernels::colour::warp::{self, Params};
 use crate::kernels::smoothing::gaussian_blur;
-use crate::spec::Param;
 use isophote_engine::{Class, ImageId, PlanBuilder};
 
 pub(crate) const SIGMA_W: Param = Param::float("sigma_w", "Sigma w", 1.5, [0.1, 20.0])

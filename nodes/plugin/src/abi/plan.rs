@@ -9,7 +9,7 @@ use super::request;
 use super::shader;
 use isophote::engine::program::{Dispatch, Format, Program, Role, Texture};
 use isophote::engine::{Class, Rect};
-use isophote::request::Change;
+use isophote::planned::Change;
 use isophote::{Graph, Lowered, Request};
 use isophote_abi::*;
 use std::collections::BTreeMap;

@@ -17,7 +17,7 @@ use isophote::engine::{Image, Rect};
 use isophote::frames::Frames;
 use isophote::graph::GraphInput;
 use isophote::kernels::shared::host_colour::has_light;
-use isophote::picture::MAX_MOTION;
+use isophote::request::MAX_MOTION;
 use isophote::sequence::Sequence;
 use isophote::{Graph, Planned, Request};
 use isophote_abi::*;

@@ -47,44 +47,30 @@ impl Frame {
         par: f64,
         bounds: Option<Bounds>,
     ) -> Option<Self> {
-        let mut ratio = [scale[0] / par, scale[1]];
+        let ratio = [scale[0] / par, scale[1]];
         let endless = defined.as_ref().is_some_and(is_endless);
         let rounded = defined.and_then(|region| to_pixels(&region, ratio));
-        let picture = match (rounded, bounds) {
-            (Some(picture), None) => picture,
-            (None, Some(bounds)) => bounds,
+        let (picture, share) = match (rounded, bounds) {
+            (Some(picture), None) => (picture, 1.0),
+            (None, Some(bounds)) => (bounds, 1.0),
             (None, None) => return None,
+            // Hosts without tiles have been seen to give parts as well; a part is not shaped like the whole.
+            (Some(picture), Some(bounds))
+                if is_within(&bounds, &picture)
+                    && (host.tiles || endless || !is_smaller_whole(&picture, &bounds)) =>
+            {
+                // The image is a part of the picture, or the picture itself with other rounding.
+                let is_same = (0..4).all(|i| picture[i].abs_diff(bounds[i]) <= 1);
+                (if is_same { bounds } else { picture }, 1.0)
+            }
+            // A host of whole pictures that gives another one than it speaks of: one that says
+            // "full size" of a proxy has forgotten the scale, others have their own idea of regions.
             (Some(picture), Some(bounds)) => {
-                let near = (0..4).all(|i| {
-                    let beyond = if i < 2 {
-                        i64::from(picture[i]) - i64::from(bounds[i])
-                    } else {
-                        i64::from(bounds[i]) - i64::from(picture[i])
-                    };
-                    beyond <= 1
-                });
-                // Hosts without tiles have been seen to give parts as well; a part is not shaped like the whole.
-                let part = near && (host.tiles || endless || !is_smaller_whole(&picture, &bounds));
-                if part {
-                    // The image is a part of the picture, or the picture itself with other rounding.
-                    if (0..4).all(|i| picture[i].abs_diff(bounds[i]) <= 1) { bounds } else { picture }
-                } else {
-                    // A host of whole pictures that gives another one than it speaks of: one that says
-                    // "full size" of a proxy has forgotten the scale, others have their own idea of regions.
-                    let widths = [picture, bounds].map(|b| f64::from(b[2]) - f64::from(b[0]));
-                    let share = widths[1] / widths[0].max(1.0);
-                    if scale == [1.0; 2]
-                        && !endless
-                        && !(0.98..=1.02).contains(&share)
-                        && share.is_finite()
-                        && share > 0.0
-                    {
-                        ratio = ratio.map(|r| r * share);
-                    }
-                    bounds
-                }
+                let is_full = scale == [1.0; 2] && !endless;
+                (bounds, if is_full { forgotten_scale(&picture, &bounds) } else { 1.0 })
             }
         };
+        let ratio = ratio.map(|r| r * share);
         let size = [0, 1].map(|i| i64::from(picture[i + 2]) - i64::from(picture[i]));
         if size.iter().any(|s| *s <= 0 || *s > i64::from(MAX_SIDE)) {
             return None;
@@ -166,6 +152,22 @@ impl Frame {
 
 fn is_square([x, y]: [f64; 2]) -> bool {
     x.max(y) <= SQUARE * x.min(y)
+}
+
+/// Whether `bounds` lie within `picture`, to a pixel.
+fn is_within(bounds: &Bounds, picture: &Bounds) -> bool {
+    (0..4).all(|i| {
+        let beyond = i64::from(picture[i]) - i64::from(bounds[i]);
+        (if i < 2 { beyond } else { -beyond }) <= 1
+    })
+}
+
+/// The scale of a proxy of `picture` with these bounds, where it is too far from 1 for rounding.
+fn forgotten_scale(picture: &Bounds, bounds: &Bounds) -> f64 {
+    let widths = [picture, bounds].map(|b| f64::from(b[2]) - f64::from(b[0]));
+    let share = widths[1] / widths[0].max(1.0);
+    let is_scale = !(0.98..=1.02).contains(&share) && share.is_finite() && share > 0.0;
+    if is_scale { share } else { 1.0 }
 }
 
 /// Whether `bounds` are `picture` made smaller, to a pixel.

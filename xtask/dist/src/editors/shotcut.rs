@@ -107,7 +107,6 @@ fn heading(text: &mut String, group: &str) {
 
 /// A label with its sentence where the pointer rests, the control, and the way back to the default.
 fn row(text: &mut String, control: &Control) {
-    let (id, name) = (id(control), quoted(&control.name));
     let _ = write!(
         text,
         "\n        Label {{\n            text: {}\n            Layout.alignment: Qt.AlignRight\n\n            \
@@ -115,12 +114,22 @@ fn row(text: &mut String, control: &Control) {
         translated(&control.label),
         translated(&control.doc)
     );
+    let (what, reset) = form(control);
+    let _ = write!(
+        text,
+        "        {what}\n        }}\n        Shotcut.UndoButton {{\n            onClicked: {reset}\n        }}\n"
+    );
+}
+
+/// A control without its closing brace, and the statement that brings its default back.
+fn form(control: &Control) -> (String, String) {
+    let (id, name) = (id(control), quoted(&control.name));
     let set = |value: &str| {
         format!(
             "{{\n                if (!blockUpdate)\n                    filter.set({name}, {value});\n            }}"
         )
     };
-    let (what, reset) = match &control.kind {
+    match &control.kind {
         Kind::Number { default, slider, is_whole } => {
             let decimals = decimals(*slider, *default, *is_whole);
             let form = format!(
@@ -162,11 +171,7 @@ fn row(text: &mut String, control: &Control) {
             ),
             format!("{id}.value = {}", quoted(default)),
         ),
-    };
-    let _ = write!(
-        text,
-        "        {what}\n        }}\n        Shotcut.UndoButton {{\n            onClicked: {reset}\n        }}\n"
-    );
+    }
 }
 
 /// The name of a control in the form; names of the plugin begin with a small letter.

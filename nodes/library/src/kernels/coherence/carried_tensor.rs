@@ -9,11 +9,13 @@
 //! 4 radius + 2 multiply-adds for each of its three values.
 
 pub use crate::kernels::shaders::carried_tensor::Params;
+use crate::kernels::shared::coverage::premultiply;
 use crate::kernels::simd::line_buffer::{LineBuffer, WIDE_STRIP, strips_of};
-use crate::kernels::simd::pixels::{eight, premultiply, read, write};
+use crate::kernels::simd::pixels::{eight, read, write};
 use crate::kernels::simd::window_sum::{gaussian_radius, gaussian_table};
 use crate::kernels::smoothing::gaussian_blur;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::prelude::*;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 /// Entries of the table of weights, the centre included.

@@ -5,7 +5,8 @@
 use crate::colour_space::{ColourSpace, Encoding};
 pub use crate::kernels::shaders::colour_export::Params;
 use crate::kernels::shared::colour::{LINEAR_TO_ACESCG, srgb_decode, transform};
-use crate::kernels::simd::pixels::{map_pixels, premultiply};
+use crate::kernels::shared::coverage::premultiply;
+use crate::kernels::simd::pixels::map_pixels;
 use isophote_engine::fearless_simd::dispatch;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

@@ -3,7 +3,8 @@
 //! Cost: eight multiply-adds and a division per pixel.
 
 pub use crate::kernels::shaders::mix::Params;
-use crate::kernels::simd::pixels::{for_blocks, unpremultiply, write};
+use crate::kernels::shared::coverage::unpremultiply;
+use crate::kernels::simd::pixels::{for_blocks, write};
 use isophote_engine::fearless_simd::{dispatch, f32x8};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

@@ -5,9 +5,11 @@
 //! Cost: ten multiply-adds and a division per pixel.
 
 pub use crate::kernels::shaders::mix_by_mask::Params;
+use crate::kernels::shared::coverage::unpremultiply;
 use crate::kernels::shared::host_colour::finite_pixels;
-use crate::kernels::simd::pixels::{for_blocks, unpremultiply, write};
-use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
+use crate::kernels::simd::pixels::{for_blocks, write};
+use isophote_engine::fearless_simd::prelude::*;
+use isophote_engine::fearless_simd::{dispatch, f32x8};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(mix_by_mask {

@@ -4,11 +4,11 @@
 //! Cost: one bilinear sample and about 20 operations.
 
 pub use crate::kernels::shaders::warp::Params;
-use crate::kernels::shared::coverage::Covered;
+use crate::kernels::shared::coverage::{Covered, unpremultiply};
 use crate::kernels::shared::sampling::sample_linear4;
 use crate::kernels::simd::neighbours::{Neighbours, each};
-use crate::kernels::simd::pixels::unpremultiply;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::prelude::*;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::kernel!(warp {

@@ -21,7 +21,7 @@ crate::kernel!(edge_candidates {
     },
 });
 
-crate::choice::choice! {
+crate::declare::choice::choice! {
     /// What makes an edge.
     pub enum Method {
         /// A maximum of the gradient's magnitude along the gradient.

@@ -4,15 +4,15 @@
 //! Cost: 4 sigma_m steps per pixel, each one bilinear sample of two values and one (Euler, two-step) or two
 //! samples of orientation with their tangents, about 70 or 110 operations.
 
-use crate::choice::Numbered;
+use crate::declare::choice::Numbered;
 pub use crate::kernels::shaders::flow_dog_tangent::Params;
 use crate::kernels::shared::edge_threshold::{UNDECIDED, Xdog, edge_of_sums};
 use crate::kernels::shared::sampling::sample_linear2;
 use crate::kernels::shared::stream::{Field, FieldView, Integrator, Stream, half_length};
 use crate::kernels::shared::tensor::tangent;
 use crate::kernels::simd::pixels::Block;
-use crate::kernels::simd::tile_copy::{TWO, TileCopy};
-use crate::kernels::simd::trace::{AlongLines, FieldCopy, Inputs, Lines, along_lines, both_sides};
+use crate::kernels::trace::tile_copy::{TWO, TileCopy};
+use crate::kernels::trace::{AlongLines, FieldCopy, Inputs, Lines, along_lines, both_sides};
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 

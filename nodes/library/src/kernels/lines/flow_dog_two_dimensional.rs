@@ -5,7 +5,7 @@
 //! Cost: the steps of the second pass times the samples of the first: about 4 sigma_m times 6 k sigma_e
 //! bilinear samples of two values.
 
-use crate::choice::Numbered;
+use crate::declare::choice::Numbered;
 use crate::kernels::lines::flow_dog_gradient::halfwidth;
 pub use crate::kernels::shaders::flow_dog_two_dimensional::Params;
 use crate::kernels::shared::edge_threshold::{Xdog, dog_of_sums, edge_of_sums};
@@ -14,7 +14,7 @@ use crate::kernels::shared::sampling::sample_linear2;
 use crate::kernels::shared::stream::{FieldView, Integrator, Stream, half_length};
 use crate::kernels::shared::tensor::tangent;
 use crate::kernels::simd::pixels::{Block, for_blocks, write};
-use crate::kernels::simd::trace::Lines;
+use crate::kernels::trace::Lines;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};

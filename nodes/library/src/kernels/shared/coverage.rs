@@ -47,6 +47,19 @@ impl Covered {
 /// Coverage up to which a pixel counts as empty.
 pub const LEAST_COVERAGE: f32 = 1e-6;
 
+/// Colours times their alpha.
+#[inline(always)]
+pub fn premultiply<S: Simd>([r, g, b, a]: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
+    [r * a, g * a, b * a, a]
+}
+
+/// Colours without the alpha that they are multiplied by; black where nothing is covered.
+#[inline(always)]
+pub fn unpremultiply<S: Simd>([r, g, b, a]: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
+    let (zero, seen) = (f32x8::splat(a.simd, 0.0), a.simd_gt(f32x8::splat(a.simd, LEAST_COVERAGE)));
+    [seen.select(r / a, zero), seen.select(g / a, zero), seen.select(b / a, zero), a]
+}
+
 /// Greater mean coverages are rounding away from 1.
 pub const FULL: f32 = 0.999_998;
 
@@ -63,4 +76,21 @@ pub fn is_opaque(rgba: &[f32]) -> bool {
     let (blocks, rest) = rgba.as_chunks::<32>();
     blocks.iter().all(|b| (0..8).fold(true, |all, i| all & (b[4 * i + 3] == 1.0)))
         && rest.chunks_exact(4).all(|p| p[3] == 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isophote_engine::fearless_simd::{Level, dispatch};
+
+    #[test]
+    fn what_is_not_covered_is_black() {
+        dispatch!(Level::new(), simd => {
+            let pixel = [0.5, -2.0, 8.0].map(|v| f32x8::splat(simd, v));
+            let with = |alpha: f32| [pixel[0], pixel[1], pixel[2], f32x8::splat(simd, alpha)];
+            let back = unpremultiply(premultiply(with(0.25)));
+            assert_eq!(back.map(|v| v[3]), [0.5, -2.0, 8.0, 0.25]);
+            assert_eq!(unpremultiply(with(0.0)).map(|v| v[0]), [0.0; 4]);
+        });
+    }
 }

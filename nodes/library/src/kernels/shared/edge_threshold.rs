@@ -5,7 +5,7 @@ use crate::kernels::shared::coverage::LEAST_COVERAGE;
 use isophote_engine::fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
 
-crate::choice::choice! {
+crate::declare::choice::choice! {
     /// How a response becomes an edge image.
     pub enum Threshold {
         /// Not at all: the response, in units of L.

@@ -1,8 +1,9 @@
 //! The host's pixels in its own space, finite and not premultiplied. Twin of
 //! `shaders/shared/host_colour.wgsl`.
 
-use crate::kernels::simd::pixels::unpremultiply;
-use isophote_engine::fearless_simd::{Level, Simd, dispatch, f32x8, prelude::*};
+use crate::kernels::shared::coverage::unpremultiply;
+use isophote_engine::fearless_simd::prelude::*;
+use isophote_engine::fearless_simd::{Level, Simd, dispatch, f32x8};
 use isophote_engine::math::transposed;
 use isophote_engine::pixels::LARGEST_HALF;
 

@@ -1,10 +1,12 @@
 //! Motion between frames: where a pixel's point is in another frame, from its own place. Twin of
 //! `shaders/shared/motion.wgsl`.
 
+use crate::kernels::shared::coverage::premultiply;
 use crate::kernels::shared::sampling::{fetch4, load_pairs, sample_linear4};
-use crate::kernels::simd::pixels::{Block, eight, load_pixels, offsets, premultiply};
+use crate::kernels::simd::pixels::{Block, eight, load_pixels, offsets};
 use isophote_engine::View;
-use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
+use isophote_engine::fearless_simd::prelude::*;
+use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8};
 use isophote_engine::math::{spread, transposed};
 
 /// Components of motions that are not known.
@@ -157,21 +159,7 @@ pub fn sample_sharp2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>
     let (rows, fy) = floor_and_share(y, h);
     let (wx, wy) = (catmull_rom(fx), catmull_rom(fy));
     if !all_between([columns, rows], [1, 1], [w - 3, h - 3]) {
-        // In the order of the other ways: a pixel must not depend on which others it is computed with.
-        let mut sum = [f32x8::splat(simd, 0.0); 2];
-        for i in 0..4 {
-            let mut column = [f32x8::splat(simd, 0.0); 2];
-            for j in 0..4 {
-                let pixel = fetch2(simd, view, columns + (i as i32 - 1), rows + (j as i32 - 1));
-                for c in 0..2 {
-                    column[c] = if j == 0 { pixel[c] * wy[0] } else { pixel[c].mul_add(wy[j], column[c]) };
-                }
-            }
-            for c in 0..2 {
-                sum[c] += wx[i] * column[c];
-            }
-        }
-        return sum;
+        return taps2(simd, view, [columns - 1, rows - 1], wx, wy);
     }
     let stride = view.stride() as u32 as usize;
     if let Some(run) = Run::of(simd, view, x, y, [1, 2]) {
@@ -211,6 +199,32 @@ pub fn sample_sharp2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>
         }
     }
     [f32x8::simd_from(simd, first), f32x8::simd_from(simd, second)]
+}
+
+/// The weighted sum of 4 x 4 pixels of a two-channel image from those at `first` on, in the order of [`sample_sharp2`]'s
+/// other ways: a pixel must not depend on which others it is computed with.
+#[inline(always)]
+fn taps2<S: Simd>(
+    simd: S,
+    view: &View<'_>,
+    [columns, rows]: [i32x8<S>; 2],
+    wx: [f32x8<S>; 4],
+    wy: [f32x8<S>; 4],
+) -> [f32x8<S>; 2] {
+    let mut sum = [f32x8::splat(simd, 0.0); 2];
+    for i in 0..4 {
+        let mut column = [f32x8::splat(simd, 0.0); 2];
+        for j in 0..4 {
+            let pixel = fetch2(simd, view, columns + i as i32, rows + j as i32);
+            for c in 0..2 {
+                column[c] = if j == 0 { pixel[c] * wy[0] } else { pixel[c].mul_add(wy[j], column[c]) };
+            }
+        }
+        for c in 0..2 {
+            sum[c] += wx[i] * column[c];
+        }
+    }
+    sum
 }
 
 /// Eight positions that lie beside each other like the pixels of a row, away from the picture's edges.

@@ -5,7 +5,7 @@
 //! cancel. A line is traced from its centre in one direction and then in the other. Lanes whose line
 //! has ended stay where they are while the others go on.
 //!
-//! [`trace`](crate::kernels::simd::trace) follows them.
+//! [`trace`](crate::kernels::trace) follows them.
 //!
 //! Cost: a step samples one tensor (Euler, two-step) or two (midpoint), bilinearly, and finds their axes; the
 //! first step of Euler's method and of the midpoint method saves one.
@@ -15,7 +15,7 @@ use crate::kernels::shared::tensor::{tangent, tangent_along};
 use isophote_engine::View;
 use isophote_engine::fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
 
-crate::choice::numbered! {
+crate::declare::choice::numbered! {
     /// How a stream line goes on to its next point.
     pub enum Integrator {
         /// Euler's method, first order (2.176, 2.177).

@@ -4,7 +4,6 @@
 //! with its last pixel, so that no pixel depends on where its tile ends. The number of channels, `N`, is
 //! 1, 2 or 4 everywhere.
 
-use crate::kernels::shared::coverage::LEAST_COVERAGE;
 use isophote_engine::fearless_simd::{Simd, f32x4, f32x8, i32x8, prelude::*};
 use isophote_engine::math::{load4, store4, transposed};
 use isophote_engine::{Band, CpuPass, View};
@@ -244,19 +243,6 @@ pub fn map_pairs<S: Simd, const I: usize, const O: usize>(
     }
 }
 
-/// Colours times their alpha.
-#[inline(always)]
-pub fn premultiply<S: Simd>([r, g, b, a]: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
-    [r * a, g * a, b * a, a]
-}
-
-/// Colours without the alpha that they are multiplied by; black where nothing is covered.
-#[inline(always)]
-pub fn unpremultiply<S: Simd>([r, g, b, a]: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
-    let (zero, seen) = (f32x8::splat(a.simd, 0.0), a.simd_gt(f32x8::splat(a.simd, LEAST_COVERAGE)));
-    [seen.select(r / a, zero), seen.select(g / a, zero), seen.select(b / a, zero), a]
-}
-
 /// Where eight pixels begin in the data of `view`; positions are clamped to the picture and must then
 /// lie in the window.
 #[inline(always)]
@@ -354,16 +340,5 @@ mod tests {
             let want = source.data().chunks_exact(4).flat_map(|p| [p[0] + p[1], p[2] - p[3]]);
             assert_eq!(values, want.collect::<Vec<_>>());
         }
-    }
-
-    #[test]
-    fn what_is_not_covered_is_black() {
-        dispatch!(Level::new(), simd => {
-            let pixel = [0.5, -2.0, 8.0].map(|v| f32x8::splat(simd, v));
-            let with = |alpha: f32| [pixel[0], pixel[1], pixel[2], f32x8::splat(simd, alpha)];
-            let back = unpremultiply(premultiply(with(0.25)));
-            assert_eq!(back.map(|v| v[3]), [0.5, -2.0, 8.0, 0.25]);
-            assert_eq!(unpremultiply(with(0.0)).map(|v| v[0]), [0.0; 4]);
-        });
     }
 }

@@ -5,13 +5,14 @@
 //! and the error function, about 120 operations.
 
 pub use crate::kernels::shaders::cabral_leedom::Params;
-use crate::kernels::shared::coverage::Covered;
+use crate::kernels::shared::coverage::{Covered, unpremultiply};
 use crate::kernels::shared::pixel_line::{GaussianLines, most_steps};
 use crate::kernels::shared::stream::half_length;
 use crate::kernels::shared::tensor::{anisotropy, tangent};
-use crate::kernels::simd::pixels::{Block, fetch4, for_blocks, offsets, unpremultiply, write};
+use crate::kernels::simd::pixels::{Block, fetch4, for_blocks, offsets, write};
 use crate::kernels::smoothing::line_integral_convolution::{Adapt, Options, least_turn};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::prelude::*;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::kernel!(cabral_leedom {

@@ -8,7 +8,7 @@
 //!
 //! Cost: an eigenanalysis and an exponential, about 80 operations.
 
-use crate::choice::Numbered;
+use crate::declare::choice::Numbered;
 pub use crate::kernels::shaders::diffusion_tensor::Params;
 use crate::kernels::shared::tensor::{Eigen, eigen};
 use crate::kernels::simd::pixels::map_pixels;
@@ -28,7 +28,7 @@ crate::kernel!(diffusion_tensor {
     },
 });
 
-crate::choice::numbered! {
+crate::declare::choice::numbered! {
     /// Which diffusion.
     pub enum Scheme {
         /// 1 - exp(-3.31488 / (lambda1 / lambda^2)^4) across edges, 1 along them.

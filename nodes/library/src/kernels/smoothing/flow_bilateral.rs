@@ -9,17 +9,18 @@
 //! Cost: 4 sigma steps per pixel, each one bilinear colour sample with one exponential (manual: four)
 //! and one (Euler) or two tensor samples with their tangents.
 
-use crate::choice::Numbered;
-use crate::kernels::lines::orientation_field;
+use crate::declare::choice::Numbered;
 pub use crate::kernels::shaders::flow_bilateral::Params;
-use crate::kernels::shared::coverage::Covered;
+use crate::kernels::shared::coverage::{Covered, premultiply};
 use crate::kernels::shared::sampling::{fetch4, sample_linear4};
 use crate::kernels::shared::stream::{FieldView, Integrator, Stream, half_length, in_bounds};
 use crate::kernels::shared::tensor::tangent;
-use crate::kernels::simd::pixels::{Block, for_blocks_in_tiles, premultiply, write};
-use crate::kernels::simd::trace::{Lines, Point, both_sides};
+use crate::kernels::simd::pixels::{Block, for_blocks_in_tiles, write};
 use crate::kernels::smoothing::oriented_bilateral::Sampling;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
+use crate::kernels::structure::orientation_field;
+use crate::kernels::trace::{Lines, Point, both_sides};
+use isophote_engine::fearless_simd::prelude::*;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
@@ -39,7 +40,7 @@ crate::kernel!(flow_bilateral {
     },
 });
 
-crate::choice::choice! {
+crate::declare::choice::choice! {
     /// Where stream lines are sampled.
     pub enum Placement {
         /// At every pixel of length.

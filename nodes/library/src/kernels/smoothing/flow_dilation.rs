@@ -11,7 +11,7 @@ use crate::kernels::shared::sampling::{fetch4, sample_linear4};
 use crate::kernels::shared::stream::{FieldView, Integrator};
 use crate::kernels::shared::tensor::{anisotropy, tangent};
 use crate::kernels::simd::pixels::{Block, for_blocks, write};
-use crate::kernels::simd::trace::{Lines, both_sides};
+use crate::kernels::trace::{Lines, both_sides};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 

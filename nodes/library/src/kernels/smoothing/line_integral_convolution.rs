@@ -4,20 +4,21 @@
 //! Cost: 4 sigma / h steps per pixel, two fifths of it where steps are stretched, each one bilinear colour sample
 //! and one (Euler, two-step) or two tensor samples with their tangents, about 90 or 130 operations.
 
-use crate::choice::Numbered;
-use crate::kernels::lines::orientation_field;
+use crate::declare::choice::Numbered;
 pub use crate::kernels::shaders::line_integral_convolution::Params;
-use crate::kernels::shared::coverage::full_or;
+use crate::kernels::shared::coverage::{full_or, premultiply, unpremultiply};
 use crate::kernels::shared::sampling::sample_linear4;
 use crate::kernels::shared::stream::{
     FEW_STEPS, FieldView, Integrator, Stream, acos, few_steps, half_length, stretched,
 };
 use crate::kernels::shared::tensor::{anisotropy, tangent};
-use crate::kernels::simd::pixels::{Block, premultiply, read_tensors, unpremultiply};
-use crate::kernels::simd::tile_copy::{FOUR, TileCopy};
-use crate::kernels::simd::trace::{AlongLines, FieldCopy, Inputs, Lines, along_lines, both_sides};
+use crate::kernels::simd::pixels::{Block, read_tensors};
+use crate::kernels::structure::orientation_field;
+use crate::kernels::trace::tile_copy::{FOUR, TileCopy};
+use crate::kernels::trace::{AlongLines, FieldCopy, Inputs, Lines, along_lines, both_sides};
 use colour_taps::{ColourTaps, RUN, Sums};
-use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
+use isophote_engine::fearless_simd::prelude::*;
+use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
@@ -40,7 +41,7 @@ crate::kernel!(line_integral_convolution {
     },
 });
 
-crate::choice::choice! {
+crate::declare::choice::choice! {
     /// How the length of the lines is adapted.
     pub enum Adapt {
         /// Not at all.

@@ -10,10 +10,12 @@
 //! and gradients kept in rings. The shader reads them through workgroup memory, 4 loads a pixel.
 
 pub use crate::kernels::shaders::mean_curvature_flow::Params;
+use crate::kernels::shared::coverage::premultiply;
 use crate::kernels::shared::tensor::tangent;
 use crate::kernels::simd::line_buffer::{LineBuffer, pixels, strips};
-use crate::kernels::simd::pixels::{Block, eight, premultiply, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use crate::kernels::simd::pixels::{Block, eight, write};
+use isophote_engine::fearless_simd::prelude::*;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(mean_curvature_flow {

@@ -10,10 +10,12 @@
 //! Cost: about 1.8 cutoff taps of one interpolation and one exponential (manual: two or more).
 
 pub use crate::kernels::shaders::oriented_bilateral::Params;
+use crate::kernels::shared::coverage::premultiply;
 use crate::kernels::shared::tensor::{anisotropy, tangent};
 use crate::kernels::simd::line_taps::{LineTaps, Lines, STEPS, strips};
-use crate::kernels::simd::pixels::{premultiply, read, read_tensors, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use crate::kernels::simd::pixels::{read, read_tensors, write};
+use isophote_engine::fearless_simd::prelude::*;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance, View};
 
@@ -38,7 +40,7 @@ pub enum Direction {
     Tangent = 1,
 }
 
-crate::choice::choice! {
+crate::declare::choice::choice! {
     /// Where range weights are applied.
     pub enum Sampling {
         /// To the interpolated colour.
@@ -174,6 +176,22 @@ struct Block<S: Simd> {
     coverage: [[f32x8<S>; 2]; STEPS],
 }
 
+impl<S: Simd> Block<S> {
+    /// Adds the colours of `count` steps to the sums of colours and weights.
+    #[inline(always)]
+    fn add<const MODE: u32>(&self, count: usize, sum: &mut [f32x8<S>; 4]) {
+        for i in 0..count.min(STEPS) {
+            let taps = self.taps[i];
+            let weights = exponential(taps[0][3], taps[1][3]);
+            for side in 0..2 {
+                let ([r, g, b, _], weight) = (taps[side], weights[side]);
+                let share = if MODE == COVERED { weight * self.coverage[i][side] } else { weight };
+                add(sum, weight, [r, g, b], share);
+            }
+        }
+    }
+}
+
 impl Row<'_> {
     /// The eight pixels from pixel `i` of the row on; past its end they repeat the last one.
     #[inline(always)]
@@ -276,17 +294,8 @@ impl Row<'_> {
             },
             #[inline(always)]
             |(block, sum), count| {
-                if MODE == MANUAL {
-                    return;
-                }
-                for i in 0..count.min(STEPS) {
-                    let taps = block.taps[i];
-                    let weights = exponential(taps[0][3], taps[1][3]);
-                    for side in 0..2 {
-                        let ([r, g, b, _], weight) = (taps[side], weights[side]);
-                        let share = if MODE == COVERED { weight * block.coverage[i][side] } else { weight };
-                        add(sum, weight, [r, g, b], share);
-                    }
+                if MODE != MANUAL {
+                    block.add::<MODE>(count, sum);
                 }
             },
         );

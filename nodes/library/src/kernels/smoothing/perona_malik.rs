@@ -7,7 +7,7 @@
 //!
 //! Cost: 60 operations (exponential: 100); memory takes longer.
 
-use crate::choice::Numbered;
+use crate::declare::choice::Numbered;
 pub use crate::kernels::shaders::perona_malik::Params;
 use crate::kernels::simd::line_buffer::{Row, WIDE_STRIP, for_rows, pixels};
 use crate::kernels::simd::pixels::{BLOCK, write};
@@ -26,7 +26,7 @@ crate::kernel!(perona_malik {
     },
 });
 
-crate::choice::choice! {
+crate::declare::choice::choice! {
     /// The diffusivity g (3.2).
     pub enum Diffusivity {
         /// 1 / (1 + s^2 / lambda^2), which favours wide regions.

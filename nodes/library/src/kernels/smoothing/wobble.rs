@@ -4,10 +4,10 @@
 //! Cost: 16 hashes, one bilinear sample and about 150 multiply-adds.
 
 pub use crate::kernels::shaders::wobble::Params;
-use crate::kernels::shared::coverage::Covered;
+use crate::kernels::shared::coverage::{Covered, unpremultiply};
 use crate::kernels::shared::sampling::sample_linear4;
 use crate::kernels::shared::value_noise::noise;
-use crate::kernels::simd::pixels::{for_blocks, unpremultiply, write};
+use crate::kernels::simd::pixels::{for_blocks, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 

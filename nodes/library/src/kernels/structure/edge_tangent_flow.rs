@@ -39,7 +39,7 @@ crate::kernel!(edge_tangent_flow {
     },
 });
 
-crate::choice::choice! {
+crate::declare::choice::choice! {
     /// Spatial weight w_s of the neighbours.
     pub enum Window {
         /// 1 nearer than the radius.

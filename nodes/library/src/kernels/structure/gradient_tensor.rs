@@ -11,10 +11,12 @@
 //! for the pixels of a workgroup, which makes 1 + radius / 4 columns of 2 radius + 1 loads a pixel.
 
 pub use crate::kernels::shaders::gradient_tensor::Params;
+use crate::kernels::shared::coverage::premultiply;
 use crate::kernels::shared::outer_product::outer_product;
 use crate::kernels::simd::line_buffer::{LineBuffer, Row, WIDE_STRIP, for_rows};
-use crate::kernels::simd::pixels::{BLOCK, eight, premultiply, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use crate::kernels::simd::pixels::{BLOCK, eight, write};
+use isophote_engine::fearless_simd::prelude::*;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 /// Entries of a table, the centre included.

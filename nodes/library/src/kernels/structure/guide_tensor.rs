@@ -8,7 +8,7 @@
 //!
 //! NaN and infinities count as nothing there. Cost: about 60 operations a pixel.
 
-use crate::choice::Numbered;
+use crate::declare::choice::Numbered;
 pub use crate::kernels::shaders::guide_tensor::Params;
 use crate::kernels::shared::outer_product::validity;
 use crate::kernels::simd::line_buffer::{LineBuffer, strips};
@@ -29,7 +29,7 @@ crate::kernel!(guide_tensor {
     },
 });
 
-crate::choice::numbered! {
+crate::declare::choice::numbered! {
     /// What a guide image holds.
     pub enum Guide {
         /// View-space normal and validity.

@@ -8,11 +8,13 @@
 //! for the pixels of a workgroup, which makes 2/3 + radius / 4 columns of 2 radius + 1 loads a pixel.
 
 pub use crate::kernels::shaders::oversampled_tensor::Params;
+use crate::kernels::shared::coverage::premultiply;
 use crate::kernels::shared::outer_product::outer_product;
 use crate::kernels::simd::line_buffer::{LineBuffer, strips};
-use crate::kernels::simd::pixels::{eight, premultiply, write};
+use crate::kernels::simd::pixels::{eight, write};
 use crate::kernels::structure::gradient_tensor::Measure;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::prelude::*;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 /// Entries of a table.

@@ -12,7 +12,7 @@
 //!
 //! Cost: about 30 operations.
 
-use crate::choice::Numbered;
+use crate::declare::choice::Numbered;
 pub use crate::kernels::shaders::tensor_display::Params;
 use crate::kernels::shared::tensor;
 use crate::kernels::simd::pixels::map_pixels;
@@ -32,7 +32,7 @@ crate::kernel!(tensor_display {
     },
 });
 
-crate::choice::numbered! {
+crate::declare::choice::numbered! {
     /// What to show.
     pub enum Show {
         /// Hue by the double angle of the tangent, saturation by anisotropy.

@@ -6,9 +6,11 @@
 //! Cost: a bilinear sample of four channels, an exponential and about 40 operations.
 
 pub use crate::kernels::shaders::carried_share::Params;
+use crate::kernels::shared::coverage::unpremultiply;
 use crate::kernels::shared::motion::{is_inside, is_known, sample_linear_covered4};
-use crate::kernels::simd::pixels::{Block, for_blocks, unpremultiply, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use crate::kernels::simd::pixels::{Block, for_blocks, write};
+use isophote_engine::fearless_simd::prelude::*;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 

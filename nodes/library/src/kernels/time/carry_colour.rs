@@ -3,11 +3,12 @@
 //!
 //! Cost: 16 taps of four channels and about 100 operations; hardly anything where the frame counts for nothing.
 
-use crate::kernels::shared::coverage::LEAST_COVERAGE;
+use crate::kernels::shared::coverage::{LEAST_COVERAGE, unpremultiply};
 use crate::kernels::shared::motion::sample_sharp_covered4;
-use crate::kernels::simd::pixels::{Block, for_blocks, unpremultiply, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use crate::kernels::simd::carrying::{self, Carried, take_in};
+use isophote_engine::fearless_simd::prelude::*;
+use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Tolerance, View};
 
 crate::kernel!(carry_colour {
     cpu: run,
@@ -20,38 +21,23 @@ crate::kernel!(carry_colour {
     },
 });
 
-/// The colour `average` with that of `theirs` taken in, where `motion` leads to and as far as `shares` says
-/// ([`carried_share`](super::carried_share)); motions are at most `reach` pixels long.
-pub fn pass(
-    plan: &mut PlanBuilder,
-    [average, theirs]: [ImageId; 2],
-    [motion, shares]: [ImageId; 2],
-    reach: u32,
-) -> ImageId {
-    let here = Support::Pixels(0);
-    let supports = [here, here, here, Support::Pixels(reach + 2)];
-    plan.pass_reaching(&KERNEL, &[average, motion, shares, theirs], &(), &[Class::Colour], &supports, 0)
+/// The colour of the first of `images` with that of the second taken in, where the motion in `by` leads to and as far as
+/// the shares in it say; motions are at most `reach` pixels long.
+pub fn pass(plan: &mut PlanBuilder, images: [ImageId; 2], by: [ImageId; 2], reach: u32) -> ImageId {
+    carrying::pass(plan, &KERNEL, images, by, Class::Colour, [0, reach + 2])
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => for_blocks::<4>(band, #[inline(always)] |block, target| {
-        write(taken_in(simd, pass, block), target);
+    dispatch!(pass.level, simd => take_in(simd, pass, band, #[inline(always)] |carried| {
+        mixed(simd, &pass.inputs[3], carried)
     }));
 }
 
 #[inline(always)]
-fn taken_in<S: Simd>(simd: S, pass: &CpuPass<'_>, block: Block) -> [f32x8<S>; 4] {
+fn mixed<S: Simd>(simd: S, theirs: &View<'_>, carried: &Carried<S, 4>) -> [f32x8<S>; 4] {
+    let Carried { own, share, place: [x, y], .. } = *carried;
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-    let own: [f32x8<S>; 4] = block.read(simd, &pass.inputs[0]);
-    let [share, _]: [f32x8<S>; 2] = block.read(simd, &pass.inputs[2]);
-    let counts = share.simd_gt(zero);
-    if !counts.any_true() {
-        return own;
-    }
-    let motion: [f32x8<S>; 2] = block.read(simd, &pass.inputs[1]);
-    let [cx, cy] = block.centres(simd);
-    let (x, y) = (cx + counts.select(motion[0], zero), cy + counts.select(motion[1], zero));
-    let mut carried = sample_sharp_covered4(simd, &pass.inputs[3], x, y);
+    let mut carried = sample_sharp_covered4(simd, theirs, x, y);
     carried[3] = carried[3].within(zero, one);
     let carried = unpremultiply(carried);
     let alpha = (carried[3] - own[3]).mul_add(share, own[3]);
@@ -61,9 +47,5 @@ fn taken_in<S: Simd>(simd: S, pass: &CpuPass<'_>, block: Block) -> [f32x8<S>; 4]
         mixed[c] = (carried[c] - own[c]).mul_add(weight, own[c]);
     }
     mixed[3] = alpha;
-    let mut result = own;
-    for c in 0..4 {
-        result[c] = counts.select(mixed[c], own[c]);
-    }
-    result
+    mixed
 }

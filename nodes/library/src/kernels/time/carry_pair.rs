@@ -4,9 +4,9 @@
 //! Cost: 16 taps of two channels and about 60 operations.
 
 use crate::kernels::shared::motion::sample_sharp2;
-use crate::kernels::simd::pixels::{Block, for_blocks, write};
+use crate::kernels::simd::carrying::{self, Carried, take_in};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::{Band, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use isophote_engine::{Band, CpuPass, ImageId, PlanBuilder, Tolerance, View};
 
 crate::kernel!(carry_pair {
     cpu: run,
@@ -19,42 +19,26 @@ crate::kernel!(carry_pair {
     },
 });
 
-/// The pair `average` with that of `theirs` taken in, where `motion` leads to and as far as `shares` says
-/// ([`carried_share`](super::carried_share)); motions are at most `reach` pixels long.
-pub fn pass(
-    plan: &mut PlanBuilder,
-    [average, theirs]: [ImageId; 2],
-    [motion, shares]: [ImageId; 2],
-    reach: u32,
-) -> ImageId {
-    let here = Support::Pixels(0);
-    let supports = [here, here, here, Support::Pixels(reach + 2)];
-    let class = plan.desc(theirs).class;
-    plan.pass_reaching(&KERNEL, &[average, motion, shares, theirs], &(), &[class], &supports, 0)
+/// The pair of the first of `images` with that of the second taken in, where the motion in `by` leads to and as far as
+/// the shares in it say; motions are at most `reach` pixels long.
+pub fn pass(plan: &mut PlanBuilder, images: [ImageId; 2], by: [ImageId; 2], reach: u32) -> ImageId {
+    let class = plan.desc(images[1]).class;
+    carrying::pass(plan, &KERNEL, images, by, class, [0, reach + 2])
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => for_blocks::<2>(band, #[inline(always)] |block, target| {
-        write(taken_in(simd, pass, block), target);
+    dispatch!(pass.level, simd => take_in(simd, pass, band, #[inline(always)] |carried| {
+        mixed(simd, &pass.inputs[3], carried)
     }));
 }
 
 #[inline(always)]
-fn taken_in<S: Simd>(simd: S, pass: &CpuPass<'_>, block: Block) -> [f32x8<S>; 2] {
-    let zero = f32x8::splat(simd, 0.0);
-    let own: [f32x8<S>; 2] = block.read(simd, &pass.inputs[0]);
-    let [share, _]: [f32x8<S>; 2] = block.read(simd, &pass.inputs[2]);
-    let counts = share.simd_gt(zero);
-    if !counts.any_true() {
-        return own;
-    }
-    let motion: [f32x8<S>; 2] = block.read(simd, &pass.inputs[1]);
-    let [cx, cy] = block.centres(simd);
-    let (x, y) = (cx + counts.select(motion[0], zero), cy + counts.select(motion[1], zero));
-    let carried = sample_sharp2(simd, &pass.inputs[3], x, y);
-    let mut result = own;
+fn mixed<S: Simd>(simd: S, theirs: &View<'_>, carried: &Carried<S, 2>) -> [f32x8<S>; 2] {
+    let Carried { own, share, place: [x, y], .. } = *carried;
+    let carried = sample_sharp2(simd, theirs, x, y);
+    let mut mixed = own;
     for c in 0..2 {
-        result[c] = counts.select((carried[c] - own[c]).mul_add(share, own[c]), own[c]);
+        mixed[c] = (carried[c] - own[c]).mul_add(share, own[c]);
     }
-    result
+    mixed
 }

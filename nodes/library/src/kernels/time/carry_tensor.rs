@@ -7,9 +7,9 @@
 //! Cost: a bilinear sample of four channels and about 80 operations.
 
 use crate::kernels::shared::motion::{beside, sample_linear_near4};
-use crate::kernels::simd::pixels::{Block, for_blocks, write};
+use crate::kernels::simd::carrying::{self, Carried, take_in};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Tolerance, View};
 
 crate::kernel!(carry_tensor {
     cpu: run,
@@ -25,55 +25,38 @@ crate::kernel!(carry_tensor {
 /// Larger differences of motion between neighbours are borders of things.
 const BORDER: f32 = 0.5;
 
-/// The tensor `average` with that of `theirs` taken in, where `motion` leads to and as far as `shares` says
-/// ([`carried_share`](super::carried_share)); motions are at most `reach` pixels long.
-pub fn pass(
-    plan: &mut PlanBuilder,
-    [average, theirs]: [ImageId; 2],
-    [motion, shares]: [ImageId; 2],
-    reach: u32,
-) -> ImageId {
-    let here = Support::Pixels(0);
-    let supports = [here, Support::Pixels(1), here, Support::Pixels(reach + 1)];
-    plan.pass_reaching(&KERNEL, &[average, motion, shares, theirs], &(), &[Class::Field], &supports, 0)
+/// The tensor of the first of `images` with that of the second taken in, where the motion in `by` leads to and as far as
+/// the shares in it say; motions are at most `reach` pixels long.
+pub fn pass(plan: &mut PlanBuilder, images: [ImageId; 2], by: [ImageId; 2], reach: u32) -> ImageId {
+    carrying::pass(plan, &KERNEL, images, by, Class::Field, [1, reach + 1])
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => for_blocks::<4>(band, #[inline(always)] |block, target| {
-        write(taken_in(simd, pass, block), target);
+    dispatch!(pass.level, simd => take_in(simd, pass, band, #[inline(always)] |carried| {
+        mixed(simd, [&pass.inputs[1], &pass.inputs[3]], carried)
     }));
 }
 
 #[inline(always)]
-fn taken_in<S: Simd>(simd: S, pass: &CpuPass<'_>, block: Block) -> [f32x8<S>; 4] {
-    let zero = f32x8::splat(simd, 0.0);
-    let own: [f32x8<S>; 4] = block.read(simd, &pass.inputs[0]);
-    let [share, _]: [f32x8<S>; 2] = block.read(simd, &pass.inputs[2]);
-    let counts = share.simd_gt(zero);
-    if !counts.any_true() {
-        return own;
-    }
-    let motion = &pass.inputs[1];
-    let at: [f32x8<S>; 2] = block.read(simd, motion);
+fn mixed<S: Simd>(simd: S, [motion, theirs]: [&View<'_>; 2], carried: &Carried<S, 4>) -> [f32x8<S>; 4] {
+    let Carried { block, own, share, motion: at, place: [x, y] } = *carried;
     let (left, right) = (beside(simd, motion, block, [-1, 0]), beside(simd, motion, block, [1, 0]));
     let (above, below) = (beside(simd, motion, block, [0, -1]), beside(simd, motion, block, [0, 1]));
     let dx = [derivative(left[0], at[0], right[0]), derivative(left[1], at[1], right[1])];
     let dy = [derivative(above[0], at[0], below[0]), derivative(above[1], at[1], below[1])];
     let (a, b, c, d) = (dx[0] + 1.0, dy[0], dx[1], dy[1] + 1.0);
-    let [cx, cy] = block.centres(simd);
-    let (x, y) = (cx + counts.select(at[0], zero), cy + counts.select(at[1], zero));
-    let [e, f, g, w] = sample_linear_near4(simd, &pass.inputs[3], x, y);
+    let [e, f, g, w] = sample_linear_near4(simd, theirs, x, y);
     let turned = [
         a * a * e + a * c * f * 2.0 + c * c * g,
         a * b * e + (a * d + b * c) * f + c * d * g,
         b * b * e + b * d * f * 2.0 + d * d * g,
         w,
     ];
-    let mut result = own;
+    let mut mixed = own;
     for i in 0..4 {
-        result[i] = counts.select((turned[i] - own[i]).mul_add(share, own[i]), own[i]);
+        mixed[i] = (turned[i] - own[i]).mul_add(share, own[i]);
     }
-    result
+    mixed
 }
 
 /// The smaller one-sided difference, and none across borders of things.

@@ -2,8 +2,8 @@
 //! tensor and sharpening across them, in turn. Lines are followed in steps of one pixel, or in fewer that
 //! are stretched ([`few_steps`](crate::kernels::shared::stream::few_steps)).
 
-use crate::ports;
-use crate::spec::{NodeSpec, STEADINESS, Scope, WINDOW};
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, STEADINESS, Scope, WINDOW};
 use crate::stages::coherence_enhancing::{
     ADAPT, Filter, ITERATIONS, MAX_ANGLE, RELAX_THRESHOLD, RHO, SHOCK, SIGMA_A, SIGMA_T, STEPPING, filtered,
 };

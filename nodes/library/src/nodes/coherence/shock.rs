@@ -1,8 +1,8 @@
 //! Shock filters (§ 6.4): sharp edges by eroding about minima and dilating about maxima.
 
-use crate::ports;
-use crate::choice::choice;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::declare::ports;
+use crate::declare::choice::choice;
+use crate::declare::spec::{NodeSpec, Param, Scope};
 use crate::stages::{structure_tensor, tensor_options};
 use crate::stages::shock::{Directed, ITERATIONS, RADIUS, SIGMA_G, SIGMA_I, THRESHOLD, TIME_STEP, coherence_enhancing_step, osher_rudin_step};
 use isophote_engine::ImageId;

@@ -1,8 +1,8 @@
 //! Lines over a picture (§ 4.6).
 
 use crate::kernels::colour::composite_lines::{self, Params};
-use crate::ports;
-use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
+use crate::declare::ports;
+use crate::declare::spec::{ImageKind, NodeSpec, Param, Port, Scope};
 use isophote_engine::ImageId;
 
 /// The node.

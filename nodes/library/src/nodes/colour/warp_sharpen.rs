@@ -1,7 +1,7 @@
 //! Sharpening by warping (§ 4.6): the picture is pulled away from its edges, which narrows them.
 
-use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, Scope};
 use crate::stages::warp_sharpen::{SIGMA_W, warped};
 use isophote_engine::ImageId;
 

@@ -2,8 +2,8 @@
 
 use crate::kernels::colour::lightness;
 use crate::kernels::lines::dog_columns::{self, Options};
-use crate::ports;
-use crate::spec::{NodeSpec, Scope};
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Scope};
 use crate::stages::difference_of_gaussians::{
     EDGES, EPSILON, EPSILON_P, FORM, K, P, PHI, PHI_P, SIGMA_E, TAU, THRESHOLD, xdog,
 };

@@ -3,8 +3,8 @@
 use crate::kernels::colour::rgb_to_lab;
 use crate::kernels::lines::edge_candidates::{self, Method, Options};
 use crate::kernels::lines::{edge_gradient, edge_hysteresis};
-use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, Scope};
 use crate::stages::difference_of_gaussians as dog;
 use isophote_engine::ImageId;
 

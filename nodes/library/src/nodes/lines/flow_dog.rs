@@ -1,12 +1,12 @@
 //! The flow-based difference of Gaussians filter (§ 4.5), separable or with its two-dimensional kernel, with
 //! lines where geometry breaks.
 
-use crate::choice::choice;
+use crate::declare::choice::choice;
 use crate::kernels::colour::lightness;
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::stream::Integrator;
-use crate::ports;
-use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::difference_of_gaussians as dog;
 use crate::stages::flow_dog::{DEPTH, FlowDog, Kernel, NORMAL, OBJECT_ID, SIGMA_M, guides, tensor};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, compared, steadied};

@@ -1,7 +1,7 @@
 //! The anisotropic Kuwahara filter (§ 5.4), at one scale or at several (§ 5.5).
 
-use crate::ports;
-use crate::spec::{NodeSpec, Param, Port, STEADINESS, Scope, WINDOW};
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, Port, STEADINESS, Scope, WINDOW};
 use crate::stages::anisotropic_kuwahara::{
     ALPHA, LEVELS, LIMIT_RANGE, P_D, P_S, Painting, RADIUS, TAU_V, TAU_W, Weights,
 };

@@ -1,9 +1,9 @@
 //! The generalized Kuwahara filter of Papari et al. (§ 5.3).
 
-use crate::choice::choice;
+use crate::declare::choice::choice;
 use crate::kernels::painting::generalized_kuwahara::{self, Options};
-use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, Scope};
 use crate::stages::generalized_kuwahara::{Q, SECTORS, THRESHOLD, sectors};
 use isophote_engine::ImageId;
 

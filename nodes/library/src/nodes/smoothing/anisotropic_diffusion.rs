@@ -1,13 +1,13 @@
 //! Anisotropic diffusion (§ 3.1): Perona and Malik's, and Weickert's edge-enhancing and
 //! coherence-enhancing schemes.
 
-use crate::choice::choice;
+use crate::declare::choice::choice;
 use crate::kernels::smoothing::diffusion_tensor::{self, Scheme};
 use crate::kernels::smoothing::perona_malik::{self, Diffusivity, Options};
 use crate::kernels::smoothing::{diffusion_step, gaussian_blur};
 use crate::kernels::structure::gradient_tensor::{self, Derivative, Measure};
-use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, Scope};
 use isophote_engine::{Class, ImageId, PlanBuilder};
 
 /// The node.

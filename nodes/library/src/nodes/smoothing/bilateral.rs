@@ -1,10 +1,10 @@
 //! The bilateral filter (§ 3.2) and its xy-separable form (§ 3.3).
 
-use crate::choice::choice;
+use crate::declare::choice::choice;
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::bilateral::Options;
-use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, Scope};
 use crate::stages::bilateral::{CUTOFF, Kernel, Passes, iteration};
 use isophote_engine::ImageId;
 

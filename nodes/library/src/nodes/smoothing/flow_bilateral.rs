@@ -3,8 +3,8 @@
 
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::{flow_bilateral, oriented_bilateral};
-use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, Scope};
 use crate::stages::flow_bilateral::{
     INTEGRATOR, PLACEMENT, Passes, SIGMA_DG, SIGMA_DT, SIGMA_RG, SIGMA_RT, Stepping, iteration,
 };

@@ -2,8 +2,8 @@
 
 use crate::kernels::smoothing::{flow_dilation, gaussian_blur};
 use crate::kernels::structure::noise;
-use crate::ports;
-use crate::spec::{HOLD, NodeSpec, Param, Scope};
+use crate::declare::ports;
+use crate::declare::spec::{HOLD, NodeSpec, Param, Scope};
 use crate::stages::structure_tensor;
 use isophote_engine::{Class, ImageId};
 

@@ -1,12 +1,12 @@
 //! Line integral convolution (§ 2.9): smoothing along stream lines of the structure tensor, which
 //! makes edges more coherent and gives pictures the look of brush strokes.
 
-use crate::choice::choice;
+use crate::declare::choice::choice;
 use crate::kernels::shared::stream::Integrator;
 use crate::kernels::smoothing::cabral_leedom;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options};
-use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, Scope};
 use crate::stages::line_integral_convolution::{ADAPT, MAX_ANGLE, SIGMA, STEP};
 pub use crate::stages::line_integral_convolution::options;
 use crate::stages::structure_tensor;

@@ -1,9 +1,9 @@
 //! Mean curvature flow and its constrained variant with shock filtering (§ 6.1), the shape-simplifying
 //! abstraction of Kang and Lee.
 
-use crate::ports;
+use crate::declare::ports;
 use crate::kernels::smoothing::mean_curvature_flow;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::declare::spec::{NodeSpec, Param, Scope};
 use crate::stages::{shock, structure_tensor, tensor_options};
 use isophote_engine::ImageId;
 

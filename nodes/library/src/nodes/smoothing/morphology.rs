@@ -5,10 +5,10 @@
 //! would keep the colours of single pixels but tear channels' contours apart where colours are equally
 //! light.
 
-use crate::choice::choice;
+use crate::declare::choice::choice;
 use crate::kernels::smoothing::disc_extremum::{self, Extremum};
-use crate::ports;
-use crate::spec::{NodeSpec, Param, Scope};
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, Scope};
 use crate::stages::morphology::{close, open};
 use isophote_engine::ImageId;
 

@@ -2,8 +2,8 @@
 
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::oriented_bilateral::Options;
-use crate::ports;
-use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::oriented_bilateral::{
     ANISOTROPY, Passes, SAMPLING, SIGMA_DG, SIGMA_DT, SIGMA_RG, SIGMA_RT, iteration,
 };

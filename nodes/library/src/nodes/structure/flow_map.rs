@@ -1,7 +1,7 @@
 //! Flow maps: orientation that an artist painted (§ 1.2), as game engines have it.
 
-use crate::ports;
-use crate::spec::{ImageKind, NodeSpec, Port, Scope};
+use crate::declare::ports;
+use crate::declare::spec::{ImageKind, NodeSpec, Port, Scope};
 use crate::stages::flow_map::{Flow, INVERT_Y, SOFTNESS, STRENGTH};
 use isophote_engine::ImageId;
 

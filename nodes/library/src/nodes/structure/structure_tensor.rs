@@ -1,8 +1,8 @@
 //! The structure tensor (§ 2.2-2.4, 2.7.3, 2.8): local orientation, smoothed, with what a renderer knows
 //! beside the colour as further channels, filled where contrast is low, over one or several scales.
 
-use crate::ports;
-use crate::spec::{ImageKind, NodeSpec, Port, Scope};
+use crate::declare::ports;
+use crate::declare::spec::{ImageKind, NodeSpec, Port, Scope};
 use crate::stages::structure_tensor::of_color_and_guides;
 use crate::stages::tensor_options::{
     DERIVATIVE, GUIDE_WEIGHT, Guides, LEVELS, NORMALIZE, OVERSAMPLE, RELAX_STEPS, RELAX_THRESHOLD, RHO,

@@ -1,12 +1,11 @@
 //! A tensor field made visible (§ 2.6.1, 2.9).
 
-use crate::choice::choice;
+use crate::declare::choice::choice;
+use crate::declare::ports;
+use crate::declare::spec::{ImageKind, NodeSpec, Param, Port, Scope};
 use crate::kernels::shared::stream::Integrator;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
 use crate::kernels::structure::tensor_display::{self, Options as Display, Show, least_significant};
-use crate::kernels::structure::{colour_restrict, contrast, noise, tensor_interpolate, tensor_logarithm};
-use crate::ports;
-use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
 use crate::stages::{line_integral_convolution as lic, tensor_options};
 use isophote_engine::image::MAX_SIDE;
 use isophote_engine::{ImageId, PlanBuilder};

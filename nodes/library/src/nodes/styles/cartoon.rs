@@ -1,18 +1,18 @@
 //! The enhanced cartoon filter (§ 4.6, Fig. 4.7).
 
-use crate::choice::choice;
+use crate::declare::choice::choice;
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
-use crate::ports;
-use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::{
     ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_integral_convolution as lic,
     lines, quantization as levels, quantize_luminance as quantization, tone, warp_sharpen,
 };
-use crate::value::Value;
+use crate::declare::value::Value;
 use isophote_engine::ImageId;
 
 /// The node.

@@ -2,7 +2,7 @@
 
 mod preset;
 
-use crate::ports;
+use crate::declare::ports;
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::ink_sheet::{self, Drawing, Sheet};
@@ -14,7 +14,7 @@ use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic}
 use crate::kernels::structure::contrast;
 use crate::kernels::structure::solid_noise::Marks;
 use crate::kernels::structure::tensor_display::least_significant;
-use crate::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
+use crate::declare::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
 use crate::stages::{ADVANCED, LOOK, difference_of_gaussians as dog, flow_map, line_integral_convolution as lic, lines, marks, tone};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::flow_dog::{self, FlowDog, Kernel};

@@ -1,12 +1,12 @@
 //! Oil paint (§ 1.2): noise smoothed along the flow makes the marks of a brush, colours smoothed along
 //! the flow its strokes.
 
-use crate::ports;
+use crate::declare::ports;
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::colour::paint_relief::{self, Relief};
 use crate::kernels::smoothing::flow_dilation;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
-use crate::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
+use crate::declare::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
 use crate::stages::{ADVANCED, LOOK, flow_map, line_integral_convolution as lic, marks, structure_tensor, tone};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};

@@ -1,9 +1,9 @@
 //! Motion that is estimated from pictures, where nobody knows it.
 
-use crate::choice::choice;
+use crate::declare::choice::choice;
 use crate::kernels::time::motion_import;
-use crate::ports;
-use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
+use crate::declare::ports;
+use crate::declare::spec::{ImageKind, NodeSpec, Param, Port, Scope};
 use crate::stages::optical_flow::{Quality, estimate};
 use isophote_engine::ImageId;
 

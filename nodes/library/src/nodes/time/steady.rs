@@ -1,9 +1,9 @@
 //! A picture made steady: its neighbours in time, carried here along motion, are averaged with it.
 
-use crate::ports;
-use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, compared, steadied};
-use crate::value::Value;
+use crate::declare::value::Value;
 use isophote_engine::ImageId;
 
 /// The node.

@@ -8,7 +8,7 @@ use super::record::Recorder;
 use crate::abi::failure::{Failure, Outcome};
 use ash::vk;
 use isophote::engine::Rect;
-use isophote::request::Change;
+use isophote::planned::Change;
 use isophote::{Graph, Lowered, Request};
 use isophote_abi::*;
 use std::sync::Arc;

@@ -4,7 +4,7 @@
 //! many independent loads of the other, and both in registers.
 
 use crate::kernels::simd::pixels::BLOCK;
-use crate::kernels::simd::tile_copy::{FOUR, Place, TileCopy};
+use crate::kernels::trace::tile_copy::{FOUR, Place, TileCopy};
 use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, prelude::*};
 use isophote_engine::math::load4;
 

@@ -1,7 +1,7 @@
 //! The five sets of values of ink, and the controls that scale them.
 
-use crate::choice::choice;
-use crate::spec::{Param, Scope};
+use crate::declare::choice::choice;
+use crate::declare::spec::{Param, Scope};
 use crate::stages::LOOK;
 use crate::stages::lines::{self, length_factor, width_factor};
 
@@ -263,7 +263,7 @@ fn toned(tones: [f32; 2], tone: f32) -> [f32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::choice::Numbered;
+    use crate::declare::choice::Numbered;
 
     const NEUTRAL: Look = Look {
         width: lines::LINE_WIDTH.default_float(),

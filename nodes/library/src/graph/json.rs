@@ -15,10 +15,10 @@
 //! An input names a node of the graph, or with `@` a picture that enters: `@color`, `@normal`,
 //! `@depth`, `@object_id`. Colours are `#rrggbb` or lists of numbers. Unknown keys are errors.
 
+use crate::declare::spec::{NodeSpec, Param};
+use crate::declare::value::Value;
 use crate::error::{Error, Result};
 use crate::graph::{Graph, GraphInput, Source};
-use crate::spec::{NodeSpec, Param};
-use crate::value::Value;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 

@@ -1,12 +1,12 @@
 //! From a graph to the passes of a plan: every node at every frame that is asked for.
 
+use crate::declare::spec::{Around, ImageKind, MASK, MIX, Scope};
 use crate::error::Result;
 use crate::frames::Frames;
+use crate::graph::neighbours::needs_of;
 use crate::graph::{Graph, GraphInput, Node, Source};
 use crate::kernels::colour::{add_light, colour_export, colour_import, emission, mix, mix_by_mask};
-use crate::neighbours::needs_of;
-use crate::picture::Request;
-use crate::spec::{Around, ImageKind, MASK, MIX, Scope};
+use crate::plan::request::Request;
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// Working memory of a description, kept so that editing allocates nothing.

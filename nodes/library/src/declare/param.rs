@@ -1,8 +1,8 @@
 //! The declaration of a parameter, and values checked against it.
 
-use crate::choice::{Selectable, Selection};
+use crate::declare::choice::{Selectable, Selection};
+use crate::declare::value::{Choice, Value};
 use crate::error::{Error, Result, nearest};
-use crate::value::{Choice, Value};
 use std::mem::discriminant;
 
 /// Unit of a parameter.

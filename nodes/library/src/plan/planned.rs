@@ -1,11 +1,9 @@
 //! From a graph to a plan for one size, and from an edited graph to an edited plan.
 
-pub use crate::colour_space::ColourSpace;
-use crate::describe::{Scratch, describe};
 use crate::error::{Error, Result};
-pub use crate::frames::Frames;
 use crate::graph::{Graph, Source};
-pub use crate::picture::{Guides, Request};
+use crate::plan::describe::{Scratch, describe};
+use crate::plan::request::Request;
 use isophote_engine::{Plan, PlanBuilder};
 
 /// What an update of a plan came to.

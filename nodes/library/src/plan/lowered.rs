@@ -2,7 +2,8 @@
 
 use crate::error::Result;
 use crate::graph::Graph;
-use crate::request::{Change, Planned, Request};
+use crate::plan::planned::{Change, Planned};
+use crate::plan::request::Request;
 use isophote_engine::Rect;
 use isophote_engine::program::Program;
 

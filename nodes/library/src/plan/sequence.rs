@@ -6,8 +6,8 @@
 
 use crate::error::{Error, Result};
 use crate::graph::Graph;
-use crate::picture::Request;
-use crate::request::Planned;
+use crate::plan::planned::Planned;
+use crate::plan::request::Request;
 use isophote_engine::store::{FrameStore, Name};
 use isophote_engine::{Kept, Plan};
 

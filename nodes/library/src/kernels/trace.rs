@@ -5,13 +5,15 @@
 //! [`along_lines`] runs a kernel over a band: tile by tile through copies of what lies around each tile, where
 //! every position can be read without a comparison, or in the picture itself where lines reach too far for that.
 
+pub mod tile_copy;
+
 use crate::kernels::shared::coverage::Covered;
 use crate::kernels::shared::stream::{Field, FieldView, Integrator, Stream, in_bounds, step};
 use crate::kernels::simd::pixels::{BLOCK, Block, for_blocks_in_tiles, write};
-use crate::kernels::simd::tile_copy::{FOUR, Frame, Place, TWO, TileCopy};
 use isophote_engine::dispatch::at_most_avx2;
 use isophote_engine::fearless_simd::{Level, Simd, dispatch, f32x8, mask32x8, prelude::*};
 use isophote_engine::{Band, View};
+use tile_copy::{FOUR, Frame, Place, TWO, TileCopy};
 
 /// `N` times eight lines on their way: both sides of each block's, one after the other.
 pub struct Lines<S: Simd, F: Field<S>, const N: usize> {

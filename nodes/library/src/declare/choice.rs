@@ -1,7 +1,7 @@
 //! Choices: enums whose options are declared once, each with its id, its label and its document; and enums
 //! that shaders know by numbers.
 
-use crate::value::Choice;
+use crate::declare::value::Choice;
 
 /// An enum that shaders know by numbers.
 pub trait Numbered: Copy + 'static {
@@ -64,7 +64,7 @@ macro_rules! choice {
             $($(#[doc = $doc])+ $option $(= $number)?,)+
         }
 
-        impl $crate::choice::Numbered for $name {
+        impl $crate::declare::choice::Numbered for $name {
             const ALL: &'static [Self] = &[$(Self::$option,)+];
 
             fn number(self) -> u32 {
@@ -72,21 +72,21 @@ macro_rules! choice {
             }
         }
 
-        impl $crate::choice::Selectable for $name {
-            const OPTIONS: &'static [$crate::value::Choice] = &[$(
-                $crate::value::Choice { id: $id, label: $label, doc: concat!($($doc,)+).trim_ascii() },
+        impl $crate::declare::choice::Selectable for $name {
+            const OPTIONS: &'static [$crate::declare::value::Choice] = &[$(
+                $crate::declare::value::Choice { id: $id, label: $label, doc: concat!($($doc,)+).trim_ascii() },
             )+];
         }
 
         impl $name {
             /// This option among all.
-            $vis const fn selected(self) -> $crate::choice::Selection {
-                use $crate::choice::{Numbered, Selectable};
+            $vis const fn selected(self) -> $crate::declare::choice::Selection {
+                use $crate::declare::choice::{Numbered, Selectable};
                 let mut index = 0;
                 while Self::ALL[index] as u32 != self as u32 {
                     index += 1;
                 }
-                $crate::choice::Selection { index, options: Self::OPTIONS }
+                $crate::declare::choice::Selection { index, options: Self::OPTIONS }
             }
         }
     };
@@ -102,7 +102,7 @@ macro_rules! numbered {
             $($(#[$doc])+ $option = $number,)+
         }
 
-        impl $crate::choice::Numbered for $name {
+        impl $crate::declare::choice::Numbered for $name {
             const ALL: &'static [Self] = &[$(Self::$option,)+];
 
             fn number(self) -> u32 {

@@ -1,6 +1,6 @@
 //! Ports that many nodes share.
 
-use crate::spec::{ImageKind, Port};
+use crate::declare::spec::{ImageKind, Port};
 
 /// The picture that a node filters.
 pub(crate) const COLOR: Port =

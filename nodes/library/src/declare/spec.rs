@@ -1,10 +1,10 @@
 //! What a node says about itself, once: the catalogue, command lines, hosts and documents all walk
 //! this declaration.
 
-use crate::choice::Selectable;
+use crate::declare::choice::Selectable;
+pub use crate::declare::param::{Param, Unit};
+use crate::declare::value::Value;
 use crate::frames::Frames;
-pub use crate::param::{Param, Unit};
-use crate::value::Value;
 use isophote_engine::{Class, ImageId, PlanBuilder};
 
 /// What flows through a port.
