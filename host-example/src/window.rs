@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use isophote_example::desktop;
 use isophote_files::error::{Error, Result};
 use isophote_render::gpu::Gpu;
 use isophote_scene::Scene;
@@ -29,7 +30,7 @@ const STEP: f32 = 0.9;
 /// # Errors
 /// [`Error::Input`] for scenes and styles that cannot be drawn, [`Error::Failure`] without a window or a device.
 pub fn show(size: (u32, u32), scene: Scene, style: &str) -> Result<()> {
-    let failed = |e| Error::failure(format!("no window can be opened: {e}"), FIX);
+    let failed = |e| desktop::no_window(e, FIX);
     let event_loop = EventLoop::new().map_err(failed)?;
     let mut app =
         App { size, scene: Some(scene), style: style.to_owned(), stage: None, drag: None, failure: None };
@@ -72,16 +73,16 @@ impl Stage {
         let attributes = Window::default_attributes()
             .with_title(format!("Isophote - {style}"))
             .with_inner_size(PhysicalSize::new(width, height));
-        let failed = |e: String| Error::failure(format!("no window can be opened: {e}"), FIX);
-        let window = Arc::new(event_loop.create_window(attributes).map_err(|e| failed(e.to_string()))?);
+        let window = event_loop.create_window(attributes).map_err(|e| desktop::no_window(e, FIX))?;
+        let window = Arc::new(window);
         let display = Box::new(event_loop.owned_display_handle());
         let descriptor = wgpu::InstanceDescriptor::new_with_display_handle_from_env(display);
         let instance = wgpu::Instance::new(descriptor);
-        let surface = instance.create_surface(Arc::clone(&window)).map_err(|e| failed(e.to_string()))?;
+        let surface = instance.create_surface(Arc::clone(&window)).map_err(|e| desktop::no_window(e, FIX))?;
         let gpu = Gpu::with_instance(instance, Some(&surface))?;
         let size = pixels(&window);
         let config = surface.get_default_config(&gpu.adapter, size.0, size.1);
-        let config = config.ok_or_else(|| failed("the adapter cannot draw on it".into()))?;
+        let config = config.ok_or_else(|| desktop::no_window("the adapter cannot draw on it", FIX))?;
         surface.configure(&gpu.device, &config);
         let camera = Camera::of(&scene, size);
         let view = camera.view(&scene, &Pose::at_rest(&scene));

@@ -60,8 +60,9 @@ mod worker;
 use winit::error::EventLoopError;
 use winit::event_loop::EventLoop;
 
-use app::{App, Event};
-use isophote_files::error::{Error, Result};
+use app::{App, Event, FIX};
+use isophote_example::desktop;
+use isophote_files::error::Result;
 use session::Session;
 
 /// What keys and mouse do, for the help of the program.
@@ -77,27 +78,15 @@ pub fn keys() -> String {
 /// it is as large as it was last.
 ///
 /// # Errors
-/// [`Error::Failure`] without a display or a graphics device.
+/// [`isophote_files::error::Error::Failure`] without a display or a graphics device.
 pub fn show(mut session: Session, size: Option<(u32, u32)>, with_report: bool) -> Result<()> {
-    let failed = |e: &EventLoopError| {
-        let problem = reason(&e.to_string()).to_owned();
-        Error::failure(format!("no window can be opened: {problem}"), "start the viewer in a desktop session")
-    };
-    let event_loop = EventLoop::<Event>::with_user_event().build().map_err(|e| failed(&e))?;
+    let failed = |e: EventLoopError| desktop::no_window(e, FIX);
+    let event_loop = EventLoop::<Event>::with_user_event().build().map_err(failed)?;
     session.record.is_wanted = with_report;
     let mut app = App::new(session, size, event_loop.create_proxy())?;
-    event_loop.run_app(&mut app).map_err(|e| failed(&e))?;
+    event_loop.run_app(&mut app).map_err(failed)?;
     if with_report {
         app.session().record.report(app.session().precision)?;
     }
     app.failure.map_or(Ok(()), Err)
-}
-
-/// Why the system refuses a window, without the line of winit's source that the text begins with.
-fn reason(problem: &str) -> &str {
-    problem
-        .split_once(".rs:")
-        .and_then(|(_, place)| place.split_once(": "))
-        .map_or(problem, |(_, why)| why)
-        .trim_end_matches('.')
 }

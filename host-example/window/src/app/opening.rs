@@ -8,10 +8,11 @@ use winit::dpi::PhysicalSize;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
 
-use super::App;
+use super::{App, FIX};
 use crate::stage::Stage;
 use crate::ui;
-use isophote_files::error::{Error, Result};
+use isophote_example::desktop;
+use isophote_files::error::Result;
 
 /// How often a device is opened anew, in vain, before what is open is put away, and then before the window gives up.
 const REVIVALS: u32 = 3;
@@ -56,9 +57,7 @@ impl App {
             // What reads the window aloud must be there before it is seen.
             .with_visible(false)
             .with_inner_size(PhysicalSize::new(width, height));
-        let window = event_loop.create_window(attributes).map_err(|e| {
-            Error::failure(format!("no window can be opened: {e}"), "start the viewer in a desktop session")
-        })?;
+        let window = event_loop.create_window(attributes).map_err(|e| desktop::no_window(e, FIX))?;
         Ok(Arc::clone(self.window.insert(Arc::new(window))))
     }
 
