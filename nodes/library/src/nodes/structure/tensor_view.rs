@@ -6,6 +6,7 @@ use crate::declare::spec::{ImageKind, NodeSpec, Param, Port, Scope};
 use crate::kernels::shared::stream::Integrator;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
 use crate::kernels::structure::tensor_display::{self, Options as Display, Show, least_significant};
+use crate::kernels::structure::{colour_restrict, contrast, noise, tensor_interpolate, tensor_logarithm};
 use crate::stages::{line_integral_convolution as lic, tensor_options};
 use isophote_engine::image::MAX_SIDE;
 use isophote_engine::{ImageId, PlanBuilder};
