@@ -23,8 +23,8 @@ const EXCHANGES: [(&str, &str); 4] = [(" + ", " - "), (" - ", " + "), (" * ", " 
 /// The shader with one number of its own text changed, for each number that carries meaning; those
 /// with a fraction first. After them, it with an operator or components exchanged.
 pub fn spoil(kernel: &Kernel) -> Vec<Spoiled> {
-    let own = kernel.parts.own;
-    let (shared, after) = kernel.shader.split_once(own).unwrap_or_default();
+    let own: String = kernel.pieces.own.iter().map(|piece| piece.text()).collect();
+    let (shared, after) = kernel.shader.split_once(own.as_str()).unwrap_or_default();
     let mut spoiled: Vec<(bool, Spoiled)> = Vec::new();
     for (line_number, line) in own.lines().enumerate() {
         for (start, end) in numbers(line) {

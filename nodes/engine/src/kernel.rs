@@ -1,8 +1,9 @@
-//! What a kernel is: one pass over an image, as a WGSL shader and as a CPU function.
+//! Kernel: one pass over an image, as a WGSL shader and as a CPU function.
 //!
 //! The engine knows no kernel. It runs whatever a plan names, on either executor, by this contract.
 
 use crate::image::{Rect, View};
+use crate::wgsl::{Import, Piece, Pieces};
 use fearless_simd::Level;
 
 /// Most images that one pass may read; the size of `Grid.inputs` in `shaders/gpu/grid.wgsl`.
@@ -37,10 +38,10 @@ pub struct Kernel {
     pub outputs: &'static [u32],
     /// Size of the uniform block at binding 1, in bytes; 0 for none.
     pub params_size: usize,
-    /// What the shader is put together from, for passes that do the work of several kernels.
-    pub parts: Parts,
-    /// How its rows and columns run in one dispatch, if it sums windows along one axis.
-    pub pair: Option<Pair>,
+    /// The shader in pieces, for dispatches of several kernels and textures of 16-bit floats.
+    pub pieces: Pieces,
+    /// What it offers to fusion.
+    pub fusible: Fusible,
     /// The CPU twin: fills one band of the outputs.
     #[cfg(feature = "cpu")]
     pub cpu: fn(&CpuPass<'_>, &mut Band<'_>),
@@ -52,72 +53,60 @@ pub struct Kernel {
     pub fast: Tolerance,
 }
 
-/// What a shader is put together from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Parts {
-    /// Texts that it shares with other shaders, in an order in which each stands after what it uses.
-    pub imports: &'static [&'static Import],
-    /// Its own text, where every binding is a line that begins with `@group(0)`. Kernels of single pixels have no entry
-    /// point in it, but a function `of_pixel(id: vec3u, ...) -> vec4f` of the pixels of all textures read.
-    pub own: &'static str,
-    /// Whether each pixel of the output depends on the same pixel of the inputs alone, so that the kernel can follow
-    /// another one in the same pass.
-    pub is_per_pixel: bool,
-    /// Inputs that a kernel of single pixels reads itself, at other pixels or at another level; `of_pixel` has no argument
-    /// for them. It knows their slots by constants, `const INPUT_NAME: u32 = 0u;`, which other kernels before it change.
-    pub around: &'static [usize],
-    /// Whether a window can sum it as it is computed, in the same dispatch: a function `at_place(p: vec2i) -> vec4f` gives it
-    /// at any pixel, reads the only texture by `fetch(source, 0u, ...)`, and all it uses stands before the first variable
-    /// in workgroup memory.
-    pub can_produce: bool,
-    /// Inputs that are interpolated by [`Import::filtered`] alone, if the kernel imports any text that has one.
-    pub filtered: &'static [usize],
-    /// The input of which its windows of neighbours hold pixels as they are: where that has 16-bit floats, the windows may,
-    /// too, by [`Import::packed`].
-    pub windowed: Option<usize>,
-    /// Whether kernels of single pixels can follow in the same pass: there is one output, stored in one place by
-    /// `textureStore(target_image, vec2i(id.xy), VALUE);`, or the kernel is of single pixels itself.
-    pub can_lead: bool,
+/// Part that a kernel can take in a dispatch of several.
+#[derive(Clone, Copy, Debug)]
+pub enum Fusible {
+    /// None: it always has dispatches of its own.
+    Never,
+    /// The first: it stores its only result in one place, by [`STORE`](crate::wgsl::STORE), where kernels of single pixels
+    /// can follow.
+    First,
+    /// The first, and before a window that sums what it computes, which is then not stored: a function
+    /// `at_place(p: vec2i) -> vec4f` gives it at any pixel, and reads the only texture by [`LOAD`](crate::wgsl::LOAD).
+    BeforeWindow {
+        /// The beginning of [`Pieces::own`] up to what needs a workgroup: the function and all that it uses.
+        anywhere: &'static [Piece],
+    },
+    /// The first, or the rows and the columns of a separable window together.
+    Window(Pair),
+    /// Any: each pixel of its only result depends on the same pixel of the inputs alone. It has no entry point of its own, but
+    /// a function `of_pixel(id: vec3u, ...) -> vec4f` of the pixels of all textures read.
+    SinglePixels {
+        /// Inputs that it reads itself, at other pixels or at another level; `of_pixel` has no argument for them. It knows
+        /// their numbers by constants, [`Piece::Slot`], which other kernels before it change.
+        around: &'static [usize],
+    },
 }
 
-/// How two passes of a kernel, the rows and the columns of a separable window, run in one dispatch.
+/// Two passes of a kernel, the rows and the columns of a separable window, in one dispatch.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair {
-    /// Texts that `own` uses, as in [`Parts::imports`].
+    /// Texts that `own` uses, as in [`Pieces::imports`].
     pub imports: &'static [&'static Import],
-    /// WGSL with the entry point, of [`PAIR_WORKGROUP`]. It knows the two uniform blocks as `rows_params` and
-    /// `columns_params` and what rows sum as `pair_source(p: vec2i) -> vec4f`; `pair_hold` is called before it asks.
-    pub own: &'static str,
+    /// The struct of the uniform blocks.
+    pub block: &'static [Piece],
+    /// WGSL with the entry point, of [`PAIR_WORKGROUP`]. It knows the two uniform blocks as [`Piece::Params`] and
+    /// [`Piece::ColumnsParams`] and what rows sum as `pair_source(p: vec2i) -> vec4f`; `pair_hold` is called before it asks.
+    pub own: &'static [Piece],
     /// Whether passes with these uniform blocks are the rows and the columns of a window.
     pub fits: fn(&[u8], &[u8]) -> bool,
 }
 
-/// A text that shaders share.
-#[derive(Debug, PartialEq, Eq)]
-pub struct Import {
-    /// Folder and stem of its file.
-    pub name: &'static str,
-    /// WGSL.
-    pub text: &'static str,
-    /// The same functions with the sampler at [`SAMPLER_BINDING`] in place of loads and arithmetic, for textures that a
-    /// device filters; none where nothing is interpolated.
-    pub filtered: Option<&'static str>,
-    /// What takes its place where windows hold 16-bit floats, for workgroups of [`PACKED_WORKGROUP`].
-    pub packed: Option<&'static str>,
-}
+impl Fusible {
+    /// Whether kernels of single pixels can follow in the same dispatch.
+    pub const fn can_lead(&self) -> bool {
+        !matches!(self, Self::Never)
+    }
 
-impl Parts {
-    /// Of a kernel that always has passes of its own.
-    pub const NONE: Self = Self {
-        imports: &[],
-        own: "",
-        is_per_pixel: false,
-        around: &[],
-        can_produce: false,
-        filtered: &[],
-        windowed: None,
-        can_lead: false,
-    };
+    /// For a kernel of single pixels: the inputs that it reads itself.
+    pub const fn around(&self) -> Option<&'static [usize]> {
+        if let Self::SinglePixels { around } = self { Some(around) } else { None }
+    }
+
+    /// For a kernel that sums windows along one axis: its rows and columns in one dispatch.
+    pub const fn pair(&self) -> Option<&Pair> {
+        if let Self::Window(pair) = self { Some(pair) } else { None }
+    }
 }
 
 impl PartialEq for &'static Kernel {

@@ -19,6 +19,7 @@ pub mod pixels;
 pub mod plan;
 pub mod program;
 pub mod store;
+pub mod wgsl;
 
 pub use error::{Error, Result};
 pub use image::{Image, Rect, View};

@@ -1,6 +1,6 @@
 //! Functions for devices that interpolate by samplers, in the place of those of the shaders.
 
-use crate::imports::{imported, read, sampled};
+use crate::imports::{imported, read};
 use std::path::Path;
 
 /// The folder of what only GPUs need; files of a stem of `shared` hold functions for devices that filter.
@@ -29,9 +29,13 @@ pub fn filtered(shaders: &Path, name: &str) -> Result<Option<String>, String> {
     Ok(Some(text + &functions))
 }
 
-/// The inputs that a shader's own text hands to functions of which there are filtered ones.
-pub fn filtered_inputs(own: &str, shaders: &Path, imports: &[String]) -> Result<Vec<usize>, String> {
-    let textures: Vec<&str> = sampled(own).collect();
+/// The inputs that a shader's own text hands to functions of which there are filtered ones; its textures by their names.
+pub fn filtered_inputs(
+    own: &str,
+    textures: &[&str],
+    shaders: &Path,
+    imports: &[String],
+) -> Result<Vec<usize>, String> {
     let mut inputs = Vec::new();
     for import in imports {
         let path = shaders.join(GPU).join(format!("{}.wgsl", stem(import)));

@@ -1,15 +1,14 @@
 //! One shader: its text put together, validated, and what it says about itself.
 
 use crate::filtered::filtered_inputs;
-use crate::imports::{OF_PIXEL, STORE, Text, sampled};
+use crate::imports::{AT_PLACE, OF_PIXEL, STORE, Text};
+use crate::pieces::{self, Cut, Own};
 use crate::uniform::Block;
 use naga::front::wgsl::{Frontend, Options};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{ImageClass, Module, StorageFormat, TypeInner};
+use std::fmt::Write as _;
 use std::path::Path;
-
-/// The function of a shader that can be computed anywhere for the window of another kernel.
-const AT_PLACE: &str = "fn at_place(p: vec2i) -> vec4f {";
 
 /// What reflection finds in one shader.
 pub struct Shader {
@@ -17,26 +16,47 @@ pub struct Shader {
     pub source: String,
     /// Names of what it imports, in order.
     pub imports: Vec<String>,
-    /// Its own text, without what it imports and without an entry point that was written for it.
-    pub own: String,
-    /// Whether it computes each pixel from the same pixel of its textures.
-    pub is_per_pixel: bool,
-    /// Inputs that such a shader reads itself.
-    pub around: Vec<usize>,
-    /// Whether it can be computed anywhere for the window of another kernel.
-    pub can_produce: bool,
+    /// Its own text in pieces, as Rust has them.
+    pub own: Vec<String>,
+    /// The pieces of an entry point that was written for it.
+    pub entry: Vec<String>,
+    /// Names of the textures that it reads.
+    pub textures: Vec<String>,
+    /// What it offers to fusion.
+    pub fusible: Fusible,
+    /// The struct of its uniform block.
+    pub struct_params: Option<StructParams>,
     /// Inputs that are interpolated by functions of which there are filtered ones.
     pub filtered: Vec<usize>,
     /// The input of which its windows hold pixels as they are.
     pub windowed: Option<usize>,
-    /// Whether it stores its only result in one place, by the usual words.
-    pub can_lead: bool,
-    /// Number of sampled textures.
-    pub inputs: usize,
     /// Channels of the storage textures.
     pub outputs: Vec<u32>,
     /// The uniform block at binding 1; kernels without parameters have none.
     pub params: Option<Block>,
+}
+
+/// The struct of a uniform block in the text of its shader.
+pub struct StructParams {
+    /// How many pieces stand before it.
+    pub before: usize,
+    /// How many pieces it has.
+    pub pieces: usize,
+    /// Its text.
+    pub text: String,
+}
+
+/// What a kernel offers to fusion, but for windows. Its debug text is the engine's value as Rust has it, but for pieces.
+#[derive(Debug)]
+pub enum Fusible {
+    /// Nothing.
+    Never,
+    /// To be first.
+    First,
+    /// To be computed for the window of another kernel by its first pieces, so many.
+    BeforeWindow(usize),
+    /// To follow; the inputs that it reads itself.
+    SinglePixels(Vec<usize>),
 }
 
 impl Shader {
@@ -46,39 +66,99 @@ impl Shader {
     /// What is wrong, as naga says it, or the rule of the house that it breaks.
     pub fn read(shaders: &Path, path: &Path) -> Result<Self, String> {
         let text = Text::read(shaders, path)?;
-        let filtered = filtered_inputs(&text.own, shaders, &text.imports)?;
-        let source = text.module()?;
-        let mut options = Options::new();
-        options.parse_doc_comments = true;
-        let module =
-            Frontend::new_with_options(options).parse(&source).map_err(|e| e.emit_to_string(&source))?;
-        // Exactly what every WebGPU device can do: no optional capability.
-        Validator::new(ValidationFlags::all(), Capabilities::empty())
-            .validate(&module)
-            .map_err(|e| e.emit_to_string(&source))?;
-        let (inputs, outputs, params) = bindings(&module)?;
-        let stores_once = text.own.matches("textureStore(").count() == 1 && text.own.contains(STORE);
-        let is_per_pixel = text.is_per_pixel();
-        let around = if is_per_pixel { text.around() } else { Vec::new() };
-        let can_produce = text.own.contains(AT_PLACE) && sampled(&text.own).eq(["source"]);
-        let windowed = text.windowed();
-        let can_lead = (is_per_pixel || stores_once) && outputs.len() == 1;
-        let Text { imports, own, .. } = text;
+        let source = format!("{}{}", text.shared, text.own);
+        let module = parse(&source)?;
+        let found = Own::new(&module, &text.shared, &text.own);
+        let around = found.has_function(OF_PIXEL).then(|| found.around());
+        let entry =
+            around.as_ref().map(|around| entry_point(&text, &found.textures(), around)).transpose()?;
+        let entry = entry.unwrap_or_default();
+        let source = source + &entry;
+        let whole = (!entry.is_empty()).then(|| parse(&source)).transpose()?;
+        let (inputs, outputs, params) = bindings(whole.as_ref().unwrap_or(&module))?;
+        let textures = found.textures();
+        if textures.len() != inputs {
+            return Err("textures are declared by the kernel itself".into());
+        }
+        let cut = found.cut(around.is_some())?;
+        let fusible = match around {
+            Some(around) if outputs.len() == 1 => Fusible::SinglePixels(around),
+            Some(_) => return Err(format!("a shader with `{OF_PIXEL}` has one result")),
+            None => fusible(&text.own, &found, &cut, outputs.len())?,
+        };
+        let struct_params = found.block().map(|place| {
+            let [before, end] = [place.start, place.end].map(|at| cut.before(at));
+            StructParams { before, pieces: end - before, text: text.own[place].to_owned() }
+        });
+        let rust = |pieces: &[pieces::Piece<'_>]| pieces.iter().map(|piece| format!("{piece:?}")).collect();
         Ok(Self {
+            own: rust(&cut.pieces),
+            entry: rust(&pieces::entry(&entry)),
+            fusible,
+            struct_params,
+            filtered: filtered_inputs(&text.own, &textures, shaders, &text.imports)?,
+            windowed: windowed(&text.own, &textures),
+            textures: textures.into_iter().map(str::to_owned).collect(),
             source,
-            imports,
-            own,
-            is_per_pixel,
-            around,
-            can_produce,
-            filtered,
-            windowed,
-            can_lead,
-            inputs,
+            imports: text.imports,
             outputs,
             params,
         })
     }
+}
+
+/// Parses and validates a module.
+///
+/// # Errors
+/// What naga says.
+pub fn parse(source: &str) -> Result<Module, String> {
+    let mut options = Options::new();
+    options.parse_doc_comments = true;
+    let module = Frontend::new_with_options(options).parse(source).map_err(|e| e.emit_to_string(source))?;
+    // Exactly what every WebGPU device can do: no optional capability.
+    Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .map_err(|e| e.emit_to_string(source))?;
+    Ok(module)
+}
+
+/// What a kernel with an entry point of its own offers to fusion.
+fn fusible(text: &str, own: &Own<'_>, cut: &Cut<'_>, outputs: usize) -> Result<Fusible, String> {
+    let stores_once = text.matches("textureStore(").count() == 1 && text.contains(STORE) && outputs == 1;
+    match own.workgroup() {
+        _ if !own.has_function(AT_PLACE) => Ok(if stores_once { Fusible::First } else { Fusible::Never }),
+        Some(at) if stores_once && own.textures() == ["source"] => Ok(Fusible::BeforeWindow(cut.before(at))),
+        _ => Err(format!(
+            "a shader with `{AT_PLACE}` reads `source` alone and stores by `{STORE}` in one place"
+        )),
+    }
+}
+
+/// The input of which a shader's windows hold pixels as they are; its textures by their names.
+fn windowed(own: &str, textures: &[&str]) -> Option<usize> {
+    let (_, rest) = own.split_once("fn window_tap(p: vec2i) -> vec4f {\n    return fetch(")?;
+    let (texture, rest) = rest.split_once(", ")?;
+    let slot = textures.iter().position(|name| *name == texture)?;
+    rest.starts_with(&format!("{slot}u, p);\n}}")).then_some(slot)
+}
+
+/// The entry point of a shader that computes each pixel from the same pixel of its textures.
+fn entry_point(text: &Text, textures: &[&str], around: &[usize]) -> Result<String, String> {
+    if text.shared.contains("params") {
+        return Err(format!("what a shader with `{OF_PIXEL}` imports must not know of parameters"));
+    }
+    if textures.is_empty() {
+        return Err(format!("a shader with `{OF_PIXEL}` reads at least one texture"));
+    }
+    let mut arguments = String::new();
+    for (slot, name) in textures.iter().enumerate().filter(|(slot, _)| !around.contains(slot)) {
+        let _ = write!(arguments, ", fetch({name}, {slot}u, pixel(id))");
+    }
+    Ok(format!(
+        "\n@compute @workgroup_size(8, 8)\nfn main(@builtin(global_invocation_id) id: vec3u) {{\n    \
+         if outside(id) {{\n        return;\n    }}\n    \
+         {STORE}{OF_PIXEL}(id{arguments}));\n}}\n"
+    ))
 }
 
 /// Sampled textures, channels of the storage textures and the uniform block of a module.

@@ -20,11 +20,12 @@ include!(concat!(env!("OUT_DIR"), "/kernels.rs"));
 
 /// Declares `pub static KERNEL` from the CPU twin, the cost for given parameters and the tolerance; the rest comes from
 /// the shader of the same stem. Where 16-bit floats cost more than the rounding of the result, or a sampler interpolates,
-/// `fast` is the tolerance of that.
+/// `fast` is the tolerance of that. `pair` says of uniform blocks whether their passes are the rows and the columns of a
+/// window, which `shaders/gpu/<kernel>_pair.wgsl` runs in one dispatch.
 #[macro_export]
 macro_rules! kernel {
     ($kernel:ident { cpu: $cpu:expr, cost: |_| $cost:expr, tolerance: $tolerance:expr $(, fast: $fast:expr)? $(, pair: $pair:expr)? $(,)? }) => {
-        $crate::kernel!(@ $kernel, $cpu, |_| $cost, $tolerance, $crate::kernel!(@ fast $tolerance $(, $fast)?), $crate::kernel!(@ pair $($pair)?));
+        $crate::kernel!(@ $kernel, $cpu, |_| $cost, $tolerance, $crate::kernel!(@ fast $tolerance $(, $fast)?), $crate::kernel!(@ fusible $kernel $($pair)?));
     };
     ($kernel:ident { cpu: $cpu:expr, cost: |$params:ident| $cost:expr, tolerance: $tolerance:expr $(, fast: $fast:expr)? $(, pair: $pair:expr)? $(,)? }) => {
         $crate::kernel!(
@@ -36,7 +37,7 @@ macro_rules! kernel {
             },
             $tolerance,
             $crate::kernel!(@ fast $tolerance $(, $fast)?),
-            $crate::kernel!(@ pair $($pair)?)
+            $crate::kernel!(@ fusible $kernel $($pair)?)
         );
     };
     (@ fast $tolerance:expr) => {
@@ -45,15 +46,16 @@ macro_rules! kernel {
     (@ fast $tolerance:expr, $fast:expr) => {
         $fast
     };
-    (@ pair) => {
-        None
+    (@ fusible $kernel:ident) => {
+        $crate::kernels::shaders::$kernel::FUSIBLE
     };
-    (@ pair $pair:expr) => {
-        Some($pair)
+    (@ fusible $kernel:ident $fits:expr) => {
+        $crate::kernels::shaders::$kernel::fusible($fits)
     };
-    (@ $kernel:ident, $cpu:expr, $cost:expr, $tolerance:expr, $fast:expr, $pair:expr) => {
-        /// Planners leave the twin out, and still check it.
-        #[cfg(not(feature = "cpu"))]
+    (@ $kernel:ident, $cpu:expr, $cost:expr, $tolerance:expr, $fast:expr, $fusible:expr) => {
+        /// Planners leave the twin out, and still check it. So do unit tests, which would compile all pixel code once
+        /// more: kernels are run by the tests of the crate beside `src`.
+        #[cfg(any(test, not(feature = "cpu")))]
         const _: fn(&isophote_engine::CpuPass<'_>, &mut isophote_engine::Band<'_>) = $cpu;
 
         /// The kernel, for plans.
@@ -63,10 +65,12 @@ macro_rules! kernel {
             inputs: $crate::kernels::shaders::$kernel::INPUTS,
             outputs: $crate::kernels::shaders::$kernel::OUTPUTS,
             params_size: $crate::kernels::shaders::$kernel::PARAMS_SIZE,
-            parts: $crate::kernels::shaders::$kernel::PARTS,
-            pair: $pair,
-            #[cfg(feature = "cpu")]
+            pieces: $crate::kernels::shaders::$kernel::PIECES,
+            fusible: $fusible,
+            #[cfg(all(feature = "cpu", not(test)))]
             cpu: $cpu,
+            #[cfg(all(feature = "cpu", test))]
+            cpu: |_, _| panic!("unit tests run no kernels"),
             cost: $cost,
             tolerance: $tolerance,
             fast: $fast,

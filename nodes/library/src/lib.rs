@@ -31,7 +31,6 @@ pub mod request;
 pub mod sequence;
 pub mod spec;
 mod stages;
-pub mod tensor_options;
 pub mod value;
 
 pub use colour_space::ColourSpace;
@@ -44,7 +43,7 @@ pub use request::Planned;
 pub use stages::optical_flow;
 pub use value::Value;
 
-/// The README's example, compiled with the documentation tests.
+/// The example of the documentation's page for Rust, compiled with the documentation tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-pub struct Readme;
+#[doc = include_str!("../../../xtask/docs/pages/engines/rust.md")]
+pub struct Page;

@@ -7,12 +7,28 @@
 //! technical value gets that value. Every mapping is monotone.
 
 pub(crate) mod abstraction;
+pub(crate) mod anisotropic_kuwahara;
+pub(crate) mod bilateral;
+pub(crate) mod coherence_enhancing;
+pub(crate) mod difference_of_gaussians;
+pub(crate) mod flow_bilateral;
+pub(crate) mod flow_dog;
+pub(crate) mod flow_map;
+pub(crate) mod generalized_kuwahara;
+pub(crate) mod line_integral_convolution;
 pub(crate) mod lines;
 pub(crate) mod marks;
+pub(crate) mod morphology;
 pub mod optical_flow;
+pub(crate) mod oriented_bilateral;
 pub(crate) mod quantization;
+pub(crate) mod quantize_luminance;
+pub(crate) mod shock;
 pub(crate) mod steady;
+pub(crate) mod structure_tensor;
+pub(crate) mod tensor_options;
 pub(crate) mod tone;
+pub(crate) mod warp_sharpen;
 
 /// Heading of the controls for artists.
 pub(crate) const LOOK: &str = "look";

@@ -26,7 +26,7 @@ pub fn concerns(steps: &[Step]) -> bool {
 /// Compares both twins on some of the steps; kernels that keep nothing in 16-bit floats have nothing to compare.
 pub fn agreement(kernel: &'static Kernel, steps: &[Step]) -> Option<Report> {
     let mut devices = vec![device::executor(kernel.name)?];
-    if kernel.parts.windowed.is_some() && !devices[0].device().shares_windows() {
+    if kernel.pieces.windowed.is_some() && !devices[0].device().shares_windows() {
         devices.push(device::executor_with_windows(kernel.name, true)?);
     }
     devices.iter_mut().for_each(|gpu| gpu.set_precision(Precision::Fast));

@@ -67,7 +67,7 @@ fn difference(
 }
 
 fn copy(kernel: &Kernel) -> Kernel {
-    let Kernel { name, shader, inputs, outputs, params_size, parts, pair, cpu, cost, tolerance, fast } =
+    let Kernel { name, shader, inputs, outputs, params_size, pieces, fusible, cpu, cost, tolerance, fast } =
         *kernel;
-    Kernel { name, shader, inputs, outputs, params_size, parts, pair, cpu, cost, tolerance, fast }
+    Kernel { name, shader, inputs, outputs, params_size, pieces, fusible, cpu, cost, tolerance, fast }
 }

@@ -6,17 +6,13 @@
 
 mod driver;
 mod error;
-#[path = "../../../nodes/library/build/filtered.rs"]
-mod filtered;
-#[path = "../../../nodes/library/build/imports.rs"]
-mod imports;
 mod machine_code;
 mod shader;
 mod table;
 
 use driver::Driver;
 use error::{Error, Result};
-use shader::Kernel;
+use isophote::engine::program::Shader;
 use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
@@ -50,14 +46,13 @@ fn main() -> ExitCode {
 }
 
 fn run(task: &Task) -> Result<()> {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let kernels = shader::kernels(&here.join("../../shaders"))?;
-    let table = here.join("COSTS.md");
+    let shaders = shader::shaders();
+    let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("COSTS.md");
     match task {
-        Task::Show(name) => show(&Driver::open()?, &kernels, name),
-        Task::Write => write(&Driver::open()?, &kernels, &table),
+        Task::Show(name) => show(&Driver::open()?, &shaders, name),
+        Task::Write => write(&Driver::open()?, &shaders, &table),
         Task::Check => match Driver::open() {
-            Ok(driver) => check(&driver, &kernels, &table),
+            Ok(driver) => check(&driver, &shaders, &table),
             // Machines with other drivers, or none, have other checks to pass.
             Err(error) => {
                 println!("costs of shaders are not compared: {error}");
@@ -68,22 +63,22 @@ fn run(task: &Task) -> Result<()> {
 }
 
 /// Prints the machine code of a kernel.
-fn show(driver: &Driver, kernels: &[Kernel], name: &str) -> Result<()> {
-    let kernel = kernels.iter().find(|kernel| kernel.name == name);
-    let kernel = kernel.ok_or_else(|| Error::Unknown(name.to_owned()))?;
-    println!("{}", driver.compile(&shader::translate(kernel)?)?.assembly);
+fn show(driver: &Driver, shaders: &[Shader], name: &str) -> Result<()> {
+    let shader = shaders.iter().find(|shader| shader.name == name);
+    let shader = shader.ok_or_else(|| Error::Unknown(name.to_owned()))?;
+    println!("{}", driver.compile(&shader::translate(shader)?)?.assembly);
     Ok(())
 }
 
-fn write(driver: &Driver, kernels: &[Kernel], path: &Path) -> Result<()> {
+fn write(driver: &Driver, shaders: &[Shader], path: &Path) -> Result<()> {
     let old = read(path)?;
     let (begin, end) = bounds(&old)?;
     let new =
-        format!("{}{}{}", &old[..begin], table::text(&driver.name, &costs(driver, kernels)?), &old[end..]);
+        format!("{}{}{}", &old[..begin], table::text(&driver.name, &costs(driver, shaders)?), &old[end..]);
     fs::write(path, new).map_err(|source| Error::File { path: path.to_owned(), source })
 }
 
-fn check(driver: &Driver, kernels: &[Kernel], path: &Path) -> Result<()> {
+fn check(driver: &Driver, shaders: &[Shader], path: &Path) -> Result<()> {
     let old = read(path)?;
     let (begin, end) = bounds(&old)?;
     let (made_by, old) = table::parse(&old[begin..end])?;
@@ -91,7 +86,7 @@ fn check(driver: &Driver, kernels: &[Kernel], path: &Path) -> Result<()> {
         println!("costs of shaders are not compared: the table is by {made_by}, here is {}", driver.name);
         return Ok(());
     }
-    let new = costs(driver, kernels)?;
+    let new = costs(driver, shaders)?;
     let dearer = table::dearer(&new, &old);
     if !dearer.is_empty() {
         return Err(Error::Dearer(dearer));
@@ -104,12 +99,12 @@ fn check(driver: &Driver, kernels: &[Kernel], path: &Path) -> Result<()> {
     Ok(())
 }
 
-fn costs(driver: &Driver, kernels: &[Kernel]) -> Result<Costs> {
-    let cost = |kernel: &Kernel| {
-        let executable = driver.compile(&shader::translate(kernel)?)?;
-        Ok((kernel.name.clone(), Cost::of(&executable)?))
+fn costs(driver: &Driver, shaders: &[Shader]) -> Result<Costs> {
+    let cost = |shader: &Shader| {
+        let executable = driver.compile(&shader::translate(shader)?)?;
+        Ok((shader.name.to_string(), Cost::of(&executable)?))
     };
-    kernels.iter().map(cost).collect()
+    shaders.iter().map(cost).collect()
 }
 
 fn read(path: &Path) -> Result<String> {

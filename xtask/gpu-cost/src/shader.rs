@@ -2,25 +2,12 @@
 //! those of graphics cards.
 
 use crate::error::{Error, Result};
-use crate::filtered::{filtered, filtered_inputs};
-use crate::imports::{Text, imported, packed};
+use isophote::engine::program::Shader;
+use isophote::kernels::KERNELS;
 use naga::back::{PipelineConstants, pipeline_constants::process_overrides, spv};
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, ImageClass, Module, ShaderStage, TypeInner};
-use std::fs;
-use std::path::{Path, PathBuf};
-
-/// Folders of `shaders` whose files are no kernels.
-const NO_KERNELS: [&str; 2] = ["shared", "gpu"];
-
-/// A kernel's shader.
-pub struct Kernel {
-    /// Stem of its file, and behind a stroke in which way it reads 16-bit floats.
-    pub name: String,
-    /// Its text, complete.
-    pub source: String,
-}
 
 /// A shader in SPIR-V.
 pub struct Spirv {
@@ -51,65 +38,24 @@ pub enum BindingKind {
     Storage,
 }
 
-/// All kernels of the folder `shaders`, by name; those that read 16-bit floats in ways of their own, in these ways besides.
-///
-/// # Errors
-/// Files that cannot be read.
-pub fn kernels(shaders: &Path) -> Result<Vec<Kernel>> {
-    let mut found = Vec::new();
-    for group in entries(shaders)? {
-        if !group.is_dir() || NO_KERNELS.iter().any(|name| group.ends_with(name)) {
-            continue;
-        }
-        for path in entries(&group)?.into_iter().filter(|path| path.extension().is_some_and(|e| e == "wgsl"))
-        {
-            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            let variants = Text::read(shaders, &path).and_then(|text| variants(shaders, &name, &text));
-            found.extend(variants.map_err(|reason| Error::Shader { name, reason })?);
-        }
-    }
+/// Shaders of all kernels, by name; those that read 16-bit floats in ways of their own, in these ways besides.
+pub fn shaders() -> Vec<Shader> {
+    let mut found: Vec<Shader> = KERNELS.iter().flat_map(|kernel| Shader::variants(kernel)).collect();
     found.sort_by(|a, b| a.name.cmp(&b.name));
-    Ok(found)
+    found
 }
 
-/// A kernel as it is, and as it reads 16-bit floats.
-fn variants(shaders: &Path, name: &str, text: &Text) -> std::result::Result<Vec<Kernel>, String> {
-    let mut found = vec![Kernel { name: name.to_owned(), source: text.module()? }];
-    let with = |other: &dyn Fn(&str) -> std::result::Result<Option<String>, String>| {
-        let shared = text.imports.iter().map(|import| match other(import)? {
-            Some(text) => Ok(text),
-            None => imported(shaders, import),
-        });
-        Ok::<_, String>(shared.collect::<std::result::Result<String, String>>()? + &text.own)
-    };
-    if !text.is_per_pixel() && !filtered_inputs(&text.own, shaders, &text.imports)?.is_empty() {
-        let source = with(&|import| filtered(shaders, import))?;
-        found.push(Kernel { name: format!("{name}/filtered"), source });
-    }
-    if text.windowed().is_some() {
-        let source = with(&|import| packed(shaders, import))?;
-        let source = source.replace("@workgroup_size(8, 8)", "@workgroup_size(16, 16)");
-        found.push(Kernel { name: format!("{name}/packed"), source });
-    }
-    Ok(found)
-}
-
-fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
-    let at = |source| Error::File { path: folder.to_owned(), source };
-    fs::read_dir(folder).map_err(at)?.map(|entry| Ok(entry.map_err(at)?.path())).collect()
-}
-
-/// Translates a kernel as wgpu does.
+/// Translates a shader as wgpu does.
 ///
 /// # Errors
 /// What naga says of the shader.
-pub fn translate(kernel: &Kernel) -> Result<Spirv> {
-    let fail = |reason: String| Error::Shader { name: kernel.name.clone(), reason };
+pub fn translate(shader: &Shader) -> Result<Spirv> {
+    let fail = |reason: String| Error::Shader { name: shader.name.to_string(), reason };
     let module =
-        naga::front::wgsl::parse_str(&kernel.source).map_err(|e| fail(e.emit_to_string(&kernel.source)))?;
+        naga::front::wgsl::parse_str(&shader.source).map_err(|e| fail(e.emit_to_string(&shader.source)))?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::SHADER_FLOAT16_IN_FLOAT32)
         .validate(&module)
-        .map_err(|e| fail(e.emit_to_string(&kernel.source)))?;
+        .map_err(|e| fail(e.emit_to_string(&shader.source)))?;
     let entry_point = Some((ShaderStage::Compute, "main"));
     let (module, info) = process_overrides(&module, &info, entry_point, &PipelineConstants::default())
         .map_err(|e| fail(e.to_string()))?;

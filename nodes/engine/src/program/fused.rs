@@ -2,16 +2,14 @@
 
 use super::format::Format;
 use super::fusion::Lead;
-use super::shader::{NEAREST_HALF, Reading, STORE, Shader, variant};
-use crate::kernel::{Kernel, PAIR_WORKGROUP};
+use super::shader::{NEAREST_HALF, Reading, Shader, variant};
+use crate::kernel::{Fusible, Kernel, PAIR_WORKGROUP};
+use crate::wgsl::Piece;
 use std::collections::HashSet;
 use std::fmt::Write as _;
 
-/// What takes the place of [`STORE`] where other kernels follow.
+/// What takes the place of [`STORE`](crate::wgsl::STORE) where other kernels follow.
 const FOLLOW: &str = "follow(id, ";
-
-/// How a kernel reads what a window holds in its place.
-const FETCH: &str = "fetch(source, 0u, ";
 
 /// A kernel among those of a dispatch.
 #[derive(Clone, Debug)]
@@ -134,16 +132,11 @@ impl Fused {
         let mut text = String::new();
         let mut known: HashSet<&str> = HashSet::new();
         for (place, link) in self.links.iter().enumerate() {
-            let pair = link.kernel.pair.as_ref().filter(|_| self.is_of_pair(place));
-            let imports = pair.map_or(link.kernel.parts.imports, |pair| pair.imports);
+            let pair = link.kernel.fusible.pair().filter(|_| self.is_of_pair(place));
+            let imports = pair.map_or(link.kernel.pieces.imports, |pair| pair.imports);
             for import in imports.iter().filter(|import| known.insert(import.name)) {
                 // Only what the first kernel imports may know of its parameters.
-                for line in self.reading.text(import).lines() {
-                    rename(line, &mut text, |word| {
-                        (word == "params").then(|| "uniforms.params_0".to_owned())
-                    });
-                    text.push('\n');
-                }
+                self.place(0, &[]).write(self.reading.pieces(import), &mut text);
             }
         }
         text
@@ -170,19 +163,24 @@ impl Fused {
         text
     }
 
+    /// Kernel of this place among the others, with its textures at these slots.
+    fn place<'s>(&self, number: usize, slots: &'s [Option<usize>]) -> Place<'s> {
+        let held = self.lead == Lead::ProducerAndPair && self.is_held;
+        Place { number, slots, is_held: held && number == 0, reading: self.reading }
+    }
+
     /// Adds the text of a first kernel; returns what begins the function of those that follow.
     fn single(&self, bindings: &mut Bindings, text: &mut String) -> String {
         let link = &self.links[0];
-        let own = Own::new(link.kernel.parts.own, 0);
-        let (arguments, _) = bindings.of(link, &own.textures);
-        if link.kernel.parts.is_per_pixel {
+        let (arguments, slots) = bindings.of(link, 0);
+        if link.kernel.fusible.around().is_some() {
             let _ = write!(
                 text,
                 "@compute @workgroup_size(8, 8)\nfn main(@builtin(global_invocation_id) id: vec3u) {{\n    \
                  if !outside(id) {{\n        {FOLLOW}of_pixel(id{arguments}));\n    }}\n}}\n"
             );
         }
-        text.push_str(&self.reading.own(&own.text));
+        self.place(0, &slots).write(link.kernel.pieces.own, text);
         format!("    let value_0 = {};\n", stored("first", link.kernel.outputs[0]))
     }
 
@@ -190,29 +188,17 @@ impl Fused {
     fn window(&self, bindings: &mut Bindings, text: &mut String) -> String {
         let (rows, last) = (self.lead.len() - 2, self.lead.len() - 1);
         let kernel = self.links[rows].kernel;
-        let Some(pair) = &kernel.pair else { return String::new() };
-        if rows > 0 {
-            let produced = produced(self.links[0].kernel.parts.own);
-            let own = Own::new(produced, 0);
-            bindings.of(&self.links[0], &own.textures);
-            text.push_str(&if self.is_held { own.text.replace(FETCH, "pair_held(") } else { own.text });
-        } else {
-            bindings.of(&self.links[0], &["source".to_owned()]);
+        let Some(pair) = kernel.fusible.pair() else { return String::new() };
+        bindings.of(&self.links[0], 0);
+        if let Fusible::BeforeWindow { anywhere } = self.links[0].kernel.fusible {
+            self.place(0, &[]).write(anywhere, text);
         }
-        let block = block(kernel.parts.own);
-        text.push_str(&block.replacen("struct Params ", &format!("struct Params_{rows} "), 1));
+        let window = self.place(rows, &[]);
+        window.write(pair.block, text);
         let source = if rows > 0 { "at_place(p)" } else { "fetch(source, 0u, p)" };
         let _ = writeln!(text, "fn pair_source(p: vec2i) -> vec4f {{\n    return {source};\n}}");
         text.push_str(if rows > 0 && self.is_held { HOLDING } else { HOLDING_NOTHING });
-        for line in pair.own.lines() {
-            rename(line, text, |word| match word {
-                "rows_params" => Some(format!("uniforms.params_{rows}")),
-                "columns_params" => Some(format!("uniforms.params_{last}")),
-                _ => None,
-            });
-            text.push('\n');
-        }
-        *text = text.replace(STORE, FOLLOW);
+        window.write(pair.own, text);
         format!("    let value_{last} = {};\n", stored("first", kernel.outputs[0]))
     }
 
@@ -220,14 +206,45 @@ impl Fused {
     fn followers(&self, bindings: &mut Bindings, text: &mut String) -> String {
         let mut following = String::new();
         for (place, link) in self.links.iter().enumerate().skip(self.lead.len()) {
-            let mut own = Own::new(link.kernel.parts.own, place);
-            let (arguments, slots) = bindings.of(link, &own.textures);
-            own.place(&slots);
+            let (arguments, slots) = bindings.of(link, place);
             let call = format!("of_pixel_{place}(id{arguments})");
             let _ = writeln!(following, "    let value_{place} = {};", stored(&call, link.kernel.outputs[0]));
-            text.push_str(&own.text);
+            self.place(place, &slots).write(link.kernel.pieces.own, text);
         }
         following
+    }
+}
+
+/// A kernel among those of a dispatch, as its pieces are written.
+struct Place<'s> {
+    number: usize,
+    /// By input: where its texture is among all that are read.
+    slots: &'s [Option<usize>],
+    /// Whether a window holds what it reads.
+    is_held: bool,
+    reading: Reading,
+}
+
+impl Place<'_> {
+    fn write(&self, pieces: &[Piece], text: &mut String) {
+        let number = self.number;
+        for piece in pieces {
+            let _ = match *piece {
+                Piece::Binding(_) | Piece::Format { .. } => Ok(()),
+                // The first kernel keeps its names, by which what it imports may call it.
+                Piece::Name(name) if number > 0 => write!(text, "{name}_{number}"),
+                Piece::Params => write!(text, "uniforms.params_{number}"),
+                Piece::ColumnsParams => write!(text, "uniforms.params_{}", number + 1),
+                Piece::ParamsType => write!(text, "Params_{number}"),
+                Piece::Slot(input) => {
+                    write!(text, "{}", self.slots.get(input).copied().flatten().unwrap_or(input))
+                }
+                Piece::Workgroup => write!(text, "{}", self.reading.sides()),
+                Piece::Store => write!(text, "{FOLLOW}"),
+                Piece::Load if self.is_held => write!(text, "pair_held("),
+                Piece::Text(_) | Piece::Name(_) | Piece::Load => write!(text, "{}", piece.text()),
+            };
+        }
     }
 }
 
@@ -238,20 +255,21 @@ struct Bindings {
 }
 
 impl Bindings {
-    /// Binds the textures of a kernel under these names. Returns the arguments of its function of single pixels, each with
-    /// a comma before it, and the slots of its inputs.
-    fn of(&mut self, link: &Link, names: &[String]) -> (String, Vec<Option<usize>>) {
+    /// Binds the textures of the kernel at this place. Returns the arguments of its function of single pixels, each with a
+    /// comma before it, and the slots of its inputs.
+    fn of(&mut self, link: &Link, place: usize) -> (String, Vec<Option<usize>>) {
         let (mut arguments, mut slots) = (String::new(), Vec::new());
-        for (input, (name, value)) in names.iter().zip(&link.values).enumerate() {
-            let is_around = link.kernel.parts.around.contains(&input);
+        let around = link.kernel.fusible.around().unwrap_or_default();
+        for (input, (name, value)) in link.kernel.pieces.textures.iter().zip(&link.values).enumerate() {
             if let Some(place) = value {
                 let _ = write!(arguments, ", value_{place}");
                 slots.push(None);
                 continue;
             }
             let slot = self.count;
+            let name = if place == 0 { (*name).to_owned() } else { format!("{name}_{place}") };
             let _ = writeln!(self.text, "@group(0) @binding({}) var {name}: texture_2d<f32>;", slot + 2);
-            if !is_around {
+            if !around.contains(&input) {
                 let _ = write!(arguments, ", fetch({name}, {slot}u, pixel(id))");
             }
             slots.push(Some(slot));
@@ -292,22 +310,6 @@ fn pair_hold(first: vec2i, size: vec2i, index: i32) {
 
 ";
 
-/// The part of a kernel's own text that computes it anywhere.
-fn produced(own: &str) -> &str {
-    let end = own.match_indices('\n').map(|(at, _)| at + 1).find(|at| {
-        let rest = &own[*at..];
-        rest.starts_with("var<workgroup>") || rest.starts_with("@compute")
-    });
-    &own[..end.unwrap_or(own.len())]
-}
-
-/// The struct of a kernel's parameters.
-fn block(own: &str) -> &str {
-    let start = own.find("struct Params ").unwrap_or(own.len());
-    let end = own[start..].find("\n}\n").map_or(own.len(), |at| start + at + 3);
-    &own[start..end]
-}
-
 /// A value as it would be read from a texture with so many channels.
 fn stored(value: &str, channels: u32) -> String {
     match channels {
@@ -315,97 +317,4 @@ fn stored(value: &str, channels: u32) -> String {
         2 => format!("vec4f(({value}).xy, 0.0, 1.0)"),
         _ => value.to_owned(),
     }
-}
-
-/// A kernel's own text among those of others.
-struct Own {
-    /// Without bindings, and with other names for what it declares.
-    text: String,
-    /// The new names of the textures that it reads, in their order.
-    textures: Vec<String>,
-}
-
-impl Own {
-    fn new(own: &str, place: usize) -> Self {
-        // The first kernel keeps its names, by which what it imports may call it; only its parameters lie elsewhere.
-        let declared: HashSet<&str> = match place {
-            0 => ["params", "Params"].into(),
-            _ => own.lines().filter_map(declared).filter(|name| *name != "target_image").collect(),
-        };
-        let bindings = || own.lines().filter(|line| line.starts_with("@group"));
-        let read = bindings().filter(|line| line.ends_with("texture_2d<f32>;")).filter_map(declared_name);
-        let renamed = |name: &str| if place == 0 { name.to_owned() } else { format!("{name}_{place}") };
-        let textures = read.map(renamed).collect();
-        let mut text = String::with_capacity(own.len() * 2);
-        let mut is_struct = false;
-        for line in own.lines().filter(|line| !line.starts_with("@group")) {
-            is_struct = line.starts_with("struct ") || is_struct && line != "}";
-            // The fields of a struct keep their names.
-            let (field, line) = match line.find(':').filter(|_| is_struct && line.starts_with(' ')) {
-                Some(at) => line.split_at(at),
-                None => ("", line),
-            };
-            text.push_str(field);
-            rename(line, &mut text, |word| match word {
-                "params" if declared.contains(word) => Some(format!("uniforms.params_{place}")),
-                _ => declared.contains(word).then(|| format!("{word}_{place}")),
-            });
-            text.push('\n');
-        }
-        Self { text: text.replace(STORE, FOLLOW), textures }
-    }
-
-    /// Says at which slots its textures lie that it reads itself.
-    fn place(&mut self, slots: &[Option<usize>]) {
-        let lines = self.text.lines().map(|line| {
-            let slot = line.starts_with("const INPUT_").then(|| line.split_once('=')).flatten();
-            let slot = slot
-                .and_then(|(start, n)| Some((start, n.trim().trim_end_matches("u;").parse::<usize>().ok()?)));
-            match slot.and_then(|(start, n)| Some((start, slots.get(n).copied()??))) {
-                Some((start, slot)) => format!("{start}= {slot}u;\n"),
-                None => format!("{line}\n"),
-            }
-        });
-        self.text = lines.collect();
-    }
-}
-
-/// The name that a line declares for the whole module, if it does.
-fn declared(line: &str) -> Option<&str> {
-    let is_declaration = ["fn ", "struct ", "const ", "override ", "var<", "alias ", "@group"];
-    is_declaration.iter().any(|start| line.starts_with(start)).then(|| declared_name(line)).flatten()
-}
-
-fn declared_name(line: &str) -> Option<&str> {
-    let rest =
-        ["fn ", "struct ", "const ", "override ", "alias "].iter().find_map(|start| line.strip_prefix(start));
-    // Variables may have an address space before their name.
-    let rest =
-        rest.or_else(|| line.split_once("var<").and_then(|(_, rest)| rest.split_once("> ")).map(|(_, r)| r));
-    let rest = rest.or_else(|| line.split_once(" var ").map(|(_, rest)| rest))?;
-    rest.split(|c: char| !is_letter(c)).next().filter(|name| !name.is_empty())
-}
-
-fn is_letter(c: char) -> bool {
-    c.is_ascii_alphanumeric() || c == '_'
-}
-
-/// Appends `line` to `text` with other words where `other` has one, but for fields of structs and comments.
-fn rename(line: &str, text: &mut String, other: impl Fn(&str) -> Option<String>) {
-    let (code, comment) = line.find("//").map_or((line, ""), |at| line.split_at(at));
-    let mut rest = code;
-    while let Some(start) = rest.find(is_letter) {
-        let (before, word) = rest.split_at(start);
-        let end = word.find(|c| !is_letter(c)).unwrap_or(word.len());
-        let (word, after) = word.split_at(end);
-        text.push_str(before);
-        let is_field = before.ends_with('.') || (before.is_empty() && text.ends_with('.'));
-        match other(word).filter(|_| !is_field) {
-            Some(new) => text.push_str(&new),
-            None => text.push_str(word),
-        }
-        rest = after;
-    }
-    text.push_str(rest);
-    text.push_str(comment);
 }

@@ -5,7 +5,7 @@
 //! gives what they sum. Passes of single pixels follow: those that alone read what the dispatch has computed, with what else
 //! is computed pixel by pixel for them, and those that need nothing but a pixel which the dispatch also stores.
 
-use crate::kernel::{MAX_INPUTS, PAIR_REACH};
+use crate::kernel::{Fusible, MAX_INPUTS, PAIR_REACH, Pair};
 use crate::plan::{ImageId, Pass, Plan, Support};
 
 /// Passes that run as one dispatch.
@@ -98,12 +98,14 @@ struct Fusing<'p> {
 impl Fusing<'_> {
     fn add(&mut self, index: usize, pass: &Pass) {
         let alone = || Fusion { passes: vec![index], lead: Lead::Single, outputs: pass.outputs.clone() };
-        let fused = self
-            .columns(index, pass)
-            .or_else(|| pass.kernel.parts.is_per_pixel.then(|| self.end(index, pass)).flatten());
+        let fused = match pass.kernel.fusible {
+            Fusible::Window(pair) => self.columns(index, pass, pair),
+            Fusible::SinglePixels { around } => self.end(index, pass, around),
+            Fusible::Never | Fusible::First | Fusible::BeforeWindow { .. } => None,
+        };
         if let Some(fusion) = fused {
             self.done.push(fusion);
-        } else if !(pass.kernel.parts.is_per_pixel && self.stored_besides(index, pass)) {
+        } else if !self.stored_besides(index, pass) {
             self.done.push(alone());
         }
     }
@@ -119,9 +121,8 @@ impl Fusing<'_> {
     }
 
     /// The dispatch of a window whose columns `pass` sums.
-    fn columns(&mut self, index: usize, pass: &Pass) -> Option<Fusion> {
-        let pair = pass.kernel.pair.as_ref().filter(|_| self.windows)?;
-        let rows = self.only_read_by(pass.inputs[0])?;
+    fn columns(&mut self, index: usize, pass: &Pass, pair: Pair) -> Option<Fusion> {
+        let rows = self.windows.then(|| self.only_read_by(pass.inputs[0])).flatten()?;
         let [first] = self.done[rows].passes[..] else { return None };
         let is_pair =
             self.pass(first).kernel == pass.kernel && (pair.fits)(&self.pass(first).params, &pass.params);
@@ -131,7 +132,9 @@ impl Fusing<'_> {
         let mut lead = Lead::Pair;
         let producer = self.only_read_by(self.pass(first).inputs[0]);
         let producer = producer.and_then(|at| match self.done[at].passes[..] {
-            [before] if self.pass(before).kernel.parts.can_produce => Some((at, before)),
+            [before] if matches!(self.pass(before).kernel.fusible, Fusible::BeforeWindow { .. }) => {
+                Some((at, before))
+            }
             _ => None,
         });
         if let Some((at, before)) = producer
@@ -145,11 +148,11 @@ impl Fusing<'_> {
     }
 
     /// Of a pass of single pixels: the dispatch that ends with it, where it alone reads what others have computed.
-    fn end(&mut self, index: usize, pass: &Pass) -> Option<Fusion> {
+    fn end(&mut self, index: usize, pass: &Pass, around: &[usize]) -> Option<Fusion> {
         let level = |image: &ImageId| self.plan.desc(*image).level;
         let pixels = || {
             let inputs = pass.inputs.iter().enumerate();
-            inputs.filter(|(at, _)| !pass.kernel.parts.around.contains(at)).map(|(_, image)| image)
+            inputs.filter(|(at, _)| !around.contains(at)).map(|(_, image)| image)
         };
         if pixels().any(|image| level(image) != level(&pass.outputs[0])) {
             return None;
@@ -183,9 +186,8 @@ impl Fusing<'_> {
     /// Of a pass that needs one pixel alone: adds it to the dispatch that stores this pixel, which then stores both, or the
     /// new one alone if nothing else reads the other. Says whether there is such a dispatch.
     fn stored_besides(&mut self, index: usize, pass: &Pass) -> bool {
-        let ([source], [], [result]) = (&pass.inputs[..], pass.kernel.parts.around, &pass.outputs[..]) else {
-            return false;
-        };
+        let Some([]) = pass.kernel.fusible.around() else { return false };
+        let ([source], [result]) = (&pass.inputs[..], &pass.outputs[..]) else { return false };
         let leaves = |image: &ImageId| self.plan.outputs().iter().any(|port| port.image == *image);
         let levels = [source, result].map(|image| self.plan.desc(*image).level);
         let stores = |fusion: &Fusion| fusion.outputs.contains(source);
@@ -205,11 +207,11 @@ impl Fusing<'_> {
     }
 
     fn can_lead(&self, fusion: &Fusion) -> bool {
-        fusion.lead != Lead::Single || self.pass(fusion.passes[0]).kernel.parts.can_lead
+        fusion.lead != Lead::Single || self.pass(fusion.passes[0]).kernel.fusible.can_lead()
     }
 
     fn is_per_pixel(&self, fusion: &Fusion) -> bool {
-        fusion.lead == Lead::Single && self.pass(fusion.passes[0]).kernel.parts.is_per_pixel
+        fusion.lead == Lead::Single && self.pass(fusion.passes[0]).kernel.fusible.around().is_some()
     }
 }
 

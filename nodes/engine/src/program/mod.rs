@@ -431,15 +431,15 @@ impl<'p> Lowering<'p> {
 
     /// How a pass reads.
     fn reading(&self, pass: &Pass) -> Reading {
-        let parts = &pass.kernel.parts;
+        let pieces = &pass.kernel.pieces;
         let is_half =
             |input: &usize| Format::of(self.plan.desc(pass.inputs[*input]), self.precision) == Format::Rgba16;
         let is_fast = self.precision == Precision::Fast;
         // What enters is the caller's, and may be more precise, unless it is asked for in 16 bits.
         let is_own = |input: &usize| self.plan.inputs().iter().all(|port| port.image != pass.inputs[*input]);
         Reading {
-            is_filtered: is_fast && !parts.filtered.is_empty() && parts.filtered.iter().all(is_half),
-            is_packed: parts.windowed.as_ref().is_some_and(|at| is_half(at) && (is_fast || is_own(at))),
+            is_filtered: is_fast && !pieces.filtered.is_empty() && pieces.filtered.iter().all(is_half),
+            is_packed: pieces.windowed.as_ref().is_some_and(|at| is_half(at) && (is_fast || is_own(at))),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Shaders of dispatches, and that of one kernel.
 
 use super::format::Format;
-use crate::kernel::{Import, Kernel, PACKED_WORKGROUP, WORKGROUP};
+use crate::kernel::{Kernel, PACKED_WORKGROUP, WORKGROUP};
+use crate::wgsl::{Import, Piece, Pieces, STORE};
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
@@ -29,10 +30,7 @@ pub struct Shader {
     pub filtered: Cow<'static, [usize]>,
 }
 
-/// The entry of a text that stores a result, up to the value.
-pub(super) const STORE: &str = "textureStore(target_image, vec2i(id.xy), ";
-
-/// What takes its place where 16-bit floats are stored.
+/// What takes the place of [`STORE`] where 16-bit floats are stored.
 const STORE_HALF: &str = "store_half(id, ";
 
 /// Devices may cut bits off instead of rounding, which adds up from pass to pass, and may make what is too large infinite.
@@ -48,25 +46,37 @@ impl Shader {
     /// That of one kernel, which writes `outputs`.
     pub(super) fn of(kernel: &'static Kernel, outputs: &[Format], reading: Reading) -> Self {
         let is_half = outputs.contains(&Format::Rgba16);
-        let source = if reading == Reading::default() {
+        let source = if reading == Reading::default() && !is_half {
             Cow::Borrowed(kernel.shader)
         } else {
-            let imports = kernel.parts.imports.iter().map(|import| reading.text(import));
-            let own = reading.own(kernel.parts.own);
-            imports.chain([own.as_ref()]).collect::<String>().into()
+            source(&kernel.pieces, outputs, reading).into()
         };
         Self {
             name: match variant(is_half, reading).as_str() {
                 "" => Cow::Borrowed(kernel.name),
                 variant => format!("{}{variant}", kernel.name).into(),
             },
-            source: if is_half { stored_as(&source, outputs).into() } else { source },
+            source,
             inputs: kernel.inputs,
             outputs: outputs.to_vec().into(),
             params_size: kernel.params_size,
             workgroup: reading.workgroup(),
             filtered: reading.filtered(kernel).into(),
         }
+    }
+
+    /// Shaders of one kernel that store 32-bit floats: as it is, and as it reads 16-bit floats where it does so in a way of
+    /// its own.
+    pub fn variants(kernel: &'static Kernel) -> Vec<Self> {
+        let Pieces { filtered, windowed, .. } = kernel.pieces;
+        let plain = Reading::default();
+        let readings = [
+            Some(plain),
+            (!filtered.is_empty()).then_some(Reading { is_filtered: true, ..plain }),
+            windowed.map(|_| Reading { is_packed: true, ..plain }),
+        ];
+        let outputs: Vec<Format> = kernel.outputs.iter().map(|channels| Format::exact(*channels)).collect();
+        readings.into_iter().flatten().map(|reading| Self::of(kernel, &outputs, reading)).collect()
     }
 }
 
@@ -80,19 +90,15 @@ pub(super) struct Reading {
 }
 
 impl Reading {
-    /// What stands in a module for what a kernel imports.
-    pub fn text(self, import: &'static Import) -> &'static str {
+    /// Pieces that stand in a module for what a kernel imports.
+    pub fn pieces(self, import: &'static Import) -> &'static [Piece] {
         let filtered = import.filtered.filter(|_| self.is_filtered);
         filtered.or(import.packed.filter(|_| self.is_packed)).unwrap_or(import.text)
     }
 
-    /// A kernel's own text, for workgroups of the right size.
-    pub fn own(self, own: &str) -> Cow<'_, str> {
-        if !self.is_packed {
-            return Cow::Borrowed(own);
-        }
-        let size = |side: u32| format!("@workgroup_size({side}, {side})");
-        own.replace(&size(WORKGROUP), &size(PACKED_WORKGROUP)).into()
+    /// Two sides of its workgroups, as WGSL.
+    pub fn sides(self) -> String {
+        format!("{0}, {0}", self.workgroup())
     }
 
     /// The side of its workgroups.
@@ -102,7 +108,7 @@ impl Reading {
 
     /// The inputs that it reads through a sampler.
     pub const fn filtered(self, kernel: &'static Kernel) -> &'static [usize] {
-        if self.is_filtered { kernel.parts.filtered } else { &[] }
+        if self.is_filtered { kernel.pieces.filtered } else { &[] }
     }
 }
 
@@ -112,19 +118,22 @@ pub(super) fn variant(is_half: bool, reading: Reading) -> String {
     words.iter().filter(|(is, _)| *is).map(|(_, word)| *word).collect()
 }
 
-/// A module whose storage textures have these formats in place of those of 32-bit floats.
-fn stored_as(source: &str, outputs: &[Format]) -> String {
-    const TYPE: &str = "texture_storage_2d<";
-    let mut parts = source.split(TYPE);
-    let mut text = parts.next().unwrap_or_default().to_owned();
-    let mut outputs = outputs.iter();
-    for part in parts {
-        let rest = part.split_once(',').map_or(part, |(_, rest)| rest);
-        let format = outputs.next().map_or("", |format| format.wgsl());
-        let _ = write!(text, "{TYPE}{format},{rest}");
+/// Module of one kernel whose storage textures have these formats.
+fn source(pieces: &Pieces, outputs: &[Format], reading: Reading) -> String {
+    let is_half = outputs.contains(&Format::Rgba16);
+    let imports = pieces.imports.iter().flat_map(|import| reading.pieces(import));
+    let mut text = String::new();
+    let mut stores = false;
+    for piece in imports.chain(pieces.own).chain(pieces.entry) {
+        stores |= *piece == Piece::Store;
+        match *piece {
+            Piece::Format { output, exact } => text.push_str(outputs.get(output).map_or(exact, |f| f.wgsl())),
+            Piece::Store if is_half => text.push_str(STORE_HALF),
+            Piece::Workgroup => text.push_str(&reading.sides()),
+            piece => text.push_str(&piece.text()),
+        }
     }
-    if text.contains(STORE) {
-        text = text.replace(STORE, STORE_HALF);
+    if is_half && stores {
         let _ = write!(
             text,
             "{NEAREST_HALF}\nfn store_half(id: vec3u, value: vec4f) {{\n    {STORE}nearest_half(value));\n}}\n"

@@ -1,9 +1,34 @@
 //! Small kernels, each as WGSL and as a CPU function, and plans of them.
-#![allow(dead_code, missing_docs)]
+#![allow(dead_code, missing_docs, unused_macros)]
 
-use isophote_engine::kernel::Parts;
+use isophote_engine::kernel::Fusible;
+use isophote_engine::wgsl::{Import, Piece, Pieces};
 use isophote_engine::{Band, Class, CpuPass, Image, ImageId, Kernel, Plan, PlanBuilder, Support, Tolerance};
 use std::sync::LazyLock;
+
+/// The texts of pieces as one, each written as the piece's case and its text.
+macro_rules! joined {
+    ($($case:ident $text:literal)*) => { concat!($($text),*) };
+}
+
+/// Those pieces.
+macro_rules! pieces {
+    (@ Text $text:literal) => { Piece::Text($text) };
+    (@ Name $text:literal) => { Piece::Name($text) };
+    (@ Binding $text:literal) => { Piece::Binding($text) };
+    (@ Format $text:literal) => { Piece::Format { output: 0, exact: $text } };
+    (@ Slot $input:literal) => { Piece::Slot($input) };
+    (@ $case:ident $text:literal) => { Piece::$case };
+    ($($case:ident $text:literal)*) => { &[$(pieces!(@ $case $text)),*] };
+}
+
+/// Where a texture lies in the picture.
+pub static GRID: Import = Import {
+    name: "gpu/grid",
+    text: &[Piece::Text(include_str!("../../../../shaders/gpu/grid.wgsl"))],
+    filtered: None,
+    packed: None,
+};
 
 const EXACT: Tolerance = Tolerance { absolute: 1e-5, relative: 1e-5, outliers: 0.0, reason: "few sums" };
 
@@ -14,34 +39,41 @@ pub struct BoxParams {
     pub gain: f32,
 }
 
+macro_rules! box_text {
+    ($form:ident) => {
+        $form! {
+            Text "
+struct Params { radius: i32, gain: f32 }
+@group(0) @binding(1) var<uniform> params: Params;
+@group(0) @binding(2) var source: texture_2d<f32>;
+@group(0) @binding(3) var result: texture_storage_2d<"
+            Format "rgba32float"
+            Text ", write>;
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if outside(id) { return; }
+    var sum = vec4f(0.0);
+    for (var y = -params.radius; y <= params.radius; y++) {
+        for (var x = -params.radius; x <= params.radius; x++) {
+            sum += fetch(source, 0, pixel(id) + vec2i(x, y));
+        }
+    }
+    let side = f32(2 * params.radius + 1);
+    textureStore(result, id.xy, sum / (side * side) * params.gain);
+}"
+        }
+    };
+}
+
 /// Mean over a square, times a gain.
 pub static BOX: Kernel = Kernel {
     name: "box",
-    shader: concat!(
-        include_str!("../../../../shaders/gpu/grid.wgsl"),
-        "
-        struct Params { radius: i32, gain: f32 }
-        @group(0) @binding(1) var<uniform> params: Params;
-        @group(0) @binding(2) var source: texture_2d<f32>;
-        @group(0) @binding(3) var result: texture_storage_2d<rgba32float, write>;
-        @compute @workgroup_size(8, 8)
-        fn main(@builtin(global_invocation_id) id: vec3u) {
-            if outside(id) { return; }
-            var sum = vec4f(0.0);
-            for (var y = -params.radius; y <= params.radius; y++) {
-                for (var x = -params.radius; x <= params.radius; x++) {
-                    sum += fetch(source, 0, pixel(id) + vec2i(x, y));
-                }
-            }
-            let side = f32(2 * params.radius + 1);
-            textureStore(result, id.xy, sum / (side * side) * params.gain);
-        }"
-    ),
+    shader: concat!(include_str!("../../../../shaders/gpu/grid.wgsl"), box_text!(joined)),
     inputs: 1,
     outputs: &[4],
     params_size: size_of::<BoxParams>(),
-    parts: Parts::NONE,
-    pair: None,
+    pieces: Pieces { imports: &[&GRID], own: box_text!(pieces), ..Pieces::NONE },
+    fusible: Fusible::Never,
     cpu: box_cpu,
     cost: |_| 1.0,
     tolerance: EXACT,
@@ -67,12 +99,9 @@ fn box_cpu(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     }
 }
 
-/// Without a uniform block: one channel of brightness, and two with the pixel's position.
-pub static SPLIT: Kernel = Kernel {
-    name: "split",
-    shader: concat!(
-        include_str!("../../../../shaders/gpu/grid.wgsl"),
-        "
+const SPLIT_TEXT: &str = concat!(
+    include_str!("../../../../shaders/gpu/grid.wgsl"),
+    "
         @group(0) @binding(2) var source: texture_2d<f32>;
         @group(0) @binding(3) var brightness: texture_storage_2d<r32float, write>;
         @group(0) @binding(4) var position: texture_storage_2d<rg32float, write>;
@@ -83,12 +112,17 @@ pub static SPLIT: Kernel = Kernel {
             textureStore(brightness, id.xy, vec4f(c.x + c.y + c.z));
             textureStore(position, id.xy, vec4f(centre(id), 0.0, 0.0));
         }"
-    ),
+);
+
+/// Without a uniform block: one channel of brightness, and two with the pixel's position.
+pub static SPLIT: Kernel = Kernel {
+    name: "split",
+    shader: SPLIT_TEXT,
     inputs: 1,
     outputs: &[1, 2],
     params_size: 0,
-    parts: Parts::NONE,
-    pair: None,
+    pieces: Pieces { own: &[Piece::Text(SPLIT_TEXT)], ..Pieces::NONE },
+    fusible: Fusible::Never,
     cpu: split_cpu,
     cost: |_| 1.0,
     tolerance: EXACT,
@@ -114,12 +148,9 @@ pub struct JoinParams {
     pub scale: f32,
 }
 
-/// A colour of three channels from those two images.
-pub static JOIN: Kernel = Kernel {
-    name: "join",
-    shader: concat!(
-        include_str!("../../../../shaders/gpu/grid.wgsl"),
-        "
+const JOIN_TEXT: &str = concat!(
+    include_str!("../../../../shaders/gpu/grid.wgsl"),
+    "
         struct Params { scale: f32 }
         @group(0) @binding(1) var<uniform> params: Params;
         @group(0) @binding(2) var brightness: texture_2d<f32>;
@@ -132,12 +163,17 @@ pub static JOIN: Kernel = Kernel {
             let p = fetch(position, 1, pixel(id)).xy;
             textureStore(result, id.xy, vec4f(b, p * params.scale, 0.0));
         }"
-    ),
+);
+
+/// A colour of three channels from those two images.
+pub static JOIN: Kernel = Kernel {
+    name: "join",
+    shader: JOIN_TEXT,
     inputs: 2,
     outputs: &[3],
     params_size: size_of::<JoinParams>(),
-    parts: Parts::NONE,
-    pair: None,
+    pieces: Pieces { own: &[Piece::Text(JOIN_TEXT)], ..Pieces::NONE },
+    fusible: Fusible::Never,
     cpu: join_cpu,
     cost: |_| 1.0,
     tolerance: EXACT,
@@ -186,14 +222,15 @@ pub static SHIFT: LazyLock<Kernel> = LazyLock::new(|| {
         shared[0],
         shared[1].replace("#import gpu/grid", "")
     );
+    let shader: &'static str = shader.leak();
     Kernel {
         name: "shift",
-        shader: shader.leak(),
+        shader,
         inputs: 1,
         outputs: &[4],
         params_size: size_of::<ShiftParams>(),
-        parts: Parts::NONE,
-        pair: None,
+        pieces: Pieces { own: vec![Piece::Text(shader)].leak(), ..Pieces::NONE },
+        fusible: Fusible::Never,
         cpu: shift_cpu,
         cost: |_| 1.0,
         tolerance: EXACT,

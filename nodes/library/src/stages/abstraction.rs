@@ -3,10 +3,9 @@
 use crate::choice::choice;
 use crate::kernels::lines::orientation_field;
 use crate::kernels::smoothing::bilateral::Options;
-use crate::nodes::smoothing::bilateral::Kernel;
-use crate::nodes::smoothing::{bilateral, flow_bilateral, oriented_bilateral};
 use crate::spec::{Param, Scope};
-use crate::stages::{ADVANCED, LOOK};
+use crate::stages::bilateral::{self, Kernel};
+use crate::stages::{ADVANCED, LOOK, flow_bilateral, oriented_bilateral};
 use isophote_engine::{ImageId, PlanBuilder};
 
 pub(crate) const DETAIL: Param = Param::float("detail", "Detail", 0.5, [0.0, 1.0]).group(LOOK).doc(

@@ -3,8 +3,8 @@
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::shared::stream::Integrator;
-use crate::nodes::lines::flow_dog::{FlowDog, Kernel};
 use crate::spec::{Param, Scope};
+use crate::stages::flow_dog::{FlowDog, Kernel};
 use crate::stages::{ADVANCED, LOOK};
 
 pub(crate) const LINE_WIDTH: Param = Param::float("line_width", "Line width", 2.0, [0.2, 40.0])
@@ -131,7 +131,7 @@ fn base(technical: f32, amount: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::nodes::lines::{difference_of_gaussians as dog, flow_dog};
+    use crate::stages::{difference_of_gaussians as dog, flow_dog};
 
     const WIDTH: f32 = LINE_WIDTH.default_float();
     const AMOUNT: f32 = LINE_AMOUNT.default_float();

@@ -1,8 +1,8 @@
 //! The soft quantization of styles (§ 4.6) under the controls of artists.
 
-use crate::nodes::colour::quantize_luminance::BINS;
 use crate::spec::{Param, Scope};
 use crate::stages::LOOK;
+use crate::stages::quantize_luminance::BINS;
 
 pub(crate) const POSTERIZE: Param = Param::int("posterize", "Posterize", BINS.default_int(), [0, 64])
     .slider(2.0, 16.0)

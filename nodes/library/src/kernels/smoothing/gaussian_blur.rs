@@ -4,12 +4,10 @@
 //! interleaved values, sixteen pixels at a time. The shader reads its windows through workgroup memory,
 //! radius / 2 + 2 loads a pixel.
 
-use crate::kernels::pairs::gaussian_blur as pair;
 pub use crate::kernels::shaders::gaussian_blur::Params;
 use crate::kernels::shared::coverage::{FULL, LEAST_COVERAGE, is_opaque};
 use crate::kernels::simd::window_sum::{GAUSSIAN_TAPS, RUN, flat, gaussian_radius, gaussian_table, sum};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, f32x16, prelude::*};
-use isophote_engine::kernel::Pair;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(gaussian_blur {
@@ -21,7 +19,7 @@ crate::kernel!(gaussian_blur {
         outliers: 0.0,
         reason: "sums of up to 511 products in the same order; only fused multiply-adds differ",
     },
-    pair: Pair { imports: pair::IMPORTS, own: pair::OWN, fits: is_window },
+    pair: is_window,
 });
 
 /// Whether two passes are the rows and the columns of a window.

@@ -3,20 +3,14 @@
 
 use crate::choice::choice;
 use crate::kernels::colour::lightness;
-use crate::kernels::lines::edge_area::Shares;
-use crate::kernels::lines::flow_dog_two_dimensional::{self, Stepping};
-use crate::kernels::lines::{
-    darken_by_lines, dog_columns, edge_area, flow_dog_cabral_leedom, flow_dog_gradient, flow_dog_tangent,
-    guide_lines, orientation_field,
-};
-use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
+use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::stream::Integrator;
-use crate::nodes::lines::difference_of_gaussians as dog;
-use crate::nodes::structure::structure_tensor::{Guides, TensorOptions, of_color_and_guides};
 use crate::ports;
-use crate::spec::{ImageKind, NodeSpec, Param, Port, STEADINESS, Scope, WINDOW};
+use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::stages::difference_of_gaussians as dog;
+use crate::stages::flow_dog::{DEPTH, FlowDog, Kernel, NORMAL, OBJECT_ID, SIGMA_M, guides, tensor};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, compared, steadied};
-use isophote_engine::{ImageId, PlanBuilder};
+use isophote_engine::ImageId;
 
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
@@ -56,28 +50,6 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
-pub(crate) const NORMAL: Port = Port {
-    id: "normal",
-    kind: ImageKind::Normal,
-    optional: true,
-    doc: "View-space normals; creases draw lines.",
-};
-pub(crate) const DEPTH: Port = Port {
-    id: "depth",
-    kind: ImageKind::Depth,
-    optional: true,
-    doc: "Distance from the camera; jumps draw lines, relative to the distance and never on planes.",
-};
-pub(crate) const OBJECT_ID: Port = Port {
-    id: "object_id",
-    kind: ImageKind::ObjectId,
-    optional: true,
-    doc: "Object numbers; borders between objects draw lines.",
-};
-pub(crate) const SIGMA_M: Param = Param::float("sigma_m", "Sigma m", 3.0, [0.0, 60.0])
-    .slider(0.0, 15.0)
-    .pixels()
-    .doc("Standard deviation of the smoothing along the edges; longer lines and less noise.");
 const INTEGRATOR: Param = Param::choice("integrator", "Integrator", Tracing::Midpoint.selected()).doc(
     "How stream lines are stepped: Euler (2.176), second order (2.182), from pixel boundary to pixel \
      boundary with the Gaussian integrated exactly (Cabral and Leedom, 2.193), or second order with the tangent \
@@ -100,193 +72,6 @@ choice! {
         /// The midpoint method with an extrapolated tangent, of second order too and faster.
         TwoStep ("two_step", "Two-step midpoint, second order"),
     }
-}
-
-choice! {
-    /// The window of the filter.
-    pub(crate) enum Kernel {
-        /// Across the tangent at each pixel, then along its stream line.
-        Separable ("separable", "Separable"),
-        /// Across the tangent at every point of the stream line.
-        TwoDimensional ("two_dimensional", "Two-dimensional"),
-    }
-}
-
-/// How lines are drawn along the flow; lengths in pixels of the picture that is rendered.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FlowDog {
-    pub sigma_e: f32,
-    pub k: f32,
-    pub sigma_m: f32,
-    pub xdog: Xdog,
-    pub iterations: i32,
-    pub stepping: Stepping,
-    pub kernel: Kernel,
-    pub guide_weight: f32,
-    /// How much the picture's own edges count, 0..=1.
-    pub texture: f32,
-    /// Widths of creases and of outlines against those of the picture's own lines.
-    pub widths: [f32; 2],
-}
-
-impl FlowDog {
-    /// The edge image of (L alpha, alpha) along the stream lines of `tensor`.
-    pub(crate) fn edges(
-        &self,
-        plan: &mut PlanBuilder,
-        lightness: ImageId,
-        tensor: ImageId,
-        guides: &Guides,
-    ) -> ImageId {
-        let field = orientation_field::pass(plan, tensor);
-        self.iterate(plan, lightness, |plan, source, xdog| match self.kernel {
-            Kernel::Separable => {
-                let response = self.across(plan, source, field, guides, xdog);
-                self.along(plan, response, field, &xdog)
-            }
-            Kernel::TwoDimensional => {
-                let marked = self.with_guides(plan, source, field, guides);
-                let options = flow_dog_two_dimensional::Options {
-                    sigma_e: self.sigma_e,
-                    k: self.k,
-                    sigma_m: self.sigma_m,
-                    stepping: self.stepping,
-                    xdog,
-                };
-                flow_dog_two_dimensional::pass(plan, [source, field, marked], &options)
-            }
-        })
-    }
-
-    /// What the separable filter has found before lines are smoothed along themselves and decided: the response of its
-    /// last iteration, (u alpha, alpha).
-    pub(crate) fn response(
-        &self,
-        plan: &mut PlanBuilder,
-        lightness: ImageId,
-        tensor: ImageId,
-        guides: &Guides,
-    ) -> ImageId {
-        let field = orientation_field::pass(plan, tensor);
-        let mut source = lightness;
-        if self.iterations > 1 {
-            let before = Self { iterations: self.iterations - 1, xdog: self.deciding(), ..*self };
-            let edges = before.edges(plan, lightness, tensor, guides);
-            source = darken_by_lines::pass(plan, lightness, edges);
-        }
-        self.across(plan, source, field, guides, self.xdog)
-    }
-
-    /// The edge image of a response, along the stream lines of `tensor`; over areas where it is steadied.
-    pub(crate) fn decided(
-        &self,
-        plan: &mut PlanBuilder,
-        response: ImageId,
-        tensor: ImageId,
-        shares: Option<Shares>,
-    ) -> ImageId {
-        let field = orientation_field::pass(plan, tensor);
-        if let (Some(shares), Stepping::Along(integrator)) = (shares, self.stepping) {
-            let options = flow_dog_tangent::Options { sigma: self.sigma_m, integrator, xdog: self.xdog };
-            let smooth = flow_dog_tangent::pass_undecided(plan, response, field, &options);
-            return edge_area::pass(plan, smooth, shares, &self.xdog);
-        }
-        self.along(plan, response, field, &self.xdog)
-    }
-
-    /// The first pass of the separable filter.
-    fn across(
-        &self,
-        plan: &mut PlanBuilder,
-        source: ImageId,
-        field: ImageId,
-        guides: &Guides,
-        xdog: Xdog,
-    ) -> ImageId {
-        let own = Xdog { edge: xdog.edge * self.texture, ..xdog };
-        let options = flow_dog_gradient::Options { sigma: self.sigma_e, k: self.k, xdog: own };
-        let response = flow_dog_gradient::pass(plan, source, field, &options);
-        self.with_guides(plan, response, field, guides)
-    }
-
-    /// Thresholds that give an edge image, which alone can darken the input of the next iteration.
-    fn deciding(&self) -> Xdog {
-        match self.xdog.threshold {
-            Threshold::None => Xdog { threshold: Threshold::Tanh, ..self.xdog },
-            _ => self.xdog,
-        }
-    }
-
-    /// The edge image of (L alpha, alpha) by the difference of Gaussians in all directions alike (§ 4.2).
-    pub(crate) fn isotropic(&self, plan: &mut PlanBuilder, lightness: ImageId) -> ImageId {
-        self.iterate(plan, lightness, |plan, source, xdog| {
-            dog_columns::pass(plan, source, &dog_columns::Options { sigma: self.sigma_e, k: self.k, xdog })
-        })
-    }
-
-    /// Filters as often as asked for, each time the lightness times the lines found so far.
-    fn iterate(
-        &self,
-        plan: &mut PlanBuilder,
-        lightness: ImageId,
-        filter: impl Fn(&mut PlanBuilder, ImageId, Xdog) -> ImageId,
-    ) -> ImageId {
-        let (mut source, mut edges) = (lightness, lightness);
-        for iteration in 1..=self.iterations {
-            let last = iteration == self.iterations;
-            let xdog = if last { self.xdog } else { self.deciding() };
-            edges = filter(plan, source, xdog);
-            if !last {
-                source = darken_by_lines::pass(plan, lightness, edges);
-            }
-        }
-        edges
-    }
-
-    /// A response, or any image of that shape, with the lines that the guides draw.
-    fn with_guides(
-        &self,
-        plan: &mut PlanBuilder,
-        response: ImageId,
-        field: ImageId,
-        guides: &Guides,
-    ) -> ImageId {
-        let guides = [guides.normal, guides.depth, guides.object_id];
-        if self.guide_weight <= 0.0 || guides.iter().all(Option::is_none) {
-            return response;
-        }
-        let options = guide_lines::Options {
-            sigmas: self.widths.map(|width| self.sigma_e * width),
-            weight: self.guide_weight,
-            edge: self.xdog.edge,
-        };
-        guide_lines::pass(plan, response, field, guides, &options)
-    }
-
-    /// The second pass of the separable filter.
-    fn along(&self, plan: &mut PlanBuilder, response: ImageId, field: ImageId, xdog: &Xdog) -> ImageId {
-        match self.stepping {
-            Stepping::Along(integrator) => {
-                let options = flow_dog_tangent::Options { sigma: self.sigma_m, integrator, xdog: *xdog };
-                flow_dog_tangent::pass(plan, response, field, &options)
-            }
-            Stepping::CabralLeedom => flow_dog_cabral_leedom::pass(plan, response, field, self.sigma_m, xdog),
-        }
-    }
-}
-
-/// The guides connected to a node, as far as `weight` lets them count.
-pub(crate) fn guides(scope: &Scope<'_>, weight: f32) -> Guides {
-    if weight <= 0.0 {
-        return Guides::default();
-    }
-    Guides { normal: scope.input("normal"), depth: scope.input("depth"), object_id: scope.input("object_id") }
-}
-
-/// The tensor of a picture and of the guides that count, for a node without a connected one.
-pub(crate) fn tensor(scope: &mut Scope<'_>, color: ImageId, guides: &Guides) -> ImageId {
-    let options = TensorOptions::at_scale(scope.scale());
-    of_color_and_guides(scope.plan, color, guides, &options)
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {

@@ -4,6 +4,7 @@ use crate::choice::choice;
 use crate::kernels::painting::generalized_kuwahara::{self, Options};
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
+use crate::stages::generalized_kuwahara::{Q, SECTORS, THRESHOLD, sectors};
 use isophote_engine::ImageId;
 
 /// The node.
@@ -42,23 +43,6 @@ choice! {
         /// By the fast Fourier transform (5.16).
         Fourier ("fft", "Fourier transform"),
     }
-}
-
-/// N.
-pub(crate) const SECTORS: Param = Param::int("sectors", "Sectors", 8, [4, 8])
-    .doc("Sectors of the disc (N), 4 or 8, which follow corners and curves better; more than 4 are 8.");
-/// q.
-pub(crate) const Q: Param = Param::float("q", "Sharpness", 8.0, [1.0, 64.0])
-    .slider(1.0, 16.0)
-    .doc("Exponent by which flat sectors outweigh others (q of 5.15): higher is sharper.");
-/// tau_s.
-pub(crate) const THRESHOLD: Param = Param::float("threshold", "Threshold", 0.0627, [0.001, 1.0])
-    .slider(0.005, 0.3)
-    .doc("Standard deviation below which sectors count as flat (tau_s of 5.15), RGB in 0..1.");
-
-/// The chosen number of sectors.
-pub(crate) fn sectors(scope: &Scope<'_>) -> u32 {
-    if scope.int("sectors") > 4 { 8 } else { 4 }
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {

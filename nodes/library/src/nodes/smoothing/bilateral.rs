@@ -1,13 +1,12 @@
 //! The bilateral filter (§ 3.2) and its xy-separable form (§ 3.3).
-//!
-//! Other nodes call `iteration` between passes of their own.
 
 use crate::choice::choice;
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
-use crate::kernels::smoothing::bilateral::{self, Options, Window};
+use crate::kernels::smoothing::bilateral::Options;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
-use isophote_engine::{ImageId, PlanBuilder};
+use crate::stages::bilateral::{CUTOFF, Kernel, Passes, iteration};
+use isophote_engine::ImageId;
 
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
@@ -45,21 +44,6 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
-pub(crate) const CUTOFF: Param = Param::float("cutoff", "Cut-off", 3.0, [1.0, 4.0]).slider(1.0, 3.0).doc(
-    "Radius of the round window in standard deviations, rounded up to pixels. 3 keeps all that counts; the \
-     9x9 window that is usual for sigma 3 ends at 1.33.",
-);
-
-choice! {
-    /// The window.
-    pub(crate) enum Kernel {
-        /// A disc (3.2).
-        Full ("full", "Full"),
-        /// A row and then a column (3.3).
-        Separable ("xy", "Separable along x and y"),
-    }
-}
-
 choice! {
     /// Where differences of colour are measured.
     enum Space {
@@ -67,26 +51,6 @@ choice! {
         Lab ("lab", "CIELAB"),
         /// Gamma-encoded RGB.
         Rgb ("rgb", "RGB"),
-    }
-}
-
-/// One iteration of the bilateral filter with one of its kernels.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Passes {
-    /// The window.
-    pub kernel: Kernel,
-    /// What the passes are asked for.
-    pub options: Options,
-}
-
-/// One iteration, usually on a CIELAB image.
-pub(crate) fn iteration(plan: &mut PlanBuilder, color: ImageId, passes: &Passes) -> ImageId {
-    match passes.kernel {
-        Kernel::Full => bilateral::pass(plan, color, Window::Disc, &passes.options),
-        Kernel::Separable => {
-            let rows = bilateral::pass(plan, color, Window::Row, &passes.options);
-            bilateral::pass(plan, rows, Window::Column, &passes.options)
-        }
     }
 }
 

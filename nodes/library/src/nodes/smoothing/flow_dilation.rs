@@ -2,9 +2,9 @@
 
 use crate::kernels::smoothing::{flow_dilation, gaussian_blur};
 use crate::kernels::structure::noise;
-use crate::nodes::structure::structure_tensor;
 use crate::ports;
 use crate::spec::{HOLD, NodeSpec, Param, Scope};
+use crate::stages::structure_tensor;
 use isophote_engine::{Class, ImageId};
 
 /// The node.

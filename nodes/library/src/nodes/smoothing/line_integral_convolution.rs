@@ -4,10 +4,12 @@
 use crate::choice::choice;
 use crate::kernels::shared::stream::Integrator;
 use crate::kernels::smoothing::cabral_leedom;
-use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options};
-use crate::nodes::structure::structure_tensor;
+use crate::kernels::smoothing::line_integral_convolution::{self, Options};
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
+use crate::stages::line_integral_convolution::{ADAPT, MAX_ANGLE, SIGMA, STEP};
+pub use crate::stages::line_integral_convolution::options;
+use crate::stages::structure_tensor;
 use isophote_engine::ImageId;
 
 /// The node.
@@ -25,11 +27,6 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
-const SIGMA: Param = Param::float("sigma", "Sigma", 6.0, [0.0, 40.0])
-    .neutral_at_zero()
-    .slider(0.0, 20.0)
-    .pixels()
-    .doc("Standard deviation of the Gaussian along the line, sigma_s of 6.3.1; cut at 2 sigma.");
 const INTEGRATOR: Param = Param::choice("integrator", "Integrator", Stepping::Midpoint.selected()).doc(
     "How lines are stepped: Euler's method (2.177), the second-order midpoint method (2.182), from pixel \
      boundary to pixel boundary with the Gaussian integrated exactly on the pixels (Cabral and Leedom, 2.193), \
@@ -40,16 +37,6 @@ const SAMPLING: Param = Param::choice("sampling", "Sampling", Sampling::Linear.s
     "What a line follows between pixels: the tensor interpolated bilinearly, or that of the nearest pixel, which takes \
      less and gives rougher lines (2.9.2); Cabral and Leedom's method always takes the pixel's own.",
 );
-const ADAPT: Param = Param::choice("adapt", "Adapt length", Adapt::Anisotropy.selected())
-    .uniform()
-    .doc("Shortens lines where the orientation is uncertain, sigma (1 + A)^2 / 4 (6.3.1), or as they turn (6.3.2).");
-const MAX_ANGLE: Param = Param::float("max_angle", "Largest turn", 0.0, [0.0, 90.0])
-    .degrees()
-    .doc("A line ends where it turns by more in one step; 0 for never. 22.5 is the published filter's.");
-const STEP: Param = Param::float("step", "Step", 1.0, [0.25, 4.0])
-    .slider(0.25, 2.0)
-    .pixels()
-    .doc("Step size h of the integration.");
 
 choice! {
     /// What a line follows between pixels.
@@ -73,25 +60,6 @@ choice! {
         /// The midpoint method with an extrapolated tangent, of second order too and faster.
         TwoStep ("two_step", "Two-step midpoint"),
     }
-}
-
-/// What other nodes convolve with unless they need something else: the defaults of the parameters, of
-/// second order, which long lines need (§ 6.3).
-pub fn options() -> Options {
-    Options {
-        sigma: SIGMA.default_float(),
-        step: STEP.default_float(),
-        stretch: 1.0,
-        integrator: Integrator::TwoStep,
-        nearest: false,
-        adapt: ADAPT.default_option(),
-        max_angle: MAX_ANGLE.default_float(),
-    }
-}
-
-/// The same for the last smoothing of edges (§ 6.5): without adaption and through every turn.
-pub fn unadapted() -> Options {
-    Options { adapt: Adapt::None, max_angle: 0.0, ..options() }
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {

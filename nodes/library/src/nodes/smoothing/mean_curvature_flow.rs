@@ -1,12 +1,10 @@
 //! Mean curvature flow and its constrained variant with shock filtering (§ 6.1), the shape-simplifying
 //! abstraction of Kang and Lee.
 
-use crate::kernels::smoothing::mean_curvature_flow;
-use crate::nodes::coherence::shock;
-use crate::nodes::structure::structure_tensor;
 use crate::ports;
+use crate::kernels::smoothing::mean_curvature_flow;
 use crate::spec::{NodeSpec, Param, Scope};
-use crate::tensor_options;
+use crate::stages::{shock, structure_tensor, tensor_options};
 use isophote_engine::ImageId;
 
 /// The node.

@@ -4,14 +4,13 @@
 //! dual under inversion of the picture, which § 5.1 relies on, and idempotent; an order by lightness
 //! would keep the colours of single pixels but tear channels' contours apart where colours are equally
 //! light.
-//!
-//! Other nodes use `open` and `close`.
 
 use crate::choice::choice;
 use crate::kernels::smoothing::disc_extremum::{self, Extremum};
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
-use isophote_engine::{ImageId, PlanBuilder};
+use crate::stages::morphology::{close, open};
+use isophote_engine::ImageId;
 
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
@@ -53,18 +52,6 @@ choice! {
         /// Closing, then opening.
         CloseOpen ("close_open", "Close, then open"),
     }
-}
-
-/// Light features smaller than the disc go.
-pub(crate) fn open(plan: &mut PlanBuilder, color: ImageId, radius: f32) -> ImageId {
-    let eroded = disc_extremum::pass(plan, color, radius, Extremum::Least);
-    disc_extremum::pass(plan, eroded, radius, Extremum::Greatest)
-}
-
-/// Dark features smaller than the disc go.
-pub(crate) fn close(plan: &mut PlanBuilder, color: ImageId, radius: f32) -> ImageId {
-    let dilated = disc_extremum::pass(plan, color, radius, Extremum::Greatest);
-    disc_extremum::pass(plan, dilated, radius, Extremum::Least)
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {

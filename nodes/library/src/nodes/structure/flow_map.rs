@@ -1,10 +1,9 @@
 //! Flow maps: orientation that an artist painted (§ 1.2), as game engines have it.
 
-use crate::kernels::smoothing::gaussian_blur;
-use crate::kernels::structure::{flow_bend, flow_field};
 use crate::ports;
-use crate::spec::{ImageKind, NodeSpec, Param, Port, Scope};
-use isophote_engine::{Class, ImageId, PlanBuilder};
+use crate::spec::{ImageKind, NodeSpec, Port, Scope};
+use crate::stages::flow_map::{Flow, INVERT_Y, SOFTNESS, STRENGTH};
+use isophote_engine::ImageId;
 
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
@@ -32,46 +31,6 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
-const STRENGTH: Param = Param::float("strength", "Strength", 1.0, [0.0, 1.0])
-    .doc("How far the field gives way where alpha is 1.");
-const SOFTNESS: Param =
-    Param::float("softness", "Softness", 8.0, [0.0, 64.0]).slider(0.0, 32.0).pixels().structural().doc(
-        "Standard deviation of the Gaussian that smooths what was painted, so that directions turn gently.",
-    );
-const INVERT_Y: Param = Param::bool("invert_y", "Invert y", false)
-    .doc("For maps whose green grows upwards, as OpenGL has it; off where it grows downwards.");
-
-/// A painted flow map, smoothed: what other nodes bend the tensors of their own by.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Flow(ImageId);
-
-impl Flow {
-    /// What is connected to the port `flow` of a node, with the defaults of this one.
-    pub(crate) fn of(scope: &mut Scope<'_>) -> Option<Self> {
-        let softness = SOFTNESS.default_float() * scope.scale();
-        let map = scope.input("flow")?;
-        Some(Self::new(scope.plan, map, STRENGTH.default_float(), softness, INVERT_Y.default_bool()))
-    }
-
-    fn new(plan: &mut PlanBuilder, map: ImageId, strength: f32, softness: f32, invert_y: bool) -> Self {
-        let painted = flow_field::pass(plan, map, strength, invert_y);
-        Self(gaussian_blur::pass(plan, painted, softness, Class::Field))
-    }
-
-    /// Bends a tensor field.
-    pub(crate) fn bend(self, plan: &mut PlanBuilder, tensors: ImageId) -> ImageId {
-        flow_bend::pass(plan, tensors, self.0)
-    }
-}
-
-/// Bends the tensors of a node to what is connected to its port `flow`.
-pub(crate) fn bent(scope: &mut Scope<'_>, tensors: ImageId) -> ImageId {
-    match Flow::of(scope) {
-        Some(flow) => flow.bend(scope.plan, tensors),
-        None => tensors,
-    }
-}
-
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let map = scope.required("color");
     let (strength, softness) = (scope.float("strength"), scope.float("softness"));
@@ -79,116 +38,5 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     match scope.input("tensor") {
         Some(tensor) => flow.bend(scope.plan, tensor),
         None => flow.0,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::graph::GraphInput;
-    use crate::kernels::shared::tensor::scalar;
-    use crate::request::Guides;
-    use crate::{Graph, Planned, Request};
-    use isophote_engine::cpu::{CallingThread, Control, CpuExecutor};
-    use isophote_engine::{Image, Rect};
-
-    const SIDE: u32 = 64;
-
-    fn image(channels: u32, value: impl Fn(u32, u32, u32) -> f32) -> Image {
-        let values = (0..SIDE * SIDE * channels).map(|i| {
-            let (pixel, channel) = (i / channels, i % channels);
-            value(pixel % SIDE, pixel / SIDE, channel)
-        });
-        Image::from_vec(SIDE, SIDE, channels, values.collect()).unwrap()
-    }
-
-    /// Waves that run along the rows, so that edges are vertical.
-    fn waves() -> Image {
-        image(4, |x, _, c| if c == 3 { 1.0 } else { 0.5 + 0.4 * (x as f32 * 0.6).sin() })
-    }
-
-    /// Direction (x, y) of full strength in the right half.
-    fn painted([x, y]: [f32; 2]) -> Image {
-        image(4, |column, _, c| match c {
-            0 => 0.5 + 0.5 * x,
-            1 => 0.5 + 0.5 * y,
-            2 => 0.3,
-            _ => f32::from(u8::from(column >= SIDE / 2)),
-        })
-    }
-
-    fn run(graph: &Graph, flow: &Image) -> Image {
-        let guides = Guides { flow: true, ..Guides::default() };
-        let planned = Planned::new(graph, Request { guides, ..Request::new(SIDE, SIDE) }).unwrap();
-        let (color, all) = (waves(), Rect::of_size(SIDE, SIDE));
-        let inputs = [("color", &color), ("flow", flow)];
-        let results =
-            CpuExecutor::new().run(planned.plan(), &inputs, all, &CallingThread, Control::default());
-        results.unwrap().remove(0)
-    }
-
-    /// A flow map over the tensor of the picture.
-    fn bent(settings: &[(&str, &str)], flow: &Image) -> Image {
-        let mut graph = Graph::new();
-        let tensor = graph.add("tensor", "structure_tensor").unwrap();
-        let map = graph.add("map", "flow_map").unwrap();
-        graph.connect_input(GraphInput::Color, tensor, "color").unwrap();
-        graph.connect_input(GraphInput::Flow, map, "color").unwrap();
-        graph.connect(tensor, map, "tensor").unwrap();
-        for (param, value) in settings {
-            graph.set_text(map, param, value).unwrap();
-        }
-        graph.set_output(map).unwrap();
-        run(&graph, flow)
-    }
-
-    /// The sine of the angle between the tangent at a pixel and a direction.
-    fn off(tensor: &Image, x: i32, y: i32, [dx, dy]: [f32; 2]) -> f32 {
-        let t = tensor.pixel(x, y);
-        let [tx, ty] = scalar::tangent(t[0], t[1], t[2]);
-        (tx * dy - ty * dx).abs() / dx.hypot(dy)
-    }
-
-    #[test]
-    fn tangents_follow_what_was_painted_and_nothing_else_moves() {
-        for direction in [[0.8, 0.6], [-0.8, -0.6], [0.0, 1.0]] {
-            let field = bent(&[("softness", "2")], &painted(direction));
-            assert!(off(&field, 50, 32, direction) < 1e-3, "{direction:?}");
-            assert!(off(&field, 14, 32, [0.0, 1.0]) < 1e-3, "unpainted");
-        }
-        let up = bent(&[("invert_y", "true"), ("softness", "0")], &painted([0.8, 0.6]));
-        assert!(off(&up, 50, 32, [0.8, -0.6]) < 1e-3);
-        let weak = bent(&[("strength", "0")], &painted([0.8, 0.6]));
-        assert!(off(&weak, 50, 32, [0.0, 1.0]) < 1e-5);
-        // 0.5 is no direction, nor is what eight bits have nearest to it.
-        for none in [0.0, 1.0 / 255.0] {
-            assert!(off(&bent(&[], &painted([none, none])), 50, 32, [0.0, 1.0]) < 1e-5);
-        }
-    }
-
-    #[test]
-    fn to_and_fro_do_not_cancel() {
-        let strokes = image(4, |_, y, c| match (c, y % 2) {
-            (0, 0) => 1.0,
-            (0, _) => 0.0,
-            (1, _) => 0.5,
-            _ => 1.0,
-        });
-        assert!(off(&bent(&[], &strokes), 32, 32, [1.0, 0.0]) < 1e-3);
-    }
-
-    #[test]
-    fn whatever_follows_an_orientation_is_bent() {
-        let mut bent = 0;
-        for spec in crate::registry::nodes().iter().filter(|n| n.has_mix() && n.reads_colour_alone()) {
-            let mut graph = Graph::single(spec.id).unwrap();
-            let follows = spec.inputs.iter().any(|p| p.id == "tensor") || spec.group == "styles";
-            if spec.id == "mean_curvature_flow" {
-                graph.set_text(graph.node(0).unwrap(), "constraint", "1").unwrap();
-            }
-            let [diagonal, none] = [[0.7, 0.7], [0.0, 0.0]].map(|d| run(&graph, &painted(d)));
-            assert_eq!(diagonal != none, follows, "{}", spec.id);
-            bent += u32::from(follows);
-        }
-        assert!(bent > 12, "{bent} nodes follow an orientation");
     }
 }

@@ -2,14 +2,11 @@
 
 use crate::kernels::colour::blueprint_paper::{self, Sheet};
 use crate::kernels::colour::{lightness, rgb_to_lab};
-use crate::nodes::lines::difference_of_gaussians as dog;
-use crate::nodes::lines::flow_dog;
-use crate::nodes::structure::flow_map;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
-use crate::stages::{ADVANCED, LOOK, lines};
+use crate::stages::{ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, lines};
 use crate::value::Value;
 use isophote_engine::ImageId;
 

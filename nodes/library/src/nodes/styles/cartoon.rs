@@ -4,17 +4,14 @@ use crate::choice::choice;
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
-use crate::nodes::colour::quantize_luminance as quantization;
-use crate::nodes::colour::warp_sharpen;
-use crate::nodes::lines::difference_of_gaussians as dog;
-use crate::nodes::lines::flow_dog;
-use crate::nodes::smoothing::line_integral_convolution as lic;
-use crate::nodes::structure::flow_map;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
-use crate::stages::{ADVANCED, LOOK, lines, quantization as levels, tone};
+use crate::stages::{
+    ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_integral_convolution as lic,
+    lines, quantization as levels, quantize_luminance as quantization, tone, warp_sharpen,
+};
 use crate::value::Value;
 use isophote_engine::ImageId;
 

@@ -2,12 +2,12 @@
 
 use crate::kernels::colour::quantize_luminance::{self, Steepness};
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
-use crate::nodes::coherence::coherence_enhancing::{self as filter, Filter, filtered};
-use crate::nodes::coherence::shock;
-use crate::nodes::colour::quantize_luminance as quantization;
 use crate::ports;
 use crate::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
-use crate::stages::{ADVANCED, LOOK, abstraction, quantization as levels, tone};
+use crate::stages::coherence_enhancing::{self as filter, Filter, filtered};
+use crate::stages::{
+    ADVANCED, LOOK, abstraction, quantization as levels, quantize_luminance as quantization, shock, tone,
+};
 use crate::value::Value;
 use isophote_engine::ImageId;
 

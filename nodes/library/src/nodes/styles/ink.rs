@@ -2,11 +2,11 @@
 
 mod preset;
 
-use self::preset::{GRAIN, Look, Preset, Style, TONE};
+use crate::ports;
+use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::ink_sheet::{self, Drawing, Sheet};
 use crate::kernels::colour::tone_marks::{self, HATCHING, Inputs, Tones};
-use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::shared::stream::Integrator;
@@ -14,17 +14,15 @@ use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic}
 use crate::kernels::structure::contrast;
 use crate::kernels::structure::solid_noise::Marks;
 use crate::kernels::structure::tensor_display::least_significant;
-use crate::nodes::lines::difference_of_gaussians as dog;
-use crate::nodes::lines::flow_dog::{self, FlowDog, Kernel};
-use crate::nodes::smoothing::line_integral_convolution as lic;
-use crate::nodes::structure::flow_map;
-use crate::nodes::structure::structure_tensor::{TensorOptions, of_color_and_guides};
-use crate::ports;
 use crate::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
+use crate::stages::{ADVANCED, LOOK, difference_of_gaussians as dog, flow_map, line_integral_convolution as lic, lines, marks, tone};
 use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::flow_dog::{self, FlowDog, Kernel};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
-use crate::stages::{ADVANCED, LOOK, lines, marks, tone};
+use crate::stages::structure_tensor::of_color_and_guides;
+use crate::stages::tensor_options::TensorOptions;
 use isophote_engine::{ImageId, math};
+use self::preset::{GRAIN, Look, Preset, Style, TONE};
 
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {

@@ -1,18 +1,16 @@
 //! Oil paint (§ 1.2): noise smoothed along the flow makes the marks of a brush, colours smoothed along
 //! the flow its strokes.
 
-use crate::kernels::colour::paint_relief::{self, Relief};
+use crate::ports;
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
+use crate::kernels::colour::paint_relief::{self, Relief};
 use crate::kernels::smoothing::flow_dilation;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
-use crate::nodes::smoothing::line_integral_convolution as lic;
-use crate::nodes::structure::flow_map;
-use crate::nodes::structure::structure_tensor::{self, TensorOptions};
-use crate::ports;
 use crate::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
+use crate::stages::{ADVANCED, LOOK, flow_map, line_integral_convolution as lic, marks, structure_tensor, tone};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
-use crate::stages::{ADVANCED, LOOK, marks, tone};
+use crate::stages::tensor_options::TensorOptions;
 use isophote_engine::{ImageId, math};
 
 /// The node.

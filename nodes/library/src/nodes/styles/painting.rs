@@ -2,15 +2,14 @@
 //! direction of features as strokes.
 
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
-use crate::nodes::lines::flow_dog;
-use crate::nodes::painting::anisotropic_kuwahara::{
-    ALPHA, LEVELS, LIMIT_RANGE, P_D, P_S, Painting, RADIUS, TAU_V, TAU_W, Weights,
-};
-use crate::nodes::painting::generalized_kuwahara::{Q, SECTORS, THRESHOLD};
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Port, STEADINESS, Scope, WINDOW};
+use crate::stages::anisotropic_kuwahara::{
+    ALPHA, LEVELS, LIMIT_RANGE, P_D, P_S, Painting, RADIUS, TAU_V, TAU_W, Weights,
+};
+use crate::stages::generalized_kuwahara::{Q, SECTORS, THRESHOLD};
 use crate::stages::steady::steadied_picture;
-use crate::stages::{ADVANCED, LOOK, abstraction, tone};
+use crate::stages::{ADVANCED, LOOK, abstraction, flow_dog, tone};
 use crate::value::Value;
 use isophote_engine::ImageId;
 

@@ -1,0 +1,60 @@
+//! One iteration of the orientation-aligned bilateral filter (§ 3.4), on a CIELAB image and with a tensor
+//! that stays the same throughout.
+
+use crate::kernels::smoothing::oriented_bilateral::{self, Direction, Options, Sampling};
+use crate::spec::Param;
+use isophote_engine::{ImageId, PlanBuilder};
+
+pub(crate) const SIGMA_DG: Param = Param::float("sigma_dg", "Sigma along gradient", 3.0, [0.0, 40.0])
+    .slider(0.0, 10.0)
+    .pixels()
+    .doc("Standard deviation of the domain weight across edges, cut at 3 sigma.");
+pub(crate) const SIGMA_DT: Param = Param::float("sigma_dt", "Sigma along tangent", 3.0, [0.0, 40.0])
+    .slider(0.0, 20.0)
+    .pixels()
+    .doc("Standard deviation of the domain weight along edges, cut at 3 sigma.");
+pub(crate) const SIGMA_RG: Param = Param::float("sigma_rg", "Range across", 4.25, [0.01, 200.0])
+    .slider(0.5, 30.0)
+    .doc("Standard deviation of the range weight across edges, in CIELAB units.");
+pub(crate) const SIGMA_RT: Param = Param::float("sigma_rt", "Range along", 4.25, [0.01, 200.0])
+    .slider(0.5, 30.0)
+    .doc("Standard deviation of the range weight along edges, in CIELAB units.");
+pub(crate) const ANISOTROPY: Param = Param::float("anisotropy", "Elongation", 0.0, [0.0, 4.0]).doc(
+    "Adapts the shape as the ellipse of 5.22 does, with 1/alpha: sigma along the tangent times 1 + elongation \
+     A, across it divided by the same, A being the anisotropy. 0 for off.",
+);
+
+/// Where range weights are applied; the flow-based filter has the same choice.
+pub(crate) const SAMPLING: Param =
+    Param::choice("sampling", "Sampling", Sampling::Linear.selected()).uniform().doc(
+        "Linear compares interpolated colours and gives smooth borders; manual compares both pixels before \
+         it interpolates (3.9) and gives sharp ones; nearest takes the nearer pixel and gives jagged ones.",
+    );
+
+/// The two passes of an iteration.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Passes {
+    /// Across edges, first.
+    pub gradient: Options,
+    /// Along edges, second.
+    pub tangent: Options,
+}
+
+impl Default for Passes {
+    /// The defaults of the parameters.
+    fn default() -> Self {
+        let pass = |domain: Param, range: Param| Options {
+            sigma_d: domain.default_float(),
+            sigma_r: range.default_float(),
+            sampling: SAMPLING.default_option(),
+            elongation: ANISOTROPY.default_float(),
+        };
+        Self { gradient: pass(SIGMA_DG, SIGMA_RG), tangent: pass(SIGMA_DT, SIGMA_RT) }
+    }
+}
+
+/// One iteration on a CIELAB image: across edges, then along them.
+pub(crate) fn iteration(plan: &mut PlanBuilder, lab: ImageId, tensors: ImageId, passes: &Passes) -> ImageId {
+    let across = oriented_bilateral::pass(plan, lab, tensors, Direction::Gradient, &passes.gradient);
+    oriented_bilateral::pass(plan, across, tensors, Direction::Tangent, &passes.tangent)
+}

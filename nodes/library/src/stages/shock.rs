@@ -1,0 +1,99 @@
+//! Shock filters (§ 6.4), step by step.
+
+use crate::kernels::coherence::directed_shock::{self, Options};
+use crate::kernels::coherence::{laplacian, second_derivative, shock_step};
+use crate::kernels::smoothing::gaussian_blur;
+use crate::spec::{Param, Scope};
+use isophote_engine::{ImageId, PlanBuilder};
+
+pub(crate) const SIGMA_G: Param = Param::float("sigma_g", "Sigma g", 1.5, [0.2, 20.0])
+    .slider(0.3, 6.0)
+    .pixels()
+    .doc("Standard deviation of the second derivative along the gradient: larger ones pass over small features.");
+pub(crate) const SIGMA_I: Param = Param::float("sigma_i", "Sigma i", 0.0, [0.0, 20.0])
+    .slider(0.0, 6.0)
+    .pixels()
+    .structural()
+    .doc("Standard deviation of the Gaussian before the second derivative, for stronger abstraction; 0 for none.");
+pub(crate) const RADIUS: Param = Param::float("radius", "Radius", 2.0, [0.0, 20.0])
+    .slider(0.0, 6.0)
+    .pixels()
+    .doc("How far along the gradient the least or greatest pixel is looked for.");
+pub(crate) const THRESHOLD: Param = Param::float("threshold", "Threshold", 0.005, [0.0, 1.0])
+    .slider(0.0, 0.05)
+    .doc(
+        "Second derivative, in units of luma, up to which a pixel stays as it is (tau_s): keeps shocks out of \
+         smooth parts.",
+    );
+pub(crate) const ITERATIONS: Param = Param::int("iterations", "Iterations", 3, [1, 100])
+    .slider(1.0, 20.0)
+    .structural()
+    .doc("Steps of the two variants that solve an equation.");
+pub(crate) const TIME_STEP: Param = Param::float("time_step", "Time step", 0.4, [0.01, 0.5])
+    .doc("Length of a step of these variants; beyond 1/2 they would not be stable.");
+
+/// The gradient-directed filter; lengths in pixels of the picture that is rendered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Directed {
+    pub sigma_g: f32,
+    pub sigma_i: f32,
+    pub radius: f32,
+    /// Pixels per pixel of the full-size picture.
+    pub scale: f32,
+    pub threshold: f32,
+}
+
+impl Directed {
+    /// The values of the parameters of a node.
+    pub(crate) fn of(scope: &Scope<'_>) -> Self {
+        Self {
+            sigma_g: scope.float("sigma_g"),
+            sigma_i: scope.float("sigma_i"),
+            radius: scope.float("radius"),
+            scale: scope.scale(),
+            threshold: scope.float("threshold"),
+        }
+    }
+
+    /// Sharpens `color` along the major eigenvectors of `tensor`.
+    pub(crate) fn apply(&self, plan: &mut PlanBuilder, color: ImageId, tensor: ImageId) -> ImageId {
+        let smooth = smoothed(plan, color, self.sigma_i);
+        let options = Options {
+            sigma: self.sigma_g,
+            radius: self.radius / self.scale,
+            scale: self.scale,
+            threshold: self.threshold,
+        };
+        directed_shock::pass(plan, color, tensor, smooth, &options)
+    }
+}
+
+/// What a second derivative is taken of.
+fn smoothed(plan: &mut PlanBuilder, color: ImageId, sigma_i: f32) -> ImageId {
+    if sigma_i > 0.0 { gaussian_blur::pass_colour(plan, color, sigma_i) } else { color }
+}
+
+/// One step of the classical shock filter (§ 6.4.1).
+pub(crate) fn osher_rudin_step(
+    plan: &mut PlanBuilder,
+    color: ImageId,
+    sigma_i: f32,
+    time_step: f32,
+) -> ImageId {
+    let smooth = smoothed(plan, color, sigma_i);
+    let detector = laplacian::pass(plan, smooth);
+    shock_step::pass(plan, color, detector, time_step)
+}
+
+/// One step of the coherence-enhancing shock filter (§ 6.4.2).
+pub(crate) fn coherence_enhancing_step(
+    plan: &mut PlanBuilder,
+    color: ImageId,
+    tensor: ImageId,
+    sigma_i: f32,
+    time_step: f32,
+) -> ImageId {
+    let smooth = smoothed(plan, color, sigma_i);
+    let detector = second_derivative::pass(plan, smooth, tensor);
+    shock_step::pass(plan, color, detector, time_step)
+}
