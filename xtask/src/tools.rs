@@ -133,8 +133,10 @@ pub fn run(command: &mut Command) -> Result<()> {
 /// # Errors
 /// When the list cannot be read.
 pub fn looks() -> Result<Vec<(String, PathBuf)>> {
-    let folder = root().join("host-example/looks");
-    let order = folder.join("order.txt");
+    let folder = root().join("nodes/library/looks");
+    let order = folder.join("order.rs");
     let text = std::fs::read_to_string(&order).context(|| format!("cannot read {}", order.display()))?;
-    Ok(text.split_whitespace().map(|id| (id.to_owned(), folder.join(format!("{id}.json")))).collect())
+    let list = text.split_once('{').and_then(|(_, rest)| rest.split_once('}'));
+    let (ids, _) = list.ok_or_else(|| Failure(format!("{} has no list", order.display())))?;
+    Ok(ids.split_whitespace().map(|id| (id.to_owned(), folder.join(format!("{id}.json")))).collect())
 }
