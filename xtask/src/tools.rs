@@ -58,6 +58,15 @@ pub fn build(profile: &str, programs: &[&str]) -> Result<()> {
     run(command.args(chosen(profile)))
 }
 
+/// Builds targets of some packages alone, in the profile of development.
+///
+/// # Errors
+/// The command line, when it fails.
+pub fn build_packages(packages: &[&str], targets: &[&str]) -> Result<()> {
+    let mut command = cargo_command(&["build"]);
+    run(command.args(packages.iter().flat_map(|package| ["-p", package])).args(targets))
+}
+
 /// Builds the dynamic library, the sample host and some more programs. The libraries of the workspace come along,
 /// for a choice of packages would give their dependencies other features and compile them anew.
 ///
