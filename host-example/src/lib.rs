@@ -1,28 +1,23 @@
-//! The sample host as a library: scenes, their rendering, and the verbs of the program `isophote`.
+//! The example as a library: a plan of Isophote on the host's own device.
+//!
+//! | module | content |
+//! |---|---|
+//! | [`plan_runner`] | **the file to copy**: textures, passes and uniform bytes of a plan, recorded into the host's commands |
+//! | [`kernels`] | shaders of a plan, compiled when they are first named |
+//! | [`passes`], [`textures`], [`uniforms`] | what is bound for each pass |
+//! | [`history`] | textures of past frames |
+//! | [`frame_runner`] | frames in order, of which each may depend on those before it |
+//! | [`desktop`] | error of desktops that give no window |
+//! | [`guides`] | the renderer's targets as a plan names them |
 
 #![forbid(unsafe_code)]
 
-pub mod apply;
-pub mod bench;
-pub mod cli;
-pub mod drivers;
-pub mod error;
-pub mod files;
-pub mod frames;
-pub mod identity;
-pub mod input;
-pub mod limits;
-pub mod looks;
-pub mod output;
-pub mod pixels;
-pub mod render;
-pub mod replacing;
-pub mod scene;
-pub mod sheet;
-pub mod shot;
-pub mod stop;
-pub mod stylize;
-mod temporary;
-pub mod verbs;
-pub mod video;
-pub mod view;
+pub mod desktop;
+pub mod frame_runner;
+pub mod guides;
+pub mod history;
+pub mod kernels;
+pub mod passes;
+pub mod plan_runner;
+pub mod textures;
+pub mod uniforms;

@@ -1,57 +1,65 @@
-//! The sample host: renders scenes, stylizes what it renders, and stylizes pictures.
+//! The example: a scene, rendered and stylized frame by frame, in a window or into files.
 
-use std::io::Write;
+#![forbid(unsafe_code)]
+
+mod camera;
+mod headless;
+mod painter;
+mod present;
+mod style;
+mod window;
+
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use clap::error::ErrorKind;
-use isophote_host::cli::Cli;
-use isophote_host::error::Error;
-use isophote_host::{drivers, limits, output};
-use isophote_loader::printable;
+use isophote_files::error::Result;
+use isophote_files::output;
+use isophote_render::drivers;
+use isophote_scene::Scene;
 
-/// The program starts where the C library is older.
-#[cfg(all(target_os = "linux", target_env = "gnu"))]
-#[used]
-static OWN: isophote_glibc::Kept = isophote_glibc::KEPT;
+/// Renders a scene and stylizes every frame.
+#[derive(Debug, Parser)]
+#[command(version, about)]
+struct Options {
+    /// The scene: .gltf, .glb or .obj.
+    scene: PathBuf,
+    /// The style: the id of a node, a graph file (.json), or none.
+    #[arg(long, default_value = "cartoon")]
+    style: String,
+    /// Writes frames as PNG files into this folder, and opens no window.
+    #[arg(long, value_name = "DIR")]
+    frames: Option<PathBuf>,
+    /// How many frames are written; of several, the camera turns once around the scene.
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "frames", value_parser = clap::value_parser!(u32).range(1..=9999))]
+    count: u32,
+    /// Size of the frames in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
+    size: (u32, u32),
+}
+
+/// Width and height such as `1280x720`.
+fn size(text: &str) -> std::result::Result<(u32, u32), &'static str> {
+    let numbers = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    numbers.filter(|(w, h)| *w > 0 && *h > 0).ok_or("write width and height such as 1280x720")
+}
+
+fn run(options: &Options) -> Result<()> {
+    let scene = Scene::load(&options.scene, None)?;
+    scene.warnings.iter().for_each(output::warn);
+    match &options.frames {
+        Some(folder) => headless::write(folder, options.count, options.size, scene, &options.style),
+        None => window::show(options.size, scene, &options.style),
+    }
+}
 
 fn main() -> ExitCode {
     drivers::keep_quiet();
-    limits::end_where_memory_ends();
-    let cli = match Cli::try_parse() {
-        Ok(cli) => cli,
-        Err(error) => return usage(&error),
-    };
-    match cli.run() {
+    match run(&Options::parse()) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) => failed(&error),
+        Err(error) => {
+            output::complain(&error);
+            ExitCode::from(error.exit_code())
+        }
     }
-}
-
-fn failed(error: &Error) -> ExitCode {
-    output::complain(error);
-    ExitCode::from(error.exit_code())
-}
-
-/// Help and version as the parser prints them; what is wrong with the command line on one line, like every
-/// other error.
-fn usage(error: &clap::Error) -> ExitCode {
-    if matches!(
-        error.kind(),
-        ErrorKind::DisplayHelp
-            | ErrorKind::DisplayVersion
-            | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
-    ) {
-        return match output::printed(error.print()) {
-            Ok(()) => ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)),
-            Err(error) => failed(&error),
-        };
-    }
-    let text = error.render().to_string();
-    let wrong = text.lines().take_while(|line| !line.trim().is_empty());
-    let tips = text.lines().filter(|line| line.trim_start().starts_with("tip:"));
-    let words: Vec<&str> = wrong.chain(tips).flat_map(str::split_whitespace).collect();
-    // Words of the command line may be names of files. Where nobody can be told the exit code tells.
-    let _ = writeln!(std::io::stderr(), "{}; see --help", printable(&words.join(" ")));
-    ExitCode::from(2)
 }

@@ -10,7 +10,9 @@ mod modules;
 pub(crate) mod tokens;
 
 use graph::Imports;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use tokens::{Kind, Token};
 
 /// All circles of files that import each other, over all packages below `root`: of each its files in one line,
 /// then its imports. Paths are relative to `root`.
@@ -19,7 +21,16 @@ use std::path::{Path, PathBuf};
 /// When a file cannot be read.
 pub fn circles(root: &Path) -> Vec<String> {
     let root = root.canonicalize().unwrap();
-    all(&root).circles(&root)
+    read(&root).circles(&root)
+}
+
+/// All circles of folders, and of folders and files beside them, as [`circles`] has those of files.
+///
+/// # Panics
+/// When a file cannot be read.
+pub fn folder_circles(root: &Path) -> Vec<String> {
+    let root = root.canonicalize().unwrap();
+    read(&root).of_folders().circles(&root)
 }
 
 /// Imports of files in one folder below `root` from files in another: the importing file and the other.
@@ -28,16 +39,62 @@ pub fn circles(root: &Path) -> Vec<String> {
 /// When a file cannot be read.
 pub fn between(root: &Path, from: &str, to: &str) -> Vec<[PathBuf; 2]> {
     let root = root.canonicalize().unwrap();
-    all(&root).between(&root, from, to)
+    read(&root).between(&root, from, to)
 }
 
 /// Imports of all packages below `root`.
-fn all(root: &Path) -> Imports {
+fn read(root: &Path) -> Imports {
     let mut imports = Imports::default();
     for package in packages(root) {
         modules::read_package(&package, &mut imports);
     }
     imports
+}
+
+/// Code of one package that another takes by its path, by `#[path]` or `include!`: the file that names it, its line and the
+/// path.
+///
+/// # Panics
+/// When a file cannot be read.
+pub fn taken_from_elsewhere(root: &Path) -> Vec<String> {
+    let root = root.canonicalize().unwrap();
+    let packages = packages(&root);
+    let home =
+        |file: &Path| packages.iter().filter(|p| file.starts_with(p)).max_by_key(|p| p.as_os_str().len());
+    let mut found = Vec::new();
+    for file in
+        packages.iter().flat_map(|package| modules::rust_files(package, true)).collect::<BTreeSet<_>>()
+    {
+        let source = std::fs::read_to_string(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+        for (path, line) in named_files(&tokens::tokens(&source)) {
+            let named = file.with_file_name(&path);
+            let named = named.canonicalize().unwrap_or(named);
+            if home(&named) != home(&file) {
+                let file = file.strip_prefix(&root).unwrap_or(&file).display();
+                found.push(format!("{file} takes {path} in line {line}"));
+            }
+        }
+    }
+    found
+}
+
+/// Paths in `#[path = "..."]` and `include!("...")`, with their lines.
+fn named_files(tokens: &[Token]) -> Vec<(String, usize)> {
+    let is = |at: usize, kind: &Kind| tokens.get(at).is_some_and(|token| token.kind == *kind);
+    let word = |at: usize, word: &str| is(at, &Kind::Word(word.to_owned()));
+    let mut found = Vec::new();
+    for (at, token) in tokens.iter().enumerate() {
+        let Kind::Text(path) = &token.kind else { continue };
+        let Some(begin) = at.checked_sub(3) else { continue };
+        let is_attribute =
+            is(begin, &Kind::Sign('[')) && word(begin + 1, "path") && is(begin + 2, &Kind::Sign('='));
+        let is_macro =
+            word(begin, "include") && is(begin + 1, &Kind::Sign('!')) && is(begin + 2, &Kind::Sign('('));
+        if is_attribute || is_macro {
+            found.push((path.clone(), token.line));
+        }
+    }
+    found
 }
 
 /// Folders with a `Cargo.toml` that describes a package, without build results.

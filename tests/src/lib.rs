@@ -24,5 +24,6 @@ pub mod steadiness;
 pub mod sweep;
 pub mod table;
 pub mod trials;
+pub mod two_parts;
 pub mod uniforms;
 pub mod zone_plates;

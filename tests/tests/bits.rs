@@ -2,9 +2,9 @@
 //! processor that multiplies and adds in one step. What they were is in `tests/data/bits.txt`, which `cargo xtask bless`
 //! makes anew, so that processors of other kinds are compared by running the same test.
 
-use isophote::Planned;
 use isophote::registry;
 use isophote::spec::NodeSpec;
+use isophote::{Planned, Value};
 use isophote_engine::cpu::{Control, CpuExecutor};
 use isophote_engine::dispatch::levels;
 use isophote_engine::fearless_simd::Level;
@@ -78,11 +78,23 @@ fn settings(spec: &'static NodeSpec) -> impl Iterator<Item = Setting> {
     all.chain(cases::carrying(spec))
 }
 
+/// All numbers that are 0 by default at half of their sliders, since what they weigh may not be read before.
+fn switched_on(spec: &'static NodeSpec) -> Setting {
+    let off = spec.params().filter(|p| p.default == Value::Float(0.0));
+    let values = off.map(|p| (p.id, Value::Float(0.5 * p.slider[1]))).collect();
+    Setting { label: "what is off by default".into(), values }
+}
+
 /// What a node makes of what enters, setting by setting.
-fn results(spec: &'static NodeSpec, entering: Entering, level: Level) -> Vec<(String, Image)> {
+fn results(
+    spec: &'static NodeSpec,
+    settings: impl Iterator<Item = Setting>,
+    entering: Entering,
+    level: Level,
+) -> Vec<(String, Image)> {
     let [width, height] = entering.size();
     let mut results = Vec::new();
-    for setting in settings(spec) {
+    for setting in settings {
         let mut setup = cases::setup(spec, true);
         setting.apply(&mut setup.graph, setup.node);
         let request = match setting.label.starts_with("carrying") {
@@ -111,7 +123,8 @@ fn that_are_not_finite(spec: &'static NodeSpec) -> Vec<String> {
     let mut wrong = Vec::new();
     for (name, level) in levels() {
         for entering in Entering::all() {
-            for (setting, image) in results(spec, entering, level) {
+            let settings = settings(spec).chain([switched_on(spec)]);
+            for (setting, image) in results(spec, settings, entering, level) {
                 let broken = image.data().iter().filter(|v| !v.is_finite()).count();
                 if broken > 0 {
                     wrong.push(format!(
@@ -149,10 +162,12 @@ fn other_than_known(spec: &'static NodeSpec) -> Report {
     if count == 0 { Report::Skipped("no fused multiplication and addition".into()) } else { wrong.into() }
 }
 
-/// FNV-1a of the bits of all results.
+/// FNV-1a of the bits of all results, but those by the Fourier transform, whose library adds up in another order on every
+/// kind of processor.
 fn digest(spec: &'static NodeSpec, entering: Entering, level: Level) -> String {
     let mut hash = 0x811c_9dc5_u32;
-    for (_, image) in results(spec, entering, level) {
+    let settings = settings(spec).filter(|setting| setting.label != "method=fft");
+    for (_, image) in results(spec, settings, entering, level) {
         for byte in image.data().iter().flat_map(|v| v.to_bits().to_le_bytes()) {
             hash = (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193);
         }

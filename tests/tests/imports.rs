@@ -1,11 +1,16 @@
-//! No two files import each other, directly or around a circle.
+//! No two files and no two folders import each other, directly or around a circle, and none is taken from another package by
+//! its path.
 
-use isophote_tests::imports::{between, circles};
-use std::path::Path;
+use isophote_tests::imports::{between, circles, folder_circles, taken_from_elsewhere};
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
 
 #[test]
 fn no_two_files_import_each_other() {
-    let circles = circles(&Path::new(env!("CARGO_MANIFEST_DIR")).join(".."));
+    let circles = circles(&root());
     assert!(
         circles.is_empty(),
         "files import each other:\n{}",
@@ -14,8 +19,20 @@ fn no_two_files_import_each_other() {
 }
 
 #[test]
+fn no_two_folders_import_each_other() {
+    let circles = folder_circles(&root());
+    assert!(circles.is_empty(), "folders import each other:\n{}", circles.join("\n"));
+}
+
+#[test]
+fn no_file_is_taken_from_another_package() {
+    let taken = taken_from_elsewhere(&root());
+    assert!(taken.is_empty(), "import these by the name of their crate:\n{}", taken.join("\n"));
+}
+
+#[test]
 fn rooms_of_the_library_import_only_what_stands_below_them() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = root();
     let between = |from: &str, to: &str| {
         let [from, to] = [from, to].map(|room| format!("nodes/library/src/{room}"));
         between(&root, &from, &to)
@@ -39,16 +56,62 @@ fn rooms_of_the_library_import_only_what_stands_below_them() {
     assert!(wrong.is_empty(), "nodes import stages and kernels, never each other: {wrong:#?}");
 }
 
-/// Circles of a package with these files.
-fn circles_of(files: &[(&str, &str)]) -> Vec<String> {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("Cargo.toml"), "[package]\nname = \"made-up\"\n").unwrap();
+/// A package with these files below `src`.
+fn package(folder: &Path, files: &[(&str, &str)]) {
+    std::fs::create_dir_all(folder).unwrap();
+    std::fs::write(folder.join("Cargo.toml"), "[package]\nname = \"made-up\"\n").unwrap();
     for (path, text) in files {
-        let path = folder.path().join("src").join(path);
+        let path = folder.join("src").join(path);
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(path, text).unwrap();
     }
+}
+
+/// Circles of a package with these files.
+fn circles_of(files: &[(&str, &str)]) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    package(folder.path(), files);
     circles(folder.path())
+}
+
+#[test]
+fn a_circle_of_folders_is_found_where_no_two_files_make_one() {
+    let lib = ("lib.rs", "mod a;\nmod b;\nmod c;\n");
+    let files = [
+        lib,
+        ("a/mod.rs", "pub mod one;\npub mod two;\n"),
+        ("a/one.rs", "use crate::b::B;\n"),
+        ("a/two.rs", "pub struct Two;\n"),
+        ("b.rs", "pub struct B;\n"),
+        ("c.rs", "use crate::a::two::Two;\n"),
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    package(folder.path(), &files);
+    assert!(folder_circles(folder.path()).is_empty());
+    package(folder.path(), &[("b.rs", "pub struct B(crate::a::two::Two);\n")]);
+    assert!(circles(folder.path()).is_empty());
+    assert_eq!(
+        folder_circles(folder.path()),
+        ["src/a, src/b\n  src/a imports from src/b: one.rs: crate::b::B in line 1\n  \
+          src/b imports from src/a: b.rs: crate::a::two::Two in line 1"]
+    );
+}
+
+#[test]
+fn code_of_another_package_is_found_with_its_path() {
+    let folder = tempfile::tempdir().unwrap();
+    let near = "#[path = \"inner/near.rs\"]\nmod near;\n// #[path = \"../../b/src/far.rs\"]\n";
+    package(&folder.path().join("a"), &[("lib.rs", near), ("inner/near.rs", "")]);
+    package(&folder.path().join("b"), &[("far.rs", "")]);
+    assert!(taken_from_elsewhere(folder.path()).is_empty());
+    for far in ["#[path = \"../../b/src/far.rs\"]\nmod far;\n", "\ninclude!(\"../../b/src/far.rs\");\n"] {
+        package(&folder.path().join("a"), &[("lib.rs", far)]);
+        let line = 1 + usize::from(far.starts_with('\n'));
+        assert_eq!(
+            taken_from_elsewhere(folder.path()),
+            [format!("a/src/lib.rs takes ../../b/src/far.rs in line {line}")]
+        );
+    }
 }
 
 #[test]

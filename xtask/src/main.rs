@@ -3,6 +3,7 @@
 mod bench;
 mod bundle;
 mod card;
+mod crates;
 mod demo;
 mod dist;
 mod docs;
@@ -69,7 +70,9 @@ enum Chore {
     Blender(python::WheelOptions),
     /// Writes what editors know of the Python package's nodes from their declarations
     Stubs(python::StubsOptions),
-    /// Writes the README's table of nodes from their declarations
+    /// Writes CONTRIBUTING's table of crates from their manifests and sources
+    Crates(crates::Options),
+    /// Writes the README's list of nodes from their declarations
     Readme(readme::Options),
     /// Makes the page and the npm package that stylize in browsers
     Web(web::Options),
@@ -96,6 +99,7 @@ fn main() -> ExitCode {
         Chore::Wheel(options) => python::wheel(&options),
         Chore::Blender(options) => python::blender(&options),
         Chore::Stubs(options) => python::stubs(&options),
+        Chore::Crates(options) => crates::run(&options),
         Chore::Readme(options) => readme::run(&options),
         Chore::Header(options) => header::run(&options),
         Chore::Web(options) => web::run(&options),

@@ -1,4 +1,4 @@
-//! `cargo xtask readme`: the README's table of nodes, generated from their declarations.
+//! `cargo xtask readme`: the README's list of nodes, generated from their declarations.
 
 use crate::error::{Context, Failure, Result};
 use crate::tools::{cargo, root, target_dir};
@@ -10,12 +10,12 @@ const END: &str = "<!-- end of nodes -->";
 /// Options of `cargo xtask readme`.
 #[derive(clap::Args)]
 pub struct Options {
-    /// Only say whether the table is true
+    /// Only say whether the list is true
     #[arg(long)]
     pub check: bool,
 }
 
-/// Writes or checks the table.
+/// Writes or checks the list.
 ///
 /// # Errors
 /// When the README lacks the markers, cannot be written, or (checking) is stale.
@@ -26,22 +26,22 @@ pub fn run(options: &Options) -> Result<()> {
     let output = Command::new(&program).output().context(|| format!("cannot run {}", program.display()))?;
     if !output.status.success() {
         return Err(Failure(format!(
-            "the table was not printed:\n{}",
+            "the list was not printed:\n{}",
             String::from_utf8_lossy(&output.stderr)
         )));
     }
-    let table = String::from_utf8_lossy(&output.stdout);
+    let list = String::from_utf8_lossy(&output.stdout);
     let path = root().join("README.md");
     let old = std::fs::read_to_string(&path).context(|| format!("cannot read {}", path.display()))?;
     let (Some(begin), Some(end)) = (old.find(BEGIN), old.find(END)) else {
-        return Err(Failure(format!("{} has lost the markers of the table", path.display())));
+        return Err(Failure(format!("{} has lost the markers of the list of nodes", path.display())));
     };
-    let new = format!("{}{table}{}", &old[..begin + BEGIN.len()], &old[end..]);
+    let new = format!("{}{list}{}", &old[..begin + BEGIN.len()], &old[end..]);
     if new == old {
         return Ok(());
     }
     if options.check {
-        return Err(Failure("the README's table of nodes is stale; run `cargo xtask readme`".into()));
+        return Err(Failure("the README's list of nodes is stale; run `cargo xtask readme`".into()));
     }
     std::fs::write(&path, new).context(|| format!("cannot write {}", path.display()))
 }

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 #[derive(clap::Args)]
 pub struct Options {
     /// Where the pictures go
-    #[arg(long, default_value = "host-example/pictures/samples")]
+    #[arg(long, default_value = "host-example/window/samples")]
     out: PathBuf,
 }
 

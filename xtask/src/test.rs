@@ -25,6 +25,10 @@ pub struct Options {
     /// Only the tests; no formatting, lints, documents or generated files
     #[arg(long)]
     tests_only: bool,
+
+    /// Only the job of this name, of those that a whole run starts beside the programs; all is built
+    #[arg(long, hide = true)]
+    job: Option<String>,
 }
 
 /// Sets up what the tests need, then runs those that are asked for, or all of them and every other check.
@@ -32,6 +36,10 @@ pub struct Options {
 /// # Errors
 /// The checks that fail.
 pub fn run(options: &Options) -> Result<()> {
+    if let Some(name) = &options.job {
+        let job = JOBS.iter().find(|job| job.name == name);
+        return job.map_or_else(|| Err(Failure(format!("there is no job {name}"))), |job| (job.run)());
+    }
     setup::ensure(&[
         &C_COMPILER,
         &CPP_COMPILER,
@@ -60,21 +68,11 @@ pub fn run(options: &Options) -> Result<()> {
         return list(&programs, options.filter.as_deref());
     }
     heading("tests");
-    let mut failed = match &options.filter {
+    let failed = match &options.filter {
         Some(filter) => run_named(&programs, filter)?,
         None => run_all(programs)?,
     };
-    if is_everything {
-        heading("examples of the documents");
-        let documents = documents();
-        failed.extend(documents.is_err().then(|| "the examples of the documents".to_owned()));
-        for suite in &SUITES {
-            failed.extend((suite.run)(None).err().map(|failure| format!("{}: {failure}", suite.name)));
-        }
-        heading("OpenFX interface");
-        failed.extend(interface().err().map(|_| "the OpenFX interface".to_owned()));
-        heading("end");
-    }
+    heading("end");
     if failed.is_empty() { Ok(()) } else { Err(Failure(format!("these tests fail: {}", failed.join(", ")))) }
 }
 
@@ -87,6 +85,7 @@ fn check_sources() -> Result<()> {
     heading("generated files");
     crate::header::run(&crate::header::Options { check: true })?;
     crate::readme::run(&crate::readme::Options { check: true })?;
+    crate::crates::run(&crate::crates::Options { check: true })?;
     crate::gpu_cost::run(&crate::gpu_cost::Options { check: true, kernel: None })?;
     heading("documents");
     cargo(&["doc", "--workspace", "--no-deps", "--quiet"])
@@ -119,6 +118,29 @@ fn interface() -> Result<()> {
     crate::tools::run(interface.arg(manifest).arg("--target-dir").arg(target_dir("interface")))
 }
 
+/// Tests that are no program of the workspace, each run by another process of this chore, so that what they print
+/// stays together.
+struct Job {
+    name: &'static str,
+    run: fn() -> Result<()>,
+}
+
+const JOBS: [Job; 4] = [
+    Job { name: "web", run: || web::test(None) },
+    Job { name: "python", run: || python::test(None) },
+    Job { name: "documents", run: documents },
+    Job { name: "interface", run: interface },
+];
+
+impl Job {
+    /// The job as a program; `None` where this one cannot say where it lies.
+    fn program(&self) -> Option<Program> {
+        let path = std::env::current_exe().ok()?;
+        let arguments = ["test", "--job", self.name];
+        Some(Program { name: self.name.into(), path, folder: root(), arguments: arguments.to_vec() })
+    }
+}
+
 /// A program of tests.
 struct Program {
     /// Stem of its file.
@@ -126,12 +148,14 @@ struct Program {
     path: PathBuf,
     /// Folder of its package, where it runs.
     folder: PathBuf,
+    arguments: Vec<&'static str>,
 }
 
 impl Program {
     fn command(&self) -> Command {
         let mut command = Command::new(&self.path);
         command
+            .args(&self.arguments)
             .current_dir(&self.folder)
             .env("CARGO_MANIFEST_DIR", &self.folder)
             .env("ISOPHOTE_LIBRARY", library_file("debug"))
@@ -165,7 +189,7 @@ fn programs() -> Result<Vec<Program>> {
         let folder = Path::new(&field(line, "manifest_path")?).parent()?.to_owned();
         // Cargo adds a hash.
         let name = path.file_stem()?.to_str()?.rsplit_once('-')?.0.to_owned();
-        Some(Program { name, path, folder })
+        Some(Program { name, path, folder, arguments: Vec::new() })
     });
     Ok(programs.collect())
 }
@@ -251,10 +275,25 @@ fn run_named(programs: &[Program], filter: &str) -> Result<Vec<String>> {
 }
 
 /// Programs that take long, the longest first.
-const LONG: [&str; 5] = ["twins", "colour", "tiles", "openfx", "edits"];
+const LONG: [&str; 14] = [
+    "documents",
+    "docs",
+    "dist",
+    "experiments_marks",
+    "experiments_flow",
+    "view_life",
+    "video_faults",
+    "python",
+    "view_device",
+    "view_end",
+    "sliders",
+    "precision",
+    "twins",
+    "colour",
+];
 
-/// Programs that measure time, and run when nothing else does.
-const ALONE: [&str; 1] = ["openfx_faults"];
+/// Programs that measure time or start browsers, and run when nothing else does.
+const ALONE: [&str; 2] = ["openfx_faults", "web"];
 
 /// Programs that run at a time. Each has as many threads as there are cores; while one waits for a
 /// device, or for its last test, the other computes.
@@ -265,6 +304,8 @@ const SLOWEST: usize = 20;
 
 /// Runs all programs. Returns those that fail.
 fn run_all(mut programs: Vec<Program>) -> Result<Vec<String>> {
+    let jobs: Option<Vec<Program>> = JOBS.iter().map(Job::program).collect();
+    programs.extend(jobs.ok_or_else(|| Failure("the system does not say where this program lies".into()))?);
     programs.sort_by_key(|p| LONG.iter().position(|long| *long == p.name).unwrap_or(LONG.len()));
     let (alone, together): (Vec<Program>, Vec<Program>) =
         programs.into_iter().partition(|p| ALONE.contains(&p.name.as_str()));

@@ -1,14 +1,13 @@
 //! What is not changed is kept: bytes of files without edits, samples of channels without new ones.
 
 mod support;
-#[path = "support/two_parts.rs"]
-mod two_parts;
 
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding as ExrEncoding, FlatSamples, Image, IntegerBounds,
     Layer, LayerAttributes, Vec2, WritableImage,
 };
 use isophote_exr_edit::{Channel, Edit, Error, File, Limits, PartEdit, Plane, Sample};
+use isophote_tests::two_parts;
 use support::{assets, encodings, file};
 
 fn parse(bytes: Vec<u8>) -> File {

@@ -11,4 +11,5 @@ mod parts;
 mod regions;
 
 pub use builder::PlanBuilder;
+pub use memory::{LEAST_ROWS, WORKING_MEMORY};
 pub use parts::{Class, ImageDesc, ImageId, Kept, Lifetimes, Pass, Plan, Port, Support};

@@ -1,24 +1,15 @@
-//! Prints the table of nodes in Markdown, from their declarations.
+//! Prints the list of nodes in Markdown, from their declarations: a line for each.
 
 use isophote::registry;
 
 fn main() {
-    println!("| node | in | out | what it does | § |");
-    println!("|---|---|---|---|---|");
     for node in registry::nodes() {
-        let inputs: Vec<String> = node
-            .inputs
-            .iter()
-            .map(|p| if p.optional { format!("[{}]", p.id) } else { p.id.to_owned() })
-            .collect();
-        let sentence = node.doc.split_inclusive(". ").next().unwrap_or(node.doc).trim();
-        println!(
-            "| `{}` | {} | {} | {} | {} |",
-            node.id,
-            inputs.join(", "),
-            node.output.kind.id(),
-            sentence.replace('|', "\\|"),
-            node.section
-        );
+        println!("- `{}`: {}", node.id, brief(node.doc));
     }
+}
+
+/// The first clause of a node's documentation.
+fn brief(doc: &str) -> &str {
+    let end = [". ", ":", ",", " ("].iter().filter_map(|mark| doc.find(mark)).min();
+    doc[..end.unwrap_or(doc.len())].trim_end_matches('.')
 }

@@ -16,7 +16,6 @@ mod image;
 mod inputs;
 mod instance;
 mod known;
-mod memory;
 mod motion;
 mod needed;
 mod pixel_aspect;

@@ -10,7 +10,7 @@ import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const samples = resolve(here, "../../../host-example/pictures/samples");
+const samples = resolve(here, "../../../host-example/window/samples");
 
 const modules = resolve(here, "../node_modules");
 

@@ -49,6 +49,23 @@ impl Imports {
         reports
     }
 
+    /// The same of the files and folders that lie in one folder: what a file imports of another counts for the folders that
+    /// they lie in, as far as these are two. `name.rs` and the folder `name` are one; the file that a folder's modules are
+    /// declared in is none of them.
+    pub fn of_folders(&self) -> Self {
+        let mut folders = Self::default();
+        for (from, targets) in &self.0 {
+            for (to, uses) in targets {
+                let Some((own, other)) = parted(from, to) else { continue };
+                for (line, path) in uses {
+                    let file = from.file_name().unwrap_or_default().display();
+                    folders.add(&own, &other, *line, &format!("{file}: {path}"));
+                }
+            }
+        }
+        folders
+    }
+
     /// Imports of files in the folder `from` below `root` from files in the folder `to`.
     pub fn between(&self, root: &Path, from: &str, to: &str) -> Vec<[PathBuf; 2]> {
         let (from, to) = (root.join(from), root.join(to));
@@ -72,5 +89,21 @@ impl Imports {
             }
         }
         text
+    }
+}
+
+/// The paths of two files up to where they part, without the ending; nothing where they do not, or where one of them
+/// declares the modules of the folder that both lie in.
+fn parted(a: &Path, b: &Path) -> Option<(PathBuf, PathBuf)> {
+    let mut common = PathBuf::new();
+    let (mut own, mut other) = (a.components(), b.components());
+    loop {
+        let (own, other) = (Path::new(own.next()?.as_os_str()), Path::new(other.next()?.as_os_str()));
+        let (own, other) = (own.with_extension(""), other.with_extension(""));
+        if own != other {
+            let declares = |name: &Path| ["lib", "main", "mod"].iter().any(|root| name == Path::new(root));
+            return (!declares(&own) && !declares(&other)).then(|| (common.join(own), common.join(other)));
+        }
+        common.push(own);
     }
 }

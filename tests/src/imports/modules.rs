@@ -29,7 +29,8 @@ pub fn read_package(folder: &Path, imports: &mut Imports) {
     }
 }
 
-fn rust_files(folder: &Path, deep: bool) -> Vec<PathBuf> {
+/// Files of Rust in a folder, and in those below it where that is asked for.
+pub fn rust_files(folder: &Path, deep: bool) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();

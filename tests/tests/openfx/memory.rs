@@ -1,14 +1,10 @@
 //! Memory: what an 8K frame of floats takes, by the plans that are rendered.
 
-/// What the plugin lets the images of a band take.
-#[path = "../../../nodes/plugin/src/ofx/memory.rs"]
-mod bounds;
-
 use crate::reference::*;
-use bounds::{LEAST_ROWS, WORKING_MEMORY};
 use isophote::request::Guides;
 use isophote::{ColourSpace, Planned, Request};
 use isophote_abi::openfx::*;
+use isophote_engine::plan::{LEAST_ROWS, WORKING_MEMORY};
 use isophote_engine::{Rect, Support};
 use isophote_tests::ofx::effect::{Described, Wanted};
 use isophote_tests::ofx::host::Host;

@@ -112,7 +112,7 @@ impl Built {
 /// The package with the C and the OpenFX face.
 const LIBRARY: &str = "isophote-plugin";
 /// The package of the program.
-const PROGRAM: &str = "isophote-host";
+const PROGRAM: &str = "isophote-program";
 
 /// The C library for programs that are compiled against it.
 fn library(built: &Built, tree: &mut Tree) -> Result<()> {

@@ -7,7 +7,7 @@ use isophote::registry;
 use std::path::Path;
 
 /// Pages written for the site: part, place, title.
-const WRITTEN: [(&str, &str, &str); 21] = [
+const WRITTEN: [(&str, &str, &str); 24] = [
     ("", "index", "Isophote"),
     ("", "install", "Install"),
     ("For artists", "artists/first-look", "First look in five minutes"),
@@ -23,11 +23,14 @@ const WRITTEN: [(&str, &str, &str); 21] = [
     ("For engine authors", "engines/graphics", "Other graphics APIs"),
     ("For engine authors", "engines/rust", "From Rust"),
     ("For render TDs", "farms/sequences", "Sequences"),
+    ("For render TDs", "farms/masks", "Masks and layered looks"),
+    ("For render TDs", "farms/scenes", "Scenes"),
     ("For render TDs", "farms/memory", "Memory and threads"),
     ("For Python programmers", "python/arrays", "Arrays, looks, sequences"),
     ("For Blender users", "blender/extension", "The Blender extension"),
     ("For the web", "web/page", "The page"),
     ("For contributors", "contributors/start", "Where to begin"),
+    ("For contributors", "contributors/dependencies", "Dependencies"),
     ("Nodes", "nodes/index", "All nodes"),
 ];
 

@@ -3,6 +3,12 @@
 use super::parts::{ImageId, Plan, Support};
 use crate::image::Rect;
 
+/// Bytes that the working images of one band of a large frame should take, and those that they may, where the passes
+/// allow bands. With a source and a result of 8K in floats, 4 GiB are not exceeded.
+pub const WORKING_MEMORY: [u64; 2] = [768 << 20, 3000 << 20];
+/// Bands of fewer rows would spend most of their time on what lies around them.
+pub const LEAST_ROWS: i32 = 64;
+
 impl Plan {
     /// The most bytes that the images of a run over `windows` ([`Plan::windows`]) take at once, those that
     /// enter included, when each is freed after its last use.

@@ -2,8 +2,8 @@
 
 use super::frame::Frame;
 use super::known::Known;
-use super::memory::{LEAST_ROWS, WORKING_MEMORY};
 use super::pixel_aspect::SquarePixels;
+use isophote::engine::plan::{LEAST_ROWS, WORKING_MEMORY};
 use isophote::engine::{Plan, Rect};
 use isophote::{ColourSpace, Planned, Request};
 

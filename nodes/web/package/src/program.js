@@ -1,6 +1,6 @@
 // A program of the planner on a device: textures, one buffer for all uniform blocks, bind groups and dispatches.
 //
-// The same work in Rust is `host-example/src/stylize/plan_runner.rs`.
+// The same work in Rust is `host-example/src/plan_runner.rs`.
 
 import { SAMPLER } from "./kernels.js";
 

@@ -1,11 +1,11 @@
 //! The edge tangent flow (§ 2.5): a bilateral filter of tangents, the well-known other way to a smooth
 //! orientation field, to compare the structure tensor with.
 
+use crate::declare::ports;
+use crate::declare::spec::{ImageKind, NodeSpec, Param, Port, Scope};
 use crate::kernels::structure::edge_tangent_flow::{self, Neighbours, Options, Window};
 use crate::kernels::structure::gradient_tensor::{self, Derivative, Measure};
 use crate::kernels::structure::{flow_maximum, flow_start};
-use crate::declare::ports;
-use crate::declare::spec::{ImageKind, NodeSpec, Param, Port, Scope};
 use isophote_engine::ImageId;
 
 /// The node.

@@ -1,0 +1,26 @@
+//! Files, the frames of sequences, errors and limits: what all other crates of the host stand on.
+//!
+//! | module | content |
+//! |---|---|
+//! | [`error`] | error of the host, with the exit code of the program |
+//! | [`files`] | files that are written whole or not at all |
+//! | [`frames`] | patterns of file names and lists of frame numbers |
+//! | [`identity`] | identity of a file, whatever its path |
+//! | [`input`] | opening of files that are read |
+//! | [`limits`] | memory and threads that the system may refuse |
+//! | [`output`] | messages on standard output and standard error |
+//! | [`replacing`] | consent to replace files |
+//! | [`stop`] | early end of a run |
+
+#![forbid(unsafe_code)]
+
+pub mod error;
+pub mod files;
+pub mod frames;
+pub mod identity;
+pub mod input;
+pub mod limits;
+pub mod output;
+pub mod replacing;
+pub mod stop;
+mod temporary;

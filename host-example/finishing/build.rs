@@ -1,0 +1,18 @@
+//! The looks that ship, as a list of their ids and texts in their order.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::{env, fs};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-changed=../looks");
+    let folder = Path::new(&env::var("CARGO_MANIFEST_DIR")?).join("../looks");
+    let mut list = String::from("[\n");
+    for id in fs::read_to_string(folder.join("order.txt"))?.split_whitespace() {
+        writeln!(list, "    ({id:?}, include_str!({:?})),", folder.join(format!("{id}.json")))?;
+    }
+    list.push(']');
+    fs::write(Path::new(&env::var("OUT_DIR")?).join("looks.rs"), list)?;
+    Ok(())
+}

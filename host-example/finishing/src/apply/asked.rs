@@ -1,0 +1,63 @@
+//! What the library is told of a picture: what its numbers mean and where it stands.
+
+use isophote_loader::abi::{
+    ISOPHOTE_ALPHA_PREMULTIPLIED, ISOPHOTE_ALPHA_STRAIGHT, ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR,
+    ISOPHOTE_SPACE_SRGB, IsophoteRequest,
+};
+use isophote_pictures::exr::Picture;
+use isophote_pictures::read::ImageState;
+use isophote_pictures::space::Space;
+
+/// Farthest from 0 that a picture may begin, pixels, as the contract has it.
+const MOST_ORIGIN: i32 = 1_000_000;
+
+/// The part of a request that is the picture's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Asked {
+    /// The space in which it is filtered.
+    pub space: Space,
+    /// What the numbers mean.
+    pub state: ImageState,
+    /// Where the first pixel stands in the canonical picture.
+    pub origin: [f64; 2],
+    /// Height of the canonical picture; 0 for that of the picture.
+    pub canonical_height: u32,
+    /// The frame's number; 0 for a picture by itself.
+    pub frame: i64,
+}
+
+impl Asked {
+    /// Of a picture in `space`, of the frame of this number.
+    pub fn of(picture: &Picture, state: ImageState, space: Space, number: Option<i64>) -> Self {
+        // Windows farther out than marks can be told apart are windows of their own.
+        let is_near = picture.origin.iter().all(|o| o.abs() <= MOST_ORIGIN);
+        Self {
+            space,
+            state,
+            origin: if is_near { picture.origin.map(f64::from) } else { [0.0; 2] },
+            canonical_height: picture.display.map_or(0, |window| window.height as u32),
+            frame: number.unwrap_or_default(),
+        }
+    }
+
+    /// The request with it.
+    pub fn request(&self, usual: IsophoteRequest) -> IsophoteRequest {
+        let [origin_x, origin_y] = self.origin;
+        IsophoteRequest {
+            space: match self.space {
+                Space::Srgb => ISOPHOTE_SPACE_SRGB,
+                Space::Acescg => ISOPHOTE_SPACE_ACESCG,
+                _ => ISOPHOTE_SPACE_LINEAR,
+            },
+            alpha: match self.state {
+                ImageState::DisplayReferred => ISOPHOTE_ALPHA_STRAIGHT,
+                ImageState::SceneReferred => ISOPHOTE_ALPHA_PREMULTIPLIED,
+            },
+            origin_x,
+            origin_y,
+            canonical_height: self.canonical_height,
+            frame: self.frame,
+            ..usual
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! Where a graph runs.
+
+use clap::ValueEnum;
+
+use isophote_files::error::{AtPlace, Result};
+use isophote_loader::abi::ISOPHOTE_ERROR_NO_DEVICE;
+use isophote_loader::{Device, Library};
+
+/// Where a graph runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Backend {
+    /// A graphics card if there is one, otherwise the CPU.
+    Auto,
+    /// The CPU.
+    Cpu,
+    /// The best graphics device there is, software drivers included.
+    Gpu,
+}
+
+impl Backend {
+    /// The library's own device, or nothing for the CPU.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Failure`] when there is no such device.
+    pub fn device(self, library: &Library) -> Result<Option<Device>> {
+        let place = "--backend";
+        match self {
+            Self::Cpu => Ok(None),
+            Self::Gpu => library.device(None).map(Some).map_err(|e| e.at(place, "use --backend cpu")),
+            // A driver that computes on the CPU is slower there than the library itself.
+            Self::Auto => match library.device(Some("gpu")) {
+                Ok(device) => Ok(Some(device)),
+                Err(refused) if refused.status() == Some(ISOPHOTE_ERROR_NO_DEVICE) => Ok(None),
+                Err(refused) => Err(refused.at(place, "use --backend cpu")),
+            },
+        }
+    }
+}

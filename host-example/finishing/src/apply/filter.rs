@@ -1,0 +1,465 @@
+//! What is done to every frame: the graph on each of its pictures.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::asked::Asked;
+use super::backend::Backend;
+use super::memory::Needs;
+use super::reel::{Window, guide_bit};
+use crate::stylize::style::Style;
+use isophote_example::history::{is_stage, split};
+use isophote_files::error::{AtPlace, Error, Result};
+use isophote_loader::abi::{IsophoteHistory, IsophoteRequest};
+use isophote_loader::catalogue::Kind;
+use isophote_loader::plan::{Role, Texture};
+use isophote_loader::{Control, Device, Input, Library, Sequence};
+use isophote_pictures::convert;
+use isophote_pictures::exr::{ExrFile, Guide};
+use isophote_pictures::mix::{self, Meaning};
+use isophote_pictures::pixels::{Pixels, Precision};
+use isophote_pictures::primaries::Change;
+use isophote_pictures::read::{ImageState, Opened};
+use isophote_pictures::space::Space;
+use isophote_pictures::working::WorkingSpace;
+use isophote_pictures::write::Format;
+
+/// What is done to a picture: a style, maybe where a mask is.
+#[derive(Debug)]
+pub struct Look {
+    /// The style.
+    pub style: Style,
+    /// Index of the mask among those of pictures.
+    pub mask: Option<usize>,
+}
+
+impl Look {
+    /// A style for whole pictures.
+    pub fn whole(style: Style) -> Self {
+        Self { style, mask: None }
+    }
+}
+
+/// Looks with what they run on. Each is made from the picture itself, and laid over the results of those before where its
+/// mask is.
+#[derive(Debug)]
+pub struct Filter {
+    library: Library,
+    layers: Vec<Layer>,
+    device: Option<Arc<Device>>,
+    space: Option<Space>,
+    threads: u32,
+}
+
+/// A look with what is kept of it.
+#[derive(Debug)]
+struct Layer {
+    look: Look,
+    /// The mask that its graph takes as an input; that of other looks is applied to their results.
+    input: Option<usize>,
+    /// What is kept of the frames of each picture.
+    sequences: Vec<Kept>,
+}
+
+/// What is kept of the frames of one picture, whose size it is made for.
+#[derive(Debug)]
+struct Kept {
+    size: (u32, u32),
+    sequence: Sequence,
+}
+
+/// Bytes a pixel of what is mixed with what, as floats, and of the result.
+const MIXED: u64 = 3 * 16;
+
+/// Results of one frame.
+#[derive(Debug)]
+pub struct Filtered {
+    /// One for each picture that is written.
+    pub results: Vec<Pixels>,
+    /// Samples that were NaN or infinite and were replaced.
+    pub replaced: u64,
+}
+
+/// Tells what frames need before they are decoded, on another thread than the filter's.
+#[derive(Debug)]
+pub struct Planner {
+    library: Library,
+    layers: Vec<Layer>,
+    guides: Vec<Guide>,
+    /// What filtering a picture of this size takes, as was found last.
+    last: Option<((u32, u32), u64)>,
+}
+
+/// Looks as they are applied: the mask of the only one enters its graph where that takes it.
+///
+/// # Errors
+/// [`isophote_files::error::Error::Input`] for a mask of what is no picture of colours.
+fn layers(looks: Vec<Look>) -> Result<Vec<Layer>> {
+    let is_single = looks.len() == 1;
+    let mut layers = Vec::with_capacity(looks.len());
+    for look in looks {
+        let Look { style, mask } = &look;
+        if (mask.is_some() || !is_single) && style.kind != Kind::Color {
+            return Err(Error::input(
+                &style.name,
+                format!("yields a {}, which no mask can lay over a picture", style.kind.name()),
+                "choose a style that yields a colour",
+            ));
+        }
+        let input = if is_single && style.takes_mask()? { *mask } else { None };
+        layers.push(Layer { look, input, sequences: Vec::new() });
+    }
+    Ok(layers)
+}
+
+/// Frames before and after its own that a frame of any of the looks depends on.
+fn frames(library: &Library, layers: &[Layer]) -> Result<[i64; 2]> {
+    let mut most = [0; 2];
+    for Layer { look: Look { style, .. }, .. } in layers {
+        let frames = library.frames(&style.graph).map_err(|e| e.at(&style.name, "choose another style"))?;
+        most = [0, 1].map(|side| i64::from(frames[side]).max(most[side]));
+    }
+    Ok(most)
+}
+
+impl Layer {
+    /// Bits of guides beside those of the picture.
+    fn bits(&self) -> u32 {
+        self.input.map_or(0, |_| guide_bit("mask"))
+    }
+
+    /// Whether its result is mixed with what is below it.
+    fn is_mixed(&self) -> bool {
+        self.look.mask.is_some() && self.input.is_none()
+    }
+
+    /// Filters one picture, and returns how many samples were replaced.
+    fn process(
+        &mut self,
+        (library, device): (&Library, Option<&Device>),
+        job: &Job<'_>,
+        result: &mut Pixels,
+        control: &mut Control<'_>,
+    ) -> isophote_loader::Result<u64> {
+        let Job { at, there, mut request, color, window } = *job;
+        let Some(picture) = window.own.source.pictures.get(at) else { return Ok(0) };
+        let style = &mut self.look.style;
+        request.reference_height = style.lengths.reference_height();
+        let frames = library.frames(&style.graph)?;
+        let mask = self.input.and_then(|mask| Some(("mask", picture.masks.get(mask)?.as_ref()?)));
+        let guides = picture.guides.iter().map(|(name, pixels)| (*name, pixels)).chain(mask);
+        let inputs = guides.map(|(name, pixels)| Input { name, pixels });
+        if frames == [0, 0] {
+            let mut all = vec![Input { name: "color", pixels: color }];
+            all.extend(inputs);
+            return Ok(style.graph.process(device, &request, &all, result, control)?.replaced);
+        }
+        request.guides = inputs.fold(0, |all, input| all | guide_bit(input.name));
+        let size = (request.width, request.height);
+        self.sequences.truncate(if self.sequences.get(at).is_some_and(|k| k.size != size) {
+            at
+        } else {
+            usize::MAX
+        });
+        if self.sequences.len() <= at {
+            let memory = stages(library, style, &request, frames)?;
+            self.sequences.push(Kept { size, sequence: library.sequence(memory, 0.0)? });
+        }
+        let input = self.input;
+        let mut image = |name: &str, frame: i64| match (name, input) {
+            ("mask", Some(mask)) => window.mask(at, mask, frame),
+            _ => window.image(at, name, frame, there),
+        };
+        let sequence = &mut self.sequences[at].sequence;
+        Ok(sequence.process(style.graph.handle(), device, &request, &mut image, result, control)?.replaced)
+    }
+}
+
+impl Filter {
+    /// Looks on the device that `backend` asks for; at least one.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when there is no such device, [`Error::Input`] for a mask of what is no picture of colours.
+    pub fn new(
+        library: Library,
+        looks: Vec<Look>,
+        backend: Backend,
+        space: Option<Space>,
+        threads: u32,
+    ) -> Result<Self> {
+        let device = backend.device(&library)?.map(Arc::new);
+        Ok(Self { library, layers: layers(looks)?, device, space, threads })
+    }
+
+    /// Another one beside it on the same device, of the same looks.
+    ///
+    /// # Errors
+    /// As [`Filter::new`].
+    pub fn beside(&self, looks: Vec<Look>) -> Result<Self> {
+        let (library, device) = (self.library.clone(), self.device.clone());
+        Ok(Self { library, layers: layers(looks)?, device, space: self.space, threads: self.threads })
+    }
+
+    /// How many of them should work on the frames of a sequence. Two on a graphics device: while it computes one frame,
+    /// another one is uploaded or read back. Frames that depend on others are done by one, which knows them.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the library fails.
+    pub fn best_count(&self) -> Result<usize> {
+        Ok(if self.device.is_some() && self.frames()? == [0, 0] { 2 } else { 1 })
+    }
+
+    /// Frames before and after its own that a frame depends on.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the library fails.
+    pub fn frames(&self) -> Result<[i64; 2]> {
+        frames(&self.library, &self.layers)
+    }
+
+    /// Filters all pictures of a frame, or the first where `format` holds one; `exr` is the file that they came from.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for pictures that the library refuses, [`Error::Failure`] when it or the device fails.
+    pub fn run(
+        &mut self,
+        name: &str,
+        window: &Window<'_>,
+        exr: Option<&ExrFile>,
+        format: Format,
+        progress: &mut dyn FnMut(f32),
+    ) -> Result<Filtered> {
+        let (own, source) = (&window.own, &window.own.source);
+        if let Some(frame) = own.number {
+            for layer in &self.layers {
+                layer.look.style.at_frame(frame)?;
+            }
+        }
+        let in_place = exr.filter(|_| format == Format::Exr);
+        let count = if in_place.is_some() { source.pictures.len() } else { source.pictures.len().min(1) };
+        let to = format.state(source.state);
+        let scalar = self.layers.iter().all(|layer| layer.look.style.kind != Kind::Color);
+        let mut filtered = Filtered { results: Vec::with_capacity(count), replaced: 0 };
+        for (at, picture) in source.pictures.iter().take(count).enumerate() {
+            let channels = match in_place {
+                Some(exr) => exr.result_channels(at, scalar),
+                None if scalar => 1,
+                None => picture.pixels.channels().max(3),
+            };
+            let working = WorkingSpace::of(self.space, source.state, picture);
+            let there = working.change.as_ref().map(|(there, _)| there);
+            let (color, bad) = own.working(at, there).unwrap_or((&picture.pixels, 0));
+            filtered.replaced += bad;
+            let precision = if to == source.state { color.precision() } else { Precision::F32 };
+            let size = (color.width(), color.height());
+            let usual = self.library.request(size).map_err(|e| e.at(name, "use a smaller picture"))?;
+            let request = Asked::of(picture, source.state, working.space, own.number).request(usual);
+            let job = Job { at, there, request, color, window };
+            let share = 1.0 / count as f32;
+            let mut report = |done: f32| progress((at as f32 + done) * share);
+            let meaning = Meaning { state: source.state, space: working.space };
+            let (mut result, replaced) =
+                self.layered(name, &job, (channels, precision), meaning, &mut report)?;
+            filtered.replaced += replaced;
+            if !scalar {
+                result = convert::between(result, source.state, working.space, to);
+                let is_shown = source.state == ImageState::SceneReferred && to == ImageState::DisplayReferred;
+                if let Some((_, back)) = working.change.filter(|_| !is_shown) {
+                    result = convert::changed(&result, &back).0;
+                }
+            }
+            filtered.results.push(result);
+        }
+        Ok(filtered)
+    }
+
+    /// The looks of one picture over each other, and how many samples were replaced.
+    fn layered(
+        &mut self,
+        name: &str,
+        job: &Job<'_>,
+        (channels, precision): (u32, Precision),
+        meaning: Meaning,
+        progress: &mut dyn FnMut(f32),
+    ) -> Result<(Pixels, u64)> {
+        let (color, count) = (job.color, self.layers.len() as f32);
+        let masks = job.window.own.source.pictures.get(job.at).map_or(&[][..], |picture| &picture.masks);
+        let mut replaced = 0;
+        let mut below: Option<Pixels> = None;
+        for (number, layer) in self.layers.iter_mut().enumerate() {
+            let mut result = Pixels::zeroed(color.width(), color.height(), channels, precision);
+            let mut report = |done: f32| progress((number as f32 + done) / count);
+            let mut control =
+                Control { threads: self.threads, progress: Some(&mut report), ..Control::default() };
+            let bad = layer
+                .process((&self.library, self.device.as_deref()), job, &mut result, &mut control)
+                .map_err(|e| e.at(name, "choose another picture or style"))?;
+            // All of them read the same picture.
+            replaced = bad.max(replaced);
+            let mask = layer.look.mask.and_then(|mask| masks.get(mask)?.as_ref());
+            below = Some(match mask.filter(|_| layer.is_mixed()) {
+                Some(mask) => mix::mixed(below.as_ref().unwrap_or(color), result, mask, meaning),
+                None => result,
+            });
+        }
+        let nothing = || Error::input(name, "is given no style", "name one");
+        Ok((below.ok_or_else(nothing)?, replaced))
+    }
+}
+
+impl Planner {
+    /// Of looks of its own, which are the same as the filter's.
+    ///
+    /// # Errors
+    /// As [`Filter::new`].
+    pub fn new(library: Library, looks: Vec<Look>) -> Result<Self> {
+        let mut guides = Vec::new();
+        for look in &looks {
+            guides.extend(usable_guides(&library, &look.style)?);
+        }
+        Ok(Self { library, layers: layers(looks)?, guides, last: None })
+    }
+
+    /// Guides that the styles can use.
+    pub fn guides(&self) -> &[Guide] {
+        &self.guides
+    }
+
+    /// Bytes that filtering a picture of this size takes at most, besides the picture and its result.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for sizes and graphs that the library refuses.
+    pub fn filter_memory(&mut self, name: &str, frame: Option<i64>, size: (u32, u32)) -> Result<u64> {
+        let is_animated = frame.map_or(Ok(false), |frame| self.at_frame(frame))?;
+        if let Some((_, bytes)) = self.last.filter(|(last, _)| *last == size && !is_animated) {
+            return Ok(bytes);
+        }
+        let refused = |e: isophote_loader::Error| e.at(name, "choose another picture or style");
+        let pixels = u64::from(size.0) * u64::from(size.1);
+        let guides = self.guides.iter().fold(0, |all, guide| all | guide_bit(guide.id()));
+        // One look is made at a time; what it keeps of frames stays.
+        let (mut kept, mut most) = (0, 0);
+        for layer in &self.layers {
+            let style = &layer.look.style;
+            let mut request = style.request(&self.library, size).map_err(refused)?;
+            request.guides = guides | layer.bits();
+            let frames = self.library.frames(&style.graph).map_err(refused)?;
+            let plan = match frames {
+                [0, 0] => style.graph.plan(&request),
+                [past, _] => self.library.plan_in_order(&style.graph, &request, &history(past)),
+            };
+            let plan = plan.map_err(refused)?;
+            let textures: u64 = plan.textures().map_err(refused)?.iter().map(Texture::bytes).sum();
+            let mixed = if layer.is_mixed() || self.layers.len() > 1 { pixels * MIXED } else { 0 };
+            most = most.max(textures + mixed);
+            kept += stages(&self.library, style, &request, frames).map_err(refused)?;
+        }
+        let bytes = most + kept;
+        self.last = Some((size, bytes));
+        Ok(bytes)
+    }
+
+    /// Gives animated parameters their values at a frame, and says whether there are any.
+    fn at_frame(&self, frame: i64) -> Result<bool> {
+        let mut is_animated = false;
+        for layer in &self.layers {
+            is_animated |= layer.look.style.at_frame(frame)?;
+        }
+        Ok(is_animated)
+    }
+
+    /// Frames before and after `frame` that it depends on.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when an animated parameter cannot have its value.
+    pub fn frames(&self, frame: Option<i64>) -> Result<[i64; 2]> {
+        let Some(frame) = frame else { return Ok([0, 0]) };
+        self.at_frame(frame)?;
+        frames(&self.library, &self.layers)
+    }
+
+    /// How many frames are held while `frame` is done: it and all that it depends on.
+    ///
+    /// # Errors
+    /// As [`Planner::frames`].
+    pub fn span(&self, frame: Option<i64>) -> Result<u64> {
+        let [past, future] = self.frames(frame)?;
+        Ok((past + future + 1) as u64)
+    }
+
+    /// What the frame `file` needs; nothing when it will be refused, which is reported when its turn comes.
+    ///
+    /// # Errors
+    /// As [`Planner::filter_memory`].
+    pub fn needs(&mut self, file: &Path, frame: Option<i64>, opened: &Opened) -> Result<Option<Needs>> {
+        let Some(size) = opened.size() else { return Ok(None) };
+        let filter = self.filter_memory(&file.display().to_string(), frame, size)?;
+        // Each as it is read, as it is kept and as one of all frames.
+        let masks = self.layers.iter().filter(|layer| layer.look.mask.is_some()).count() as u64;
+        let masks = u64::from(size.0) * u64::from(size.1) * 4 * 3 * masks;
+        Ok(Some(Needs { frame: opened.weight().saturating_add(masks), filter }))
+    }
+}
+
+/// One picture of a frame.
+#[derive(Clone, Copy)]
+struct Job<'a> {
+    at: usize,
+    /// The change to the working space.
+    there: Option<&'a Change>,
+    request: IsophoteRequest,
+    /// The picture in its working space.
+    color: &'a Pixels,
+    window: &'a Window<'a>,
+}
+
+/// Plans for so many frames before the one that is computed.
+fn history(past: u32) -> IsophoteHistory {
+    IsophoteHistory { past, max_motion: 0.0 }
+}
+
+/// Bytes of the stages that a frame reads of those before and after it, which are at most so many, and of its own.
+fn stages(
+    library: &Library,
+    style: &Style,
+    request: &IsophoteRequest,
+    frames: [u32; 2],
+) -> isophote_loader::Result<u64> {
+    let [past, future] = frames;
+    if past + future == 0 {
+        return Ok(0);
+    }
+    let plan = library.plan_in_order(&style.graph, request, &history(past))?;
+    let textures = plan.textures()?;
+    let kept = textures.iter().filter(|t| t.role == Role::Output && is_stage(t.name));
+    // Of farther frames only inputs are read.
+    let read = textures.iter().filter_map(|t| split(t.name)).filter(|(name, _)| is_stage(name));
+    let past = read.map(|(_, before)| before as u64).max().unwrap_or(0);
+    Ok(kept.map(Texture::bytes).sum::<u64>() * (past + u64::from(future) + 1))
+}
+
+/// Guides that a style can use, whether or not they are connected.
+///
+/// # Errors
+/// [`isophote_files::error::Error::Failure`] when the library fails.
+pub fn usable_guides(library: &Library, style: &Style) -> Result<Vec<Guide>> {
+    let mut guides = Vec::new();
+    let refused = |e: isophote_loader::Error| e.at(&style.name, "choose another style");
+    // Stills read no motion.
+    let is_steady = style.is_animated() || library.frames(&style.graph).map_err(refused)? != [0, 0];
+    for node in 0..style.graph.count() {
+        let spec = style.graph.spec(node).map_err(refused)?;
+        for port in spec.inputs {
+            match port.kind {
+                Kind::Normal => guides.push(Guide::Normal),
+                Kind::Depth => guides.push(Guide::Depth),
+                Kind::ObjectId => guides.push(Guide::ObjectId),
+                Kind::Position => guides.push(Guide::RestPosition),
+                Kind::Motion if is_steady && port.id == "motion" => guides.push(Guide::Motion),
+                Kind::Motion if is_steady => guides.push(Guide::MotionForward),
+                _ => {}
+            }
+        }
+    }
+    Ok(guides)
+}

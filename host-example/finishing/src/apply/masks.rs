@@ -1,0 +1,260 @@
+//! Masks of a run: where they come from, and each in its picture's size.
+//!
+//! A mask is a number for each pixel. Files of colours stand for their luminance, 0.2126 R + 0.7152 G + 0.0722 B of the numbers
+//! as they are stored; alpha is never looked at. What is no number is 0, and all is cut to 0..=1.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use isophote_exr_edit::Window;
+
+use super::tasks::Tasks;
+use isophote_files::error::{Error, Result};
+use isophote_files::frames::{self, Pattern};
+use isophote_pictures::exr::{self, MaskSource, OnUnknown, Picture};
+use isophote_pictures::pixels::{Pixels, Samples};
+use isophote_pictures::read::{self, Source, Unread};
+
+/// Where a mask comes from, and whether what it leaves out is meant.
+#[derive(Clone, Debug)]
+pub struct MaskChoice {
+    /// Where it comes from.
+    pub source: MaskSource,
+    /// Whether it is turned round.
+    pub invert: bool,
+}
+
+/// The masks of a run.
+#[derive(Debug, Default)]
+pub struct Masks(Vec<Mask>);
+
+#[derive(Debug)]
+struct Mask {
+    place: Place,
+    /// What of the file is the mask, where that is not all of it.
+    source: Option<MaskSource>,
+    invert: bool,
+    on_unknown: OnUnknown,
+    /// The mask of a file that all frames have in common.
+    kept: Mutex<Option<(Frame, Pixels)>>,
+}
+
+#[derive(Debug)]
+enum Place {
+    /// The file of the picture, of which it was read.
+    Picture,
+    File(PathBuf),
+    Files(Pattern),
+}
+
+impl Place {
+    fn of(path: &Path) -> Result<Self> {
+        Ok(Pattern::new(path)?.map_or_else(|| Self::File(path.to_owned()), Self::Files))
+    }
+}
+
+/// Data and display windows of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Frame {
+    data: Window,
+    display: Window,
+}
+
+impl Masks {
+    /// The masks that were asked for; layers and Cryptomattes are in the files `from`, or in those of the pictures.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for names of files that have several places for a number.
+    pub fn new(choices: &[MaskChoice], from: Option<&Path>, on_unknown: OnUnknown) -> Result<Self> {
+        let mask = |choice: &MaskChoice| {
+            let (place, source) = match (&choice.source, from) {
+                (MaskSource::File(path), _) => (Place::of(path)?, None),
+                (source, Some(from)) => (Place::of(from)?, Some(source.clone())),
+                (_, None) => (Place::Picture, None),
+            };
+            Ok(Mask { place, source, invert: choice.invert, on_unknown, kept: Mutex::new(None) })
+        };
+        choices.iter().map(mask).collect::<Result<_>>().map(Self)
+    }
+
+    /// Makes sure that all frames have their files; those of a video are not known.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming files that are missing.
+    pub fn check(&self, tasks: Option<&Tasks>) -> Result<()> {
+        for mask in &self.0 {
+            match (&mask.place, tasks) {
+                (Place::Files(pattern), Some(tasks)) if !tasks.is_sequence() => {
+                    let problem = "names masks by frame, and there is one picture";
+                    return Err(Error::file(&pattern.file(0), problem, "name one file"));
+                }
+                (Place::Files(pattern), Some(tasks)) => {
+                    let frames = tasks.ready.iter().filter_map(|task| task.frame);
+                    let missing: Vec<i64> = frames.filter(|frame| !pattern.file(*frame).is_file()).collect();
+                    if let Some(first) = missing.first() {
+                        let problem = format!(
+                            "is no file; masks of the frames {} are missing",
+                            frames::summary(&missing)
+                        );
+                        return Err(Error::file(
+                            &pattern.file(*first),
+                            problem,
+                            "give other --frames, or other masks",
+                        ));
+                    }
+                }
+                (Place::File(path), _) => Unread::open(path).map(drop)?,
+                (Place::Files(_), None) | (Place::Picture, _) => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Completes the masks of a frame, which is refused for want of one.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] where memory is short.
+    pub fn add(&self, source: &mut Source, number: Option<i64>) -> Result<()> {
+        for picture in &mut source.pictures {
+            let frame =
+                Frame { data: picture.window(), display: picture.display.unwrap_or(picture.window()) };
+            picture.masks.resize(self.0.len(), None);
+            for (mask, slot) in self.0.iter().zip(&mut picture.masks) {
+                let path = match &mask.place {
+                    Place::Picture => {
+                        *slot = slot.take().map(|values| mask.finished(values));
+                        continue;
+                    }
+                    Place::File(path) => path.clone(),
+                    Place::Files(pattern) => pattern.file(number.unwrap_or_default()),
+                };
+                match mask.of_file(&path, frame) {
+                    Ok(pixels) => *slot = Some(pixels),
+                    Err(error @ Error::Failure { .. }) => return Err(error),
+                    Err(error) => {
+                        picture.refused.get_or_insert(error);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Mask {
+    /// The mask that a file holds for a picture of this frame.
+    fn of_file(&self, path: &Path, frame: Frame) -> Result<Pixels> {
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, pixels)) = kept.as_ref().filter(|(known, _)| *known == frame) {
+            return Ok(pixels.clone());
+        }
+        let pixels = self.finished(self.read(path, frame)?);
+        if matches!(self.place, Place::File(_)) {
+            *kept = Some((frame, pixels.clone()));
+        }
+        Ok(pixels)
+    }
+
+    /// What is in a file, in the size of a picture.
+    fn read(&self, path: &Path, frame: Frame) -> Result<Pixels> {
+        let unread = Unread::open(path)?;
+        let opened = match unread.any(path)? {
+            read::Any::Exr(bytes) => {
+                let wanted = (self.source.as_ref(), self.on_unknown);
+                return exr::mask_of(path, bytes, wanted, |data, display| frame.place(data, display));
+            }
+            read::Any::Other(_) if self.source.is_some() => {
+                return Err(Error::file(
+                    path,
+                    "is no EXR file, and has no layers",
+                    "name an EXR file, or a mask of its own",
+                ));
+            }
+            read::Any::Other(opened) => opened,
+        };
+        let mut window = frame.data;
+        // Told before all of it is decoded.
+        if let Some((width, height)) = opened.size() {
+            window = placed(path, frame, (width, height))?;
+        }
+        let source = opened.decode(path)?;
+        let Some(Picture { pixels, .. }) = source.pictures.into_iter().next() else {
+            return Err(Error::file(path, "is empty", "name another mask"));
+        };
+        // A camera's attitude may have turned it.
+        let size = (pixels.width(), pixels.height());
+        if size != (window.width as u32, window.height as u32) {
+            window = placed(path, frame, size)?;
+        }
+        placed_over(&pixels, window)
+            .ok_or_else(|| Error::file(path, "does not hold as many pixels as it says", "name another mask"))
+    }
+
+    fn finished(&self, values: Pixels) -> Pixels {
+        let cut = |value: f32| if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) };
+        let turned = |value: f32| if self.invert { 1.0 - cut(value) } else { cut(value) };
+        let numbers = values.to_f32().into_iter().map(turned).collect();
+        // As many as there were.
+        Pixels::new(values.width(), values.height(), 1, Samples::F32(numbers)).unwrap_or(values)
+    }
+}
+
+impl Frame {
+    /// Which window of a mask belongs to the picture: the same part of the display, or else all of it.
+    fn place(self, data: Window, display: Option<Window>) -> std::result::Result<Window, String> {
+        let display = display.unwrap_or(data);
+        let size = |window: Window| (window.width, window.height);
+        if size(display) == size(self.display) {
+            let moved = |from: i32, to: i32, at: i32| i64::from(at) - i64::from(from) + i64::from(to);
+            let x = moved(self.display.x, display.x, self.data.x);
+            let y = moved(self.display.y, display.y, self.data.y);
+            if let (Ok(x), Ok(y)) = (i32::try_from(x), i32::try_from(y)) {
+                return Ok(Window { x, y, ..self.data });
+            }
+        }
+        if size(data) == size(self.data) {
+            return Ok(data);
+        }
+        let ((width, height), (wide, high)) = (size(display), size(self.display));
+        Err(format!("shows {width}x{height} pixels, and the picture {wide}x{high}"))
+    }
+}
+
+/// The luminance of a picture over a window; 0 where it has no pixels.
+fn placed_over(pixels: &Pixels, window: Window) -> Option<Pixels> {
+    let numbers = pixels.to_f32();
+    let grey = |pixel: &[f32]| match *pixel {
+        [r, g, b, ..] if r == g && g == b => r,
+        [r, g, b, ..] => 0.2126 * r + 0.7152 * g + 0.0722 * b,
+        [v, ..] => v,
+        [] => 0.0,
+    };
+    let channels = pixels.channels() as usize;
+    let mut mask = vec![0.0; window.width * window.height];
+    let own = Window { x: 0, y: 0, width: pixels.width() as usize, height: pixels.height() as usize };
+    exr::add(&mut mask, window, own, |at| grey(&numbers[at * channels..][..channels]));
+    Pixels::new(window.width as u32, window.height as u32, 1, Samples::F32(mask))
+}
+
+/// The window of a file of so many pixels.
+fn placed(path: &Path, frame: Frame, (width, height): (u32, u32)) -> Result<Window> {
+    let own = Window { x: 0, y: 0, width: width as usize, height: height as usize };
+    frame.place(own, None).map_err(|problem| Error::file(path, problem, "make masks of the picture's size"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn masks_lie_over_the_same_part_of_the_display() {
+        let window = |x, y, width, height| Window { x, y, width, height };
+        let frame = Frame { data: window(10, 20, 5, 4), display: window(0, 0, 100, 50) };
+        // Of the whole display, of a part of it, of a display that begins elsewhere, and of the picture's own pixels.
+        assert_eq!(frame.place(window(0, 0, 100, 50), None), Ok(window(10, 20, 5, 4)));
+        assert_eq!(frame.place(window(3, 3, 9, 9), Some(window(0, 0, 100, 50))), Ok(window(10, 20, 5, 4)));
+        assert_eq!(frame.place(window(3, 3, 9, 9), Some(window(-1, 2, 100, 50))), Ok(window(9, 22, 5, 4)));
+        assert_eq!(frame.place(window(0, 0, 5, 4), None), Ok(window(0, 0, 5, 4)));
+        assert!(frame.place(window(0, 0, 50, 25), None).is_err_and(|e| e.contains("50x25")));
+    }
+}

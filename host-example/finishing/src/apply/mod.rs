@@ -1,0 +1,15 @@
+//! Filtering pictures and sequences of pictures from file to file, without any scene.
+
+pub mod asked;
+pub mod backend;
+pub mod dry_run;
+pub mod filter;
+pub mod looks;
+mod machine;
+pub mod masks;
+pub mod memory;
+pub mod reader;
+pub mod reel;
+pub mod report;
+pub mod sequence;
+pub mod tasks;

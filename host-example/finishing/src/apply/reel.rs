@@ -1,0 +1,99 @@
+//! Frames in memory: those that are filtered, and their neighbours as long as others depend on them.
+
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use isophote_loader::abi;
+
+use super::memory::Share;
+use isophote_pictures::convert;
+use isophote_pictures::exr::{ExrFile, Picture};
+use isophote_pictures::pixels::Pixels;
+use isophote_pictures::primaries::Change;
+use isophote_pictures::read::Source;
+
+/// A frame that was read.
+#[derive(Debug)]
+pub struct Held<'a> {
+    /// Its number in a sequence.
+    pub number: Option<i64>,
+    /// What was read, without what is only written.
+    pub source: Source,
+    /// What else is in an EXR file, until the frame is written.
+    exr: Mutex<Option<ExrFile>>,
+    /// The pictures in their working space, where that is another.
+    changed: Vec<OnceLock<(Pixels, u64)>>,
+    /// Given back when the frame is needed no more.
+    _share: Share<'a>,
+}
+
+impl<'a> Held<'a> {
+    /// A frame that was read; `is_written` says whether its file is needed for a result.
+    pub fn new(number: Option<i64>, mut source: Source, is_written: bool, share: Share<'a>) -> Self {
+        let exr = source.exr.take().filter(|_| is_written);
+        let changed = source.pictures.iter().map(|_| OnceLock::new()).collect();
+        Self { number, source, exr: Mutex::new(exr), changed, _share: share }
+    }
+
+    /// The file that the result goes into; once.
+    pub fn take_exr(&self) -> Option<ExrFile> {
+        self.exr.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    /// A picture in its working space, with the number of samples that were replaced on the way.
+    pub fn working(&self, at: usize, change: Option<&Change>) -> Option<(&Pixels, u64)> {
+        let picture = self.source.pictures.get(at)?;
+        let Some(change) = change else { return Some((&picture.pixels, 0)) };
+        let (pixels, replaced) =
+            self.changed.get(at)?.get_or_init(|| convert::changed(&picture.pixels, change));
+        Some((pixels, *replaced))
+    }
+}
+
+/// The frames that a frame depends on and that there are, with itself.
+#[derive(Clone, Debug)]
+pub struct Window<'a> {
+    /// The frame itself.
+    pub own: Arc<Held<'a>>,
+    /// It and its neighbours, in any order.
+    pub frames: Vec<Arc<Held<'a>>>,
+}
+
+impl Window<'_> {
+    /// What an input of picture `at` shows in a frame, if that is like the frame itself; `change` leads to the working space.
+    pub fn image(&self, at: usize, input: &str, frame: i64, change: Option<&Change>) -> Option<&Pixels> {
+        let (held, picture) = self.alike(at, frame)?;
+        match input {
+            "color" => held.working(at, change).map(|(pixels, _)| pixels),
+            _ => picture.guides.iter().find(|(name, _)| *name == input).map(|(_, pixels)| pixels),
+        }
+    }
+
+    /// A mask of picture `at` in a frame, if that is like the frame itself.
+    pub fn mask(&self, at: usize, mask: usize, frame: i64) -> Option<&Pixels> {
+        self.alike(at, frame)?.1.masks.get(mask)?.as_ref()
+    }
+
+    /// Picture `at` in a frame, if that is like the frame itself.
+    fn alike(&self, at: usize, frame: i64) -> Option<(&Held<'_>, &Picture)> {
+        let held = self.frames.iter().find(|held| held.number.unwrap_or_default() == frame)?;
+        let (own, other): (&Picture, &Picture) =
+            (self.own.source.pictures.get(at)?, held.source.pictures.get(at)?);
+        let size = |picture: &Picture| (picture.pixels.width(), picture.pixels.height());
+        let is_alike = size(own) == size(other) && self.own.source.state == held.source.state;
+        is_alike.then_some((held, other))
+    }
+}
+
+/// The bit of a guide in a request.
+pub fn guide_bit(input: &str) -> u32 {
+    match input {
+        "normal" => abi::ISOPHOTE_GUIDE_NORMAL,
+        "depth" => abi::ISOPHOTE_GUIDE_DEPTH,
+        "object_id" => abi::ISOPHOTE_GUIDE_OBJECT_ID,
+        "mask" => abi::ISOPHOTE_GUIDE_MASK,
+        "motion" => abi::ISOPHOTE_GUIDE_MOTION,
+        "motion_forward" => abi::ISOPHOTE_GUIDE_MOTION_FORWARD,
+        "rest_position" => abi::ISOPHOTE_GUIDE_REST_POSITION,
+        _ => 0,
+    }
+}

@@ -1,0 +1,226 @@
+//! The frames of a run: read, filtered and written at the same time, within a bound of memory.
+//!
+//! One thread reads and decodes, the calling one filters, one encodes and writes; decoding and encoding use all
+//! cores within a frame. On a graphics device two others filter in turn, so that it computes one frame while another one goes
+//! there or comes back. Where the system gives no threads the calling one does it all, frame by frame.
+
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::{Builder, Scope, ScopedJoinHandle};
+
+use super::filter::{Filter, Filtered};
+use super::reader::Reader;
+use super::reel::{Held, Window};
+use super::report::{Outcome, Report};
+use super::tasks::Task;
+use isophote_files::error::{Error, Result};
+use isophote_files::limits::{self, Threads};
+use isophote_files::replacing::Consent;
+use isophote_files::stop::Stop;
+use isophote_pictures::exr::ExrFile;
+use isophote_pictures::read;
+use isophote_pictures::write::{self, Format};
+use std::sync::Arc;
+
+/// Most frames between being read and being written: one in each hand and one waiting between them.
+pub const MOST_IN_FLIGHT: u64 = 5;
+
+/// How a run is done.
+#[derive(Debug)]
+pub struct Run<'a> {
+    /// All frames.
+    pub tasks: &'a [Task],
+    /// Kind of the outputs.
+    pub format: Format,
+    /// Consent to replace files.
+    pub consent: Consent,
+    /// Whether frames are read and written beside being filtered.
+    pub threads: Threads,
+    /// Where progress is reported.
+    pub report: &'a Report,
+    /// Set when the run shall end early.
+    pub stop: &'a Stop,
+}
+
+/// A frame that was read, with its neighbours.
+struct Ready<'a> {
+    task: &'a Task,
+    window: Window<'a>,
+}
+
+/// A frame that was filtered.
+struct Done<'a> {
+    task: &'a Task,
+    own: Arc<Held<'a>>,
+    exr: Option<ExrFile>,
+    filtered: Filtered,
+}
+
+impl<'a> Run<'a> {
+    /// Does all frames. Frames that cannot be read or filtered are reported and left out; a run of one picture ends
+    /// with its error. `reader` reads these frames for the filters' style; there is at least one filter.
+    ///
+    /// # Errors
+    /// What kept a frame from being written, [`Error::Failure`] of the library or the device.
+    pub fn all(&self, filters: &mut [Filter], mut reader: Reader<'a>) -> Result<()> {
+        match (self.threads, filters) {
+            (_, []) => Ok(()),
+            (Threads::Calling, [filter, ..]) => {
+                let mut result = Ok(());
+                self.read(&mut reader, &mut |ready| {
+                    let done = self.filter_one(filter, ready);
+                    result = done.and_then(|done| done.map_or(Ok(()), |done| self.write_one(done)));
+                    result.is_ok()
+                })?;
+                result
+            }
+            (Threads::Several, filters) => self.at_once(filters, reader),
+        }
+    }
+
+    /// The same on several threads.
+    fn at_once(&self, filters: &mut [Filter], mut reader: Reader<'a>) -> Result<()> {
+        std::thread::scope(|scope| {
+            let (send, decoded) = sync_channel(1);
+            // Nobody takes it when the run ends early.
+            let mut sink = move |ready| SyncSender::send(&send, ready).is_ok();
+            let reading = spawn(scope, move || self.read(&mut reader, &mut sink))?;
+            let (finished, results): (Vec<_>, Vec<_>) = filters.iter().map(|_| sync_channel(1)).unzip();
+            let writing = spawn(scope, move || self.write(&results))?;
+            let filtered = match filters {
+                [filter] => self.filter(filter, decoded, &finished[0]),
+                filters => self.filter_in_turn(scope, filters, decoded, &finished),
+            };
+            drop(finished);
+            let read = reading.join().unwrap_or_else(|_| Err(broken("reading")));
+            let written = writing.join().unwrap_or_else(|_| Err(broken("writing")));
+            // What could not be written is why the others ended.
+            written.and(filtered).and(read)
+        })
+    }
+
+    /// Hands frames out to filters in turn, each of which works on a thread of its own.
+    fn filter_in_turn<'scope>(
+        &'scope self,
+        scope: &'scope Scope<'scope, '_>,
+        filters: &'scope mut [Filter],
+        decoded: Receiver<Ready<'a>>,
+        finished: &[SyncSender<Option<Done<'a>>>],
+    ) -> Result<()>
+    where
+        'a: 'scope,
+    {
+        let (mut inputs, mut lanes) = (Vec::new(), Vec::new());
+        for (filter, finished) in filters.iter_mut().zip(finished) {
+            let (input, frames) = sync_channel(0);
+            let finished = finished.clone();
+            lanes.push(spawn(scope, move || self.filter(filter, frames, &finished))?);
+            inputs.push(input);
+        }
+        for (ready, input) in decoded.into_iter().zip(inputs.iter().cycle()) {
+            if input.send(ready).is_err() {
+                break;
+            }
+        }
+        drop(inputs);
+        let ends = lanes.into_iter().map(|lane| lane.join().unwrap_or_else(|_| Err(broken("filtering"))));
+        ends.fold(Ok(()), Result::and)
+    }
+
+    /// Writes what filters hand over in turn.
+    fn write(&self, results: &[Receiver<Option<Done<'a>>>]) -> Result<()> {
+        for result in results.iter().cycle() {
+            match result.recv() {
+                Ok(Some(done)) => self.write_one(done)?,
+                Ok(None) => {}
+                Err(_) => break,
+            }
+        }
+        Ok(())
+    }
+
+    fn read(&self, reader: &mut Reader<'a>, sink: &mut dyn FnMut(Ready<'a>) -> bool) -> Result<()> {
+        for task in self.tasks {
+            if self.stop.is_requested() {
+                break;
+            }
+            if self.consent.skip_existing && read::is_whole(&task.output) {
+                reader.skip();
+                self.report.frame(task, &Outcome::Skipped);
+                continue;
+            }
+            match reader.window(task) {
+                Ok(window) => {
+                    if !sink(Ready { task, window }) {
+                        break;
+                    }
+                }
+                // The next frame would find no more memory.
+                Err(error @ Error::Failure { .. }) => return Err(error),
+                Err(error) => self.failed(task, error)?,
+            }
+        }
+        Ok(())
+    }
+
+    fn filter(
+        &self,
+        filter: &mut Filter,
+        decoded: Receiver<Ready<'a>>,
+        finished: &SyncSender<Option<Done<'a>>>,
+    ) -> Result<()> {
+        for ready in decoded {
+            if self.stop.is_requested() || finished.send(self.filter_one(filter, ready)?).is_err() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Nothing where the frame failed and the run goes on.
+    fn filter_one(&self, filter: &mut Filter, Ready { task, window }: Ready<'a>) -> Result<Option<Done<'a>>> {
+        let name = task.input.display().to_string();
+        let mut progress = |done: f32| self.report.progress(done);
+        let exr = window.own.take_exr();
+        match filter.run(&name, &window, exr.as_ref(), self.format, &mut progress) {
+            Ok(filtered) => Ok(Some(Done { task, own: window.own, exr, filtered })),
+            // Neither device nor memory is better for the next frame.
+            Err(error @ Error::Failure { .. }) => Err(error),
+            Err(error) => self.failed(task, error).map(|()| None),
+        }
+    }
+
+    fn write_one(&self, Done { task, own, exr, filtered }: Done<'a>) -> Result<()> {
+        let replaced = filtered.replaced;
+        let is_written = self.consent.write(task.made(), read::is_whole, |existing| {
+            write::write(&task.output, existing, self.format, filtered.results, &own.source, exr)
+        })?;
+        drop(own);
+        self.report.frame(task, &if is_written { Outcome::Written(replaced) } else { Outcome::Skipped });
+        Ok(())
+    }
+
+    /// A frame of a sequence is reported; a picture by itself ends the run.
+    fn failed(&self, task: &Task, error: Error) -> Result<()> {
+        if task.frame.is_none() {
+            return Err(error);
+        }
+        self.report.frame(task, &Outcome::Failed(error));
+        Ok(())
+    }
+}
+
+fn spawn<'scope, 'env, T: Send + 'scope>(
+    scope: &'scope Scope<'scope, 'env>,
+    work: impl FnOnce() -> T + Send + 'scope,
+) -> Result<ScopedJoinHandle<'scope, T>> {
+    if !limits::has_room_for_a_thread() {
+        return Err(limits::too_little("another thread"));
+    }
+    Builder::new()
+        .spawn_scoped(scope, work)
+        .map_err(|e| Error::failure(format!("a thread cannot be started: {e}"), "start again"))
+}
+
+fn broken(what: &str) -> Error {
+    Error::failure(format!("{what} stopped"), "this is a mistake in the program; please report it")
+}

@@ -1,0 +1,120 @@
+//! Which files a run reads and writes.
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+
+use isophote_files::error::{Error, Result};
+use isophote_files::frames::{self, FrameList, Pattern};
+use isophote_files::output;
+use isophote_files::replacing::Made;
+
+/// One frame, or a picture by itself.
+#[derive(Clone, Debug)]
+pub struct Task {
+    /// Its number in a sequence.
+    pub frame: Option<i64>,
+    /// What is read.
+    pub input: PathBuf,
+    /// What is written.
+    pub output: PathBuf,
+}
+
+impl Task {
+    /// The result, and what it is made from.
+    pub fn made(&self) -> Made<'_> {
+        Made { from: Some(&self.input), to: &self.output }
+    }
+}
+
+/// What becomes of a run when frames are missing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum OnMissing {
+    /// It does not start.
+    Fail,
+    /// The other frames are done.
+    Skip,
+}
+
+/// All tasks of a run.
+#[derive(Debug)]
+pub struct Tasks {
+    /// Those whose input is there; at least one.
+    pub ready: Vec<Task>,
+    /// Frames of the sequence that have no file.
+    pub missing: Vec<Task>,
+    /// The sequence that they are of; otherwise there is one picture.
+    pub sequence: Option<Pattern>,
+}
+
+impl Tasks {
+    /// The picture `input`, or the frames of the pattern `input`: those of `list`, or all that are on disk.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when only one of the two paths is a pattern, there are no frames, or frames are missing
+    /// and `on_missing` is [`OnMissing::Fail`].
+    pub fn find(
+        input: &Path,
+        output: &Path,
+        list: Option<&FrameList>,
+        on_missing: OnMissing,
+    ) -> Result<Self> {
+        let (from, to) = (Pattern::new(input)?, Pattern::new(output)?);
+        let Some(from) = from else {
+            if list.is_some() {
+                return Err(Error::file(input, "has no place for a frame number", "write shot.####.exr"));
+            }
+            let task = Task { frame: None, input: input.to_owned(), output: output.to_owned() };
+            return Ok(Self { ready: vec![task], missing: Vec::new(), sequence: None });
+        };
+        let (ready, missing) = match list {
+            Some(list) => list.frames().iter().partition(|frame| from.file(**frame).is_file()),
+            None => {
+                let frames = from.on_disk()?;
+                let holes = frames::holes(&frames);
+                (frames, holes)
+            }
+        };
+        let Some(to) = to else {
+            return Err(Error::file(
+                output,
+                "has no place for a frame number, but there may be several frames",
+                "write shot.####.exr",
+            ));
+        };
+        check_missing(input, &missing, on_missing)?;
+        if ready.is_empty() {
+            return Err(Error::file(input, "has none of the frames asked for", "give other --frames"));
+        }
+        let task =
+            |frame: &i64| Task { frame: Some(*frame), input: from.file(*frame), output: to.file(*frame) };
+        Ok(Self {
+            ready: ready.iter().map(task).collect(),
+            missing: missing.iter().map(task).collect(),
+            sequence: Some(from),
+        })
+    }
+
+    /// Whether they are frames of a sequence.
+    pub fn is_sequence(&self) -> bool {
+        self.sequence.is_some()
+    }
+
+    /// Number of frames, with those that are missing.
+    pub fn count(&self) -> usize {
+        self.ready.len() + self.missing.len()
+    }
+}
+
+/// Refuses missing frames, or warns of them.
+fn check_missing(input: &Path, missing: &[i64], on_missing: OnMissing) -> Result<()> {
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let problem = format!("has no files of the frames {}", frames::summary(missing));
+    if on_missing == OnMissing::Fail {
+        return Err(Error::file(input, problem, "give other --frames, or --on-missing skip"));
+    }
+    output::warn(format_args!("{}: {problem}", input.display()));
+    Ok(())
+}

@@ -1,0 +1,19 @@
+//! Finishing: styles on pictures, sequences and videos from file to file, and on frames that the renderer draws.
+//!
+//! | module | content |
+//! |---|---|
+//! | [`apply`] | pictures and sequences of pictures: tasks, memory, filters, masks, reports |
+//! | [`video`] | videos, frame by frame through ffmpeg |
+//! | [`sheet`] | contact sheets |
+//! | [`shot`] | frames of a scene, rendered and stylized |
+//! | [`staging`] | options of scenes, as command lines have them |
+//! | [`stylize`] | styles, presets and looks, and what stylizes a frame on the renderer's device |
+
+#![forbid(unsafe_code)]
+
+pub mod apply;
+pub mod sheet;
+pub mod shot;
+pub mod staging;
+pub mod stylize;
+pub mod video;

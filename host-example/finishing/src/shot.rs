@@ -1,0 +1,231 @@
+//! A scene seen by a camera over a number of frames, rendered and stylized without a window.
+
+use std::f32::consts::TAU;
+
+use crate::stylize::Stylizer;
+use crate::stylize::style::Style;
+use isophote_example::kernels::Kernels;
+use isophote_files::error::Result;
+use isophote_loader::Library;
+use isophote_pictures::floats::Picture;
+use isophote_render::background::Background;
+use isophote_render::gpu::Gpu;
+use isophote_render::look::Look;
+use isophote_render::readback::Readback;
+use isophote_render::renderer::Renderer;
+use isophote_render::targets::{Target, Targets};
+use isophote_scene::Scene;
+use isophote_scene::camera::{Direction, Framing, Orbit, View};
+use isophote_scene::pose::Pose;
+
+/// What is rendered of a scene.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Size of the pictures in pixels.
+    pub size: (u32, u32),
+    /// Number of the first frame, and of frames up to the last.
+    pub range: (i64, u64),
+    /// Whether the camera turns once around the scene over all frames.
+    pub turntable: bool,
+    /// How the default camera and turntables frame the scene.
+    pub framing: Framing,
+    /// Node of the camera of the file that is looked through, but for turntables; the default camera otherwise.
+    pub camera: Option<usize>,
+    /// Where the sun is, seen from the camera, if not where it usually is.
+    pub light: Option<Direction>,
+    /// Brightness in stops.
+    pub exposure: f32,
+    /// What is behind the scene.
+    pub background: Background,
+    /// Whether the scene casts its shadow on an invisible ground.
+    pub ground: bool,
+    /// The animation that plays.
+    pub animation: Option<usize>,
+    /// Time of frame 1 in seconds.
+    pub start: f32,
+    /// Frames per second.
+    pub fps: f32,
+    /// Whether pictures are scene-referred, as they are before exposure and tone mapping.
+    pub scene_referred: bool,
+    /// Whether rest positions are rendered whatever the style.
+    pub rest_positions: bool,
+}
+
+/// A scene on a graphics device of its own.
+pub struct Shot {
+    options: Options,
+    scene: Scene,
+    pose: Pose,
+    look: Look,
+    camera: Camera,
+    /// Number of the frame drawn last, and what it was seen by.
+    drawn: Option<(i64, View)>,
+    gpu: Gpu,
+    renderer: Renderer,
+    stylizer: Option<Stylizer>,
+    readback: Readback,
+}
+
+impl Shot {
+    /// Opens a device and makes everything ready.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Input`] for scenes and styles that cannot be drawn,
+    /// [`isophote_files::error::Error::Failure`] without a device or when it fails.
+    pub fn new(scene: Scene, style: Option<(&Library, Style)>, options: Options) -> Result<Self> {
+        let gpu = Gpu::open()?;
+        let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &scene, options.size)?;
+        renderer.set_background(&options.background, options.scene_referred)?;
+        if options.ground {
+            renderer.add_ground();
+        }
+        let mut stylizer = None;
+        if let Some((library, style)) = style {
+            let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
+            stylizer = Some(Stylizer::new(&kernels, library, style, options.size)?);
+        }
+        let wants_rest = stylizer.as_ref().map_or(Ok(false), Stylizer::wants_rest_positions)?;
+        if options.rest_positions || wants_rest {
+            renderer.add_rest_positions();
+        }
+        gpu.check()?;
+        let pose = Pose::at_rest(&scene);
+        let camera = Camera::choose(&options, &scene);
+        let view = camera.view(&scene, &pose, 0.0);
+        let mut look = Look::for_scene(&scene, &pose, &view, options.light, options.background.environment());
+        look.exposure *= options.exposure.exp2();
+        let mut shot = Self {
+            look,
+            camera,
+            readback: Readback::default(),
+            drawn: None,
+            options,
+            scene,
+            pose,
+            gpu,
+            renderer,
+            stylizer,
+        };
+        shot.bind()?;
+        Ok(shot)
+    }
+
+    /// Lets the style read the colour that is asked for.
+    fn bind(&mut self) -> Result<()> {
+        let targets = self.renderer.targets();
+        match &mut self.stylizer {
+            Some(stylizer) if self.options.scene_referred => stylizer.bind_scene_referred(targets),
+            Some(stylizer) => stylizer.bind(targets),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes the pose and the view of a frame, drawn or not.
+    fn go_to(&mut self, number: i64) -> View {
+        let Options { animation, start, fps, range: (first, count), .. } = self.options;
+        self.pose.update(&self.scene, animation, start + (number - 1) as f32 / fps);
+        self.camera.view(&self.scene, &self.pose, (number - first) as f32 / count as f32)
+    }
+
+    /// Renders and stylizes the frame of a number. It does not depend on those drawn before: its motion is that
+    /// from the frame of the number before it, and none in frame 1; where the style depends on frames before, those that
+    /// were not drawn are drawn first.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Failure`] when the device fails.
+    pub fn draw(&mut self, number: i64) -> Result<Picture> {
+        let follows = self.drawn.as_ref().is_some_and(|(drawn, _)| *drawn == number - 1);
+        if number == 1 || !follows {
+            let depth = self.stylizer.as_ref().map_or(0, Stylizer::depth) as i64;
+            // Nothing comes before frame 1.
+            let first = if number < 1 { number - depth } else { (number - depth).max(1) };
+            if let Some(stylizer) = &mut self.stylizer {
+                stylizer.forget();
+            }
+            self.begin_before(first);
+            for before in first..number {
+                self.encode(before)?;
+            }
+        }
+        self.encode(number)?;
+        let targets = self.renderer.targets();
+        let plain = if self.options.scene_referred { &targets.radiance } else { &targets.color };
+        let result = self.stylizer.as_ref().map_or(&plain.view, Stylizer::output);
+        self.readback.read(&self.gpu, result.texture())
+    }
+
+    /// Lets the renderer know where everything was before a frame.
+    fn begin_before(&mut self, number: i64) {
+        if number == 1 {
+            self.renderer.forget_motion();
+        } else {
+            let view = self.go_to(number - 1);
+            self.renderer.pass_over(&self.scene, &self.pose, &view, &self.look);
+        }
+    }
+
+    /// Renders and stylizes the frame that follows the last one.
+    fn encode(&mut self, number: i64) -> Result<()> {
+        let view = self.go_to(number);
+        self.drawn = Some((number, view));
+        let mut is_rebuilt = false;
+        if let Some(stylizer) = &mut self.stylizer {
+            stylizer.at_frame(number)?;
+            is_rebuilt = stylizer.update()?;
+        }
+        if is_rebuilt {
+            self.bind()?;
+        }
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        self.renderer.encode(&mut encoder, &self.scene, &self.pose, &view, &self.look);
+        if let Some(stylizer) = &mut self.stylizer {
+            stylizer.encode(&mut encoder)?;
+        }
+        self.gpu.queue.submit([encoder.finish()]);
+        Ok(())
+    }
+
+    /// What the frame drawn last was seen by.
+    pub fn view(&self) -> Option<&View> {
+        self.drawn.as_ref().map(|(_, view)| view)
+    }
+
+    /// What the renderer knows of the pixels of the frame drawn last, as `choose` picks it; nothing where that was
+    /// not rendered.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Failure`] when the device fails.
+    pub fn read(&mut self, choose: impl FnOnce(&Targets) -> Option<&Target>) -> Result<Option<Picture>> {
+        let target = choose(self.renderer.targets());
+        target.map(|target| self.readback.read(&self.gpu, &target.texture)).transpose()
+    }
+}
+
+/// Where the pictures are taken from.
+enum Camera {
+    File(usize, Orbit),
+    Framing(Orbit),
+    Turntable(Orbit),
+}
+
+impl Camera {
+    fn choose(options: &Options, scene: &Scene) -> Self {
+        let aspect = options.size.0 as f32 / options.size.1 as f32;
+        match options.camera {
+            _ if options.turntable => Self::Turntable(Orbit::turntable(scene, aspect, options.framing)),
+            Some(node) => Self::File(node, Orbit::framing(scene, aspect, options.framing)),
+            None => Self::Framing(Orbit::framing(scene, aspect, options.framing)),
+        }
+    }
+
+    /// The view at a share of the sequence in [0, 1).
+    fn view(&self, scene: &Scene, pose: &Pose, share: f32) -> View {
+        match self {
+            Self::File(node, fallback) => {
+                View::from_node(scene, pose, *node).unwrap_or_else(|| fallback.view())
+            }
+            Self::Framing(orbit) => orbit.view(),
+            Self::Turntable(orbit) => orbit.turned(share * TAU).view(),
+        }
+    }
+}

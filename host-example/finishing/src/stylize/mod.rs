@@ -1,0 +1,242 @@
+//! Stylizing what the renderer has drawn, on the renderer's own device.
+//!
+//! The library plans, the host executes: the plan's passes are recorded into the host's own command encoder,
+//! after the scene's, and read the renderer's textures directly. Once warm, a frame creates no GPU object and
+//! is one submission.
+
+pub mod lengths;
+pub mod looks;
+pub mod precision;
+pub mod preset;
+pub mod source;
+pub mod style;
+pub mod title;
+
+use std::sync::Arc;
+
+use self::style::{Setting, Style};
+use isophote_example::frame_runner::{FrameRunner, Named};
+use isophote_example::guides;
+use isophote_example::history::Past;
+use isophote_example::kernels::Kernels;
+use isophote_example::plan_runner::Counts;
+use isophote_files::error::{AtPlace, Result};
+use isophote_loader::abi::IsophoteRequest;
+use isophote_loader::catalogue::Kind;
+use isophote_loader::{Library, Plan};
+use isophote_render::targets::{Target, Targets};
+
+/// A style for frames of one size, ready to be recorded.
+#[derive(Debug)]
+pub struct Stylizer {
+    style: Style,
+    frames: FrameRunner,
+    edited: bool,
+}
+
+impl Stylizer {
+    /// Makes `style` ready for frames of `size`, with all guides that the renderer has. `kernels` are
+    /// those of the renderer's device.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Input`] when an input that the style needs is open, [`isophote_files::error::Error::Failure`] when the device refuses.
+    pub fn new(kernels: &Arc<Kernels>, library: &Library, style: Style, size: (u32, u32)) -> Result<Self> {
+        let request = frame_request(library, &style, size)?;
+        Self::with_request(kernels, library, style, request)
+    }
+
+    /// Makes `style` ready for pictures as `request` says. `kernels` are those of the device that they are on.
+    ///
+    /// # Errors
+    /// As [`Stylizer::new`].
+    pub fn with_request(
+        kernels: &Arc<Kernels>,
+        library: &Library,
+        style: Style,
+        request: IsophoteRequest,
+    ) -> Result<Self> {
+        let frames = FrameRunner::new(kernels, library, style.named(), request)?;
+        Ok(Self { style, frames, edited: false })
+    }
+
+    /// Frames before its own that a frame depends on.
+    pub fn depth(&self) -> usize {
+        self.frames.depth()
+    }
+
+    /// Whether the renderer must [add rest positions](isophote_render::renderer::Renderer::add_rest_positions) before targets are bound.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Failure`] when the library fails.
+    pub fn wants_rest_positions(&self) -> Result<bool> {
+        self.style.can_use(Kind::Position)
+    }
+
+    /// Takes the next frame for the first: those before are of another shot.
+    pub fn forget(&mut self) {
+        self.frames.forget();
+    }
+
+    /// Whether the output is a colour (linear Rec.709, premultiplied alpha, `Rgba32Float`) or a scalar
+    /// (`R32Float`).
+    pub fn kind(&self) -> Kind {
+        self.style.kind
+    }
+
+    /// What [`Stylizer::encode`] writes. Another one after [`Stylizer::resize`], and after
+    /// [`Stylizer::update`] when that says so.
+    pub fn output(&self) -> &wgpu::TextureView {
+        self.frames.output()
+    }
+
+    /// Sets a parameter; it takes effect with the next [`Stylizer::update`].
+    ///
+    /// # Errors
+    /// As [`Style::set`].
+    pub fn set(&mut self, setting: &Setting) -> Result<()> {
+        self.style.set(setting)?;
+        self.edited = true;
+        Ok(())
+    }
+
+    /// Gives animated parameters their values at a frame, and noise that is held its look; both take effect with the next
+    /// [`Stylizer::update`].
+    ///
+    /// # Errors
+    /// As [`Style::at_frame`].
+    pub fn at_frame(&mut self, frame: i64) -> Result<()> {
+        self.edited |= self.style.at_frame(frame)? || self.frames.request().frame != frame;
+        self.frames.number(frame);
+        Ok(())
+    }
+
+    /// Takes over what [`Stylizer::set`] has set and which frames are known now, and says whether the output is another
+    /// texture and [`Stylizer::bind`] must be called. Parameters that are not structural cost one small upload.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Failure`] when the device refuses; the style must then be made anew.
+    pub fn update(&mut self) -> Result<bool> {
+        let is_edited = std::mem::take(&mut self.edited);
+        self.frames.update(self.style.named(), is_edited)
+    }
+
+    /// Changes the size of the frames; [`Stylizer::bind`] must be called then.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Input`] for impossible sizes, [`isophote_files::error::Error::Failure`] when the device refuses; the style must then be
+    /// made anew.
+    pub fn resize(&mut self, size: (u32, u32)) -> Result<()> {
+        self.resize_at_scale(size, self.frames.request().scale)
+    }
+
+    /// As [`Stylizer::resize`], where `scale` is the size over that of the full picture.
+    ///
+    /// # Errors
+    /// As [`Stylizer::resize`].
+    pub fn resize_at_scale(&mut self, size: (u32, u32), scale: f32) -> Result<()> {
+        if self.frames.resize(self.style.named(), size, scale)? {
+            self.edited = false;
+        }
+        Ok(())
+    }
+
+    /// Compiles what later frames need too, where they look at those before, so that none of them waits for it.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Failure`] when the device refuses.
+    pub fn compile_all(&self) -> Result<()> {
+        self.frames.compile_all(self.style.named())
+    }
+
+    /// Reads these targets from now on, with the colour that is display-referred, which must have the size given
+    /// to [`Stylizer::new`]. The same ones again cost nothing.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Failure`] when they are too small or the device refuses.
+    pub fn bind(&mut self, targets: &Targets) -> Result<()> {
+        self.bind_with(&targets.color, targets)
+    }
+
+    /// As [`Stylizer::bind`], with the colour that is scene-referred; so is the result then.
+    ///
+    /// # Errors
+    /// As [`Stylizer::bind`].
+    pub fn bind_scene_referred(&mut self, targets: &Targets) -> Result<()> {
+        self.bind_with(&targets.radiance, targets)
+    }
+
+    /// Reads pictures of these names, as large as was asked for or larger.
+    ///
+    /// # Errors
+    /// As [`Stylizer::bind`].
+    pub fn bind_inputs(&mut self, inputs: &[(&str, &wgpu::TextureView)]) -> Result<()> {
+        self.frames.bind(inputs)
+    }
+
+    fn bind_with(&mut self, color: &Target, targets: &Targets) -> Result<()> {
+        self.frames.bind(&guides::inputs(color, targets))
+    }
+
+    /// Records the whole style on a frame; the next call is of the next one. Nothing is created and nothing submitted.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Failure`] when nothing is bound.
+    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
+        self.frames.encode(encoder)
+    }
+
+    /// As [`Stylizer::encode`], so many passes from one on; says whether the last was among them.
+    ///
+    /// # Errors
+    /// As [`Stylizer::encode`].
+    pub fn encode_some(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        from: usize,
+        count: usize,
+    ) -> Result<bool> {
+        self.frames.encode_some(encoder, from, count)
+    }
+
+    /// The passes with their textures.
+    pub fn plan(&self) -> &Plan {
+        self.frames.plan()
+    }
+
+    /// What was made on the device for this style so far.
+    pub fn counts(&self) -> Counts {
+        self.frames.counts()
+    }
+}
+
+impl Style {
+    /// Graph with its name.
+    fn named(&self) -> Named<'_> {
+        Named { name: &self.name, graph: &self.graph }
+    }
+
+    /// The plan of a frame where so many frames before it are known.
+    ///
+    /// # Errors
+    /// As [`Named::plan`].
+    pub fn plan(&self, library: &Library, request: &IsophoteRequest, known: usize) -> Result<Plan> {
+        self.named().plan(library, request, known)
+    }
+
+    /// What frames read of those before, where all are known.
+    ///
+    /// # Errors
+    /// As [`Named::plan`].
+    pub fn past(&self, library: &Library, request: &IsophoteRequest) -> Result<Past> {
+        self.named().past(library, request)
+    }
+}
+
+/// What the renderer's frames are: linear light, premultiplied, with guides.
+///
+/// # Errors
+/// [`isophote_files::error::Error::Input`] for impossible sizes.
+pub fn frame_request(library: &Library, style: &Style, size: (u32, u32)) -> Result<IsophoteRequest> {
+    guides::request(library, size, style.lengths.reference_height())
+        .map_err(|e| e.at("--size", "choose another size"))
+}

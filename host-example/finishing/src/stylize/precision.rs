@@ -1,0 +1,53 @@
+//! How precisely graphics devices compute.
+
+use clap::ValueEnum;
+
+use super::style::Style;
+use isophote_files::error::{AtPlace, Result};
+use isophote_loader::abi::{
+    ISOPHOTE_PRECISION_EXACT, ISOPHOTE_PRECISION_FAST, ISOPHOTE_PRECISION_HALF, IsophotePrecision,
+};
+
+/// How precisely graphics devices compute a style; the CPU always computes exactly.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Precision {
+    /// As the CPU does, in 32-bit floats.
+    #[default]
+    Exact,
+    /// Colours in 16-bit floats: half the memory and traffic, differences that nobody sees.
+    Half,
+    /// As half, with colours interpolated by the device's samplers.
+    Fast,
+}
+
+impl Precision {
+    /// The library's number for it.
+    const fn number(self) -> IsophotePrecision {
+        match self {
+            Self::Exact => ISOPHOTE_PRECISION_EXACT,
+            Self::Half => ISOPHOTE_PRECISION_HALF,
+            Self::Fast => ISOPHOTE_PRECISION_FAST,
+        }
+    }
+
+    /// As options have it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Half => "half",
+            Self::Fast => "fast",
+        }
+    }
+
+    /// Lets graphics devices compute a style so.
+    ///
+    /// # Errors
+    /// [`Error::Failure`](isophote_files::error::Error::Failure) when the library computes exactly alone.
+    pub fn apply(self, style: &Style) -> Result<()> {
+        if self == Self::Exact {
+            return Ok(());
+        }
+        let set = style.graph.set_precision(self.number());
+        set.map_err(|e| e.at("--precision", "use the library that comes with this program"))
+    }
+}

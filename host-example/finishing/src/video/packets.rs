@@ -1,0 +1,150 @@
+//! What lies in a video, packet by packet, and whether that is all that its container promises.
+
+use std::path::Path;
+
+use super::process::{self, Process, at};
+use super::stream::{Promise, Stream};
+use isophote_files::error::Result;
+
+/// What to do about a video whose packets cannot be read.
+const FIX: &str = "name an intact video that ffmpeg reads";
+/// Seconds by which times are rounded.
+const ROUNDED: f64 = 0.05;
+
+/// Packets of the first stream of pictures, in the order of the file.
+#[derive(Debug, Default, PartialEq)]
+pub struct Packets {
+    /// All of them.
+    total: u64,
+    /// When those are shown that are not only decoded, in seconds from where the file begins; nothing where it does not tell.
+    shown: Vec<Option<f64>>,
+    /// When the last one has been shown, in seconds.
+    end: f64,
+    /// What ffmpeg complains of, also about sound and whatever else lies in the file.
+    complaint: Option<String>,
+}
+
+impl Packets {
+    /// Reads them.
+    ///
+    /// # Errors
+    /// What ffmpeg complains of.
+    pub fn of(path: &Path, stream: &Stream) -> Result<Self> {
+        Self::read(path, stream, &[])
+    }
+
+    fn read(path: &Path, stream: &Stream, more: &[&str]) -> Result<Self> {
+        let mut command = process::command("ffprobe");
+        // All streams, so that sound that is missing is noticed as well.
+        command.args(["-v", "error", "-of", "csv"]).args(more).arg("-show_entries");
+        command.arg("packet=stream_index,pts_time,duration_time,flags:format=start_time");
+        process::read(&mut command, path);
+        let (text, complaints) = at(Process::heard(&mut command), path, FIX)?;
+        Ok(Self { complaint: complaints.first(), ..Self::understand(&text, stream.index) })
+    }
+
+    /// Takes what ffprobe prints for numbers.
+    fn understand(text: &str, stream: u32) -> Self {
+        let seconds = |text: &str| text.trim().parse::<f64>().ok().filter(|seconds| seconds.is_finite());
+        let start = text.lines().find_map(|line| seconds(line.strip_prefix("format,")?)).unwrap_or(0.0);
+        let mut packets = Self::default();
+        for line in text.lines().filter_map(|line| line.strip_prefix("packet,")) {
+            let mut fields = line.split(',');
+            let mut field = || fields.next().unwrap_or_default();
+            if field().parse() != Ok(stream) {
+                continue;
+            }
+            let (at, length, flags) = (seconds(field()), seconds(field()), field());
+            packets.total += 1;
+            packets.end = packets.end.max(at.unwrap_or(0.0) + length.unwrap_or(0.0));
+            // What is marked by D is decoded and not shown.
+            if !flags.contains('D') {
+                packets.shown.push(at.map(|at| at - start));
+            }
+        }
+        packets
+    }
+
+    /// When frames are shown, in order; nothing where the file does not tell of all.
+    pub fn times(&self) -> Vec<f64> {
+        let mut times = self.shown.iter().copied().collect::<Option<Vec<f64>>>().unwrap_or_default();
+        times.sort_unstable_by(f64::total_cmp);
+        times
+    }
+
+    /// What is missing of what the container promises, in words.
+    ///
+    /// # Errors
+    /// As [`Packets::of`].
+    pub fn missing(&self, path: &Path, stream: &Stream) -> Result<Option<String>> {
+        let complaint = || self.complaint.as_ref().map(|said| format!("is damaged or cut short: {said}"));
+        let is_short = |packets: &Self| match stream.promise {
+            Promise::None => false,
+            Promise::Frames { count, slack } => packets.total + slack < count,
+            Promise::Seconds(seconds) => packets.end + ROUNDED + 2.0 / stream.frames_per_second() < seconds,
+        };
+        if !is_short(self) {
+            return Ok(complaint());
+        }
+        // Frames that the file itself leaves out are there nevertheless.
+        let is_trimmed = matches!(stream.promise, Promise::Frames { slack: 0, .. })
+            && !is_short(&Self::read(path, stream, &["-ignore_editlist", "1"])?);
+        let about = if matches!(stream.promise, Promise::Seconds(_)) { "about " } else { "" };
+        let said =
+            || format!("is damaged or cut short: it holds {} of {about}{} frames", self.total, stream.frames);
+        Ok(if is_trimmed { complaint() } else { Some(said()) })
+    }
+
+    /// Whether that many decoded frames are fewer than are shown, where the container counts exactly.
+    pub fn lacks(&self, stream: &Stream, decoded: u64) -> bool {
+        let shown = self.shown.len() as u64;
+        let slack = match stream.promise {
+            Promise::Frames { slack, .. } if stream.is_steady => slack,
+            _ => return false,
+        };
+        decoded + slack < shown
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::video::closed::Ratio;
+
+    const TEXT: &str = "packet,1,1.500000,0.500000,K_\npacket,1,2.500000,0.500000,__\npacket,1,2.000000,0.500000,__\n\
+        packet,0,8.000000,0.500000,K_\npacket,1,1.000000,0.500000,_D\nformat,1.000000\n";
+
+    #[test]
+    fn packets_are_counted_and_timed() {
+        let packets = Packets::understand(TEXT, 1);
+        assert_eq!((packets.total, packets.end), (4, 3.0));
+        assert_eq!(packets.times(), [0.5, 1.0, 1.5]);
+        let untimed = Packets::understand("packet,0,0.000000,0.040000,K_\npacket,0,N/A,0.040000,__\n", 0);
+        assert_eq!((untimed.total, untimed.times().len()), (2, 0));
+    }
+
+    #[test]
+    fn what_is_missing_is_told_in_numbers() {
+        let packets = Packets::understand(TEXT, 1);
+        let mut stream = Stream::of_frames((4, 4), Ratio::new(2, 1).unwrap());
+        let mut missing = |promise| {
+            (stream.promise, stream.frames) = (promise, 9);
+            packets.missing(Path::new("none"), &stream).unwrap()
+        };
+        for whole in [
+            Promise::None,
+            Promise::Frames { count: 4, slack: 0 },
+            Promise::Frames { count: 5, slack: 1 },
+            Promise::Seconds(4.0),
+        ] {
+            assert_eq!(missing(whole), None, "{whole:?}");
+        }
+        let said = missing(Promise::Frames { count: 6, slack: 1 });
+        assert_eq!(said.as_deref(), Some("is damaged or cut short: it holds 4 of 9 frames"));
+        assert!(missing(Promise::Seconds(4.1)).is_some_and(|s| s.contains("of about 9 frames")));
+        stream.promise = Promise::Frames { count: 4, slack: 0 };
+        assert!(packets.lacks(&stream, 2) && !packets.lacks(&stream, 3));
+        stream.is_steady = false;
+        assert!(!packets.lacks(&stream, 2));
+    }
+}

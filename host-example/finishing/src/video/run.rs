@@ -1,0 +1,234 @@
+//! A video from end to end: decoded, filtered and encoded at the same time.
+
+use std::collections::VecDeque;
+use std::io::Read;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+
+use super::container::is_pipe;
+use super::decode::{self, OnError};
+use super::encode::{Encoder, Encoding};
+use super::input::Input;
+use super::process::{End, Process, at};
+use super::stream::Stream;
+use crate::apply::filter::Filter;
+use crate::apply::masks::Masks;
+use crate::apply::memory::Budget;
+use crate::apply::reel::{Held, Window};
+use crate::apply::report::{Outcome, Report};
+use crate::apply::tasks::Task;
+use isophote_files::error::{Error, Result};
+use isophote_files::files::{self, Existing};
+use isophote_files::stop::Stop;
+use isophote_pictures::exr::Picture;
+use isophote_pictures::pixels::{Pixels, Precision};
+use isophote_pictures::read::{ImageState, Source};
+use isophote_pictures::write::Format;
+
+/// What to do about a video that is damaged.
+const DAMAGED: &str = "use an intact file, or give --on-error skip to write what can be read";
+/// Frames between a process and the filter.
+const AHEAD: usize = 2;
+
+/// A video that is to be filtered.
+#[derive(Debug)]
+pub struct Job<'a> {
+    /// What is read: a file, or `-`.
+    pub input: &'a Path,
+    /// What is written: a file, or `-`.
+    pub output: &'a Path,
+    /// Treatment of a file that is there.
+    pub existing: Existing,
+    /// Options of the encoder instead of the usual ones.
+    pub encode: Option<&'a str>,
+    /// What to do where the input is damaged.
+    pub on_error: OnError,
+    /// Whether lines of JSON are wanted.
+    pub json: bool,
+    /// Masks of the frames, which count from 1.
+    pub masks: &'a Masks,
+    /// Set when the run shall end early.
+    pub stop: &'a Stop,
+}
+
+/// Filters a video. The output gets its name when it is whole.
+///
+/// # Errors
+/// [`Error::Input`] for what ffmpeg does not read or write; [`Error::Failure`] without ffmpeg, when it or the filter fails,
+/// the video is damaged or the disk full, or the run is stopped.
+pub fn run(job: &Job<'_>, filter: &mut Filter) -> Result<()> {
+    let mut input = Input::open(job.input)?;
+    let missing = input.missing()?;
+    if let Some(missing) = missing.as_ref().filter(|_| job.on_error == OnError::Fail) {
+        return Err(job.damaged(missing));
+    }
+    let frames = usize::try_from(input.stream.frames).unwrap_or(usize::MAX);
+    let report = Report::about(frames, job.json && !is_pipe(job.output));
+    let work = |place: &Path| job.all(filter, &mut input, missing, place, &report);
+    let done = if is_pipe(job.output) {
+        work(job.output)
+    } else {
+        files::write_by_path(job.output, job.existing, work)
+    };
+    if done.is_err() {
+        report.nothing_written();
+    }
+    report.end(done.is_ok() && !is_pipe(job.output));
+    done
+}
+
+/// Frames that went through the filter.
+struct Filtered {
+    count: u64,
+    /// Where they went; nothing where there were none.
+    encoder: Option<Encoder>,
+}
+
+impl Job<'_> {
+    /// Decodes, filters and encodes to `place`. Of the input something may be missing, in words.
+    fn all(
+        &self,
+        filter: &mut Filter,
+        input: &mut Input<'_>,
+        missing: Option<String>,
+        place: &Path,
+        report: &Report,
+    ) -> Result<()> {
+        let stream = &input.stream.clone();
+        let mut decoder = decode::decoder(input.origin(), stream, None, self.on_error);
+        let mut decoder = at(Process::start(&mut decoder), self.input, "name a video that ffmpeg reads")?;
+        let (from, into) = (decoder.child().stdout.take(), decoder.child().stdin.take());
+        let Some(mut from) = from else { return Err(broken("decoding")) };
+        let budget = Budget::new(u64::MAX, 1);
+        let complaints = decoder.complaints();
+        // Frames after a complaint are of no use where the run is to fail.
+        let fails = self.on_error == OnError::Fail;
+        let is_over = || fails && complaints.first().is_some();
+        let more = input.more();
+        let encoder = |channels| {
+            let (output, options) = (self.output, self.encode);
+            Encoder::start(&Encoding { stream, channels, more, output, options }, place)
+        };
+        let (filtered, cut) = std::thread::scope(|scope| {
+            // It ends with the stream, or with the decoder.
+            let relaying = input.pipe().zip(into).map(|(pipe, into)| scope.spawn(move || pipe.relay(into)));
+            let (send, decoded) = sync_channel(AHEAD);
+            let reading = scope.spawn(move || read(stream, &mut from, &send, &is_over));
+            let filtered = self.filter(filter, (decoded, &budget), &encoder, report);
+            let read = reading.join().map_err(|_| broken("decoding"));
+            let cut = relaying.map_or(Ok(None), |relaying| relaying.join().map_err(|_| broken("reading")));
+            let filtered = filtered?;
+            read?;
+            Ok::<_, Error>((filtered, cut?))
+        })?;
+        let Filtered { count, encoder } = filtered;
+        if encoder.as_ref().is_none_or(Encoder::is_open) {
+            self.check(input, count, missing.or(cut), &decoder.finish(), report)?;
+        }
+        let none = || Error::file(self.input, "has no frames that can be decoded", "name a video");
+        encoder.ok_or_else(none)?.end()
+    }
+
+    /// Whether all frames of the input were decoded well; where what is damaged is skipped, says what it was.
+    fn check(
+        &self,
+        input: &Input<'_>,
+        count: u64,
+        missing: Option<String>,
+        end: &End,
+        report: &Report,
+    ) -> Result<()> {
+        let said = end.complaints.first().or_else(|| (!end.is_good).then(|| end.said()));
+        if missing.is_none() && said.is_none() && !input.lacks(count) {
+            return Ok(());
+        }
+        let of_all = match (&missing, input.stream.frames) {
+            (None, 1..) => format!(" of {}", input.stream.frames),
+            _ => String::new(),
+        };
+        let mut problem =
+            missing.unwrap_or_else(|| if count == 0 { "cannot be decoded" } else { "is damaged" }.to_owned());
+        problem += &format!(", and {count}{of_all} frames could be decoded");
+        problem += &said.map_or_else(String::new, |said| format!(": {said}"));
+        match self.on_error {
+            OnError::Fail => Err(self.damaged(&problem)),
+            OnError::Skip => {
+                report.warn(&format!("{}: {problem}", self.name()));
+                Ok(())
+            }
+        }
+    }
+
+    fn damaged(&self, problem: &str) -> Error {
+        Error::failure(format!("{}: {problem}", self.name()), DAMAGED)
+    }
+
+    /// The input's name for people.
+    fn name(&self) -> String {
+        if is_pipe(self.input) { "standard input".to_owned() } else { self.input.display().to_string() }
+    }
+
+    /// Filters all frames and hands them to an encoder, which is started for frames of so many channels.
+    fn filter(
+        &self,
+        filter: &mut Filter,
+        (decoded, budget): (Receiver<Pixels>, &Budget),
+        start: &dyn Fn(u32) -> Result<Encoder>,
+        report: &Report,
+    ) -> Result<Filtered> {
+        let name = self.input.display().to_string();
+        let [past, future] = filter.frames()?;
+        let hold = |(pixels, number)| {
+            let picture = Picture::alone(pixels);
+            let state = ImageState::DisplayReferred;
+            let mut source = Source { pictures: vec![picture], state, profile: None, exr: None };
+            self.masks.add(&mut source, Some(number))?;
+            source.check()?;
+            Ok::<_, Error>(Arc::new(Held::new(Some(number), source, false, budget.share())))
+        };
+        let mut decoded = decoded.into_iter().zip(1..).map(hold);
+        let mut frames: VecDeque<Arc<Held<'_>>> = VecDeque::new();
+        let (mut encoder, mut count) = (None::<Encoder>, 0);
+        loop {
+            if self.stop.is_requested() {
+                return Err(Error::failure(format!("stopped after {count} frames"), "start again"));
+            }
+            let number = count + 1;
+            while frames.back().and_then(|last| last.number).is_none_or(|last| last < number + future) {
+                let Some(next) = decoded.next().transpose()? else { break };
+                frames.push_back(next);
+            }
+            frames.retain(|held| held.number >= Some(number - past));
+            let Some(own) = frames.iter().find(|held| held.number == Some(number)) else { break };
+            count = number;
+            let window = Window { own: Arc::clone(own), frames: frames.iter().cloned().collect() };
+            let filtered = filter.run(&name, &window, None, Format::Png, &mut |_| {})?;
+            let Some(result) = filtered.results.into_iter().next() else { return Err(broken("filtering")) };
+            let result = result.converted(Precision::U16);
+            if encoder.is_none() {
+                encoder = Some(start(result.channels())?);
+            }
+            if encoder.as_mut().is_some_and(|encoder| !encoder.put(&result)) {
+                // It has ended, and says why.
+                break;
+            }
+            let task = Task { frame: Some(count), input: self.input.into(), output: self.output.into() };
+            report.frame(&task, &Outcome::Written(filtered.replaced));
+        }
+        Ok(Filtered { count: count.unsigned_abs(), encoder })
+    }
+}
+
+/// Hands all frames on, until nobody takes them or it is over.
+fn read(stream: &Stream, from: &mut impl Read, send: &SyncSender<Pixels>, is_over: &impl Fn() -> bool) {
+    while let Some(pixels) = decode::frame(stream, from).filter(|_| !is_over()) {
+        if send.send(pixels).is_err() {
+            return;
+        }
+    }
+}
+
+fn broken(what: &str) -> Error {
+    Error::failure(format!("{what} stopped"), "this is a mistake in the program; please report it")
+}

@@ -1,0 +1,28 @@
+//! Pictures: pixels, colour spaces, and the files that pictures are read from and written to.
+//!
+//! | module | content |
+//! |---|---|
+//! | [`pixels`] | pixels in the precision of their file |
+//! | [`floats`] | pictures of 32-bit floats, saved as PNG or EXR |
+//! | [`space`], [`primaries`] | colour spaces and their primaries |
+//! | [`convert`] | changes between image states and between primaries |
+//! | [`working`] | space in which a picture is filtered |
+//! | [`read`] | PNG, JPEG, TIFF, WebP, HDR and EXR files to pictures |
+//! | [`write`](mod@write) | pictures to files |
+//! | [`exr`] | layers, guides, masks and mattes of EXR files |
+//! | [`mix`] | mixing of two pictures by a mask |
+
+#![forbid(unsafe_code)]
+
+pub mod convert;
+pub mod exr;
+pub mod floats;
+mod jpeg;
+pub mod mix;
+pub mod pixels;
+mod png;
+pub mod primaries;
+pub mod read;
+pub mod space;
+pub mod working;
+pub mod write;

@@ -1,0 +1,199 @@
+//! Results to files, as the extension says.
+
+use std::path::Path;
+
+use image::{ExtendedColorType, ImageEncoder, ImageResult};
+
+use crate::exr::{ExrFile, Picture, components};
+use crate::floats;
+use crate::pixels::{Pixels, Precision, Samples};
+use crate::read::{ImageState, Source};
+use isophote_files::error::{Error, Result};
+use isophote_files::files::{self, Existing};
+use isophote_files::output;
+
+/// Quality of JPEG files, 1 to 100.
+const JPEG_QUALITY: u8 = 95;
+
+/// A kind of file that can be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// 8 or 16 bit, with alpha.
+    Png,
+    /// 8 bit, without alpha.
+    Jpeg,
+    /// 8 or 16 bit, or floats of linear light where the picture was such, with alpha.
+    Tiff,
+    /// Half or float.
+    Exr,
+}
+
+impl Format {
+    /// The format that the extension names.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for others.
+    pub fn of(path: &Path) -> Result<Self> {
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+        match extension.to_ascii_lowercase().as_str() {
+            "png" => Ok(Self::Png),
+            "jpg" | "jpeg" => Ok(Self::Jpeg),
+            "tif" | "tiff" => Ok(Self::Tiff),
+            "exr" => Ok(Self::Exr),
+            _ => Err(Error::file(
+                path,
+                "is not a kind of picture that is written",
+                "name a .png, .jpg, .tif or .exr file",
+            )),
+        }
+    }
+
+    /// What its numbers stand for when they come from a picture of another state.
+    pub fn state(self, source: ImageState) -> ImageState {
+        match self {
+            Self::Png | Self::Jpeg => ImageState::DisplayReferred,
+            Self::Tiff => source,
+            Self::Exr => ImageState::SceneReferred,
+        }
+    }
+}
+
+/// Writes the results of what `source` held, one for each of its pictures, in the image state of `format`.
+/// All of them go into `exr`, an EXR file that they came from; of other files there is one picture.
+///
+/// # Errors
+/// As [`files::write()`].
+pub fn write(
+    path: &Path,
+    existing: Existing,
+    format: Format,
+    mut results: Vec<Pixels>,
+    source: &Source,
+    exr: Option<ExrFile>,
+) -> Result<()> {
+    if let (Format::Exr, Some(mut exr)) = (format, exr) {
+        for (at, result) in results.drain(..).enumerate() {
+            exr.replace(at, &result)
+                .map_err(|problem| Error::file(path, problem, "choose another picture"))?;
+        }
+        return files::write(path, existing, |file| exr.write(file));
+    }
+    let (Some(pixels), Some(picture)) = (results.into_iter().next(), source.pictures.first()) else {
+        return Err(Error::file(path, "would be empty", "choose another picture"));
+    };
+    match format {
+        Format::Exr => write_exr(path, existing, &pixels, picture),
+        Format::Png => {
+            // A float result holds more than 8 bits can.
+            let precision = match picture.pixels.precision() {
+                Precision::U8 => Precision::U8,
+                _ => Precision::U16,
+            };
+            let pixels = pixels.converted(precision);
+            let color = color_type(&pixels);
+            // PNG wants the larger byte first; the encoder takes the machine's order.
+            files::write(path, existing, |file| {
+                let mut encoder = image::codecs::png::PngEncoder::new(file);
+                keep_profile(&mut encoder, source.profile.clone());
+                as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
+            })
+        }
+        Format::Tiff => {
+            let precision = match (source.state, picture.pixels.precision()) {
+                (ImageState::SceneReferred, _) => Precision::F32,
+                (ImageState::DisplayReferred, Precision::U8) => Precision::U8,
+                (ImageState::DisplayReferred, _) => Precision::U16,
+            };
+            let pixels = grey_as_rgb(pixels.converted(precision));
+            let color = color_type(&pixels);
+            files::write(path, existing, |file| {
+                let mut encoder = image::codecs::tiff::TiffEncoder::new(file);
+                keep_profile(&mut encoder, source.profile.clone());
+                as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
+            })
+        }
+        Format::Jpeg => {
+            let pixels = opaque(path, pixels.converted(Precision::U8));
+            let color = color_type(&pixels);
+            files::write(path, existing, |file| {
+                let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(file, JPEG_QUALITY);
+                keep_profile(&mut encoder, source.profile.clone());
+                as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
+            })
+        }
+    }
+}
+
+/// Floats of one channel as three equal ones: TIFF files of grey floats are not written.
+fn grey_as_rgb(pixels: Pixels) -> Pixels {
+    if pixels.precision() != Precision::F32 || pixels.channels() != 1 {
+        return pixels;
+    }
+    let rgb = pixels.to_f32().into_iter().flat_map(|v| [v; 3]).collect();
+    // Three samples for each that there was.
+    Pixels::new(pixels.width(), pixels.height(), 3, Samples::F32(rgb)).unwrap_or(pixels)
+}
+
+/// EXR in the precision that the source deserves: 8 bits fit into halves, 16 do not.
+fn write_exr(path: &Path, existing: Existing, pixels: &Pixels, picture: &Picture) -> Result<()> {
+    let precision = match picture.pixels.precision() {
+        Precision::U8 | Precision::F16 => floats::Precision::Half,
+        Precision::U16 | Precision::F32 => floats::Precision::Float,
+    };
+    let channels = pixels.channels();
+    let data = floats::Picture {
+        width: pixels.width(),
+        height: pixels.height(),
+        channels: channels as usize,
+        data: pixels.to_f32(),
+    };
+    floats::save_exr(path, existing, &data, components(channels), precision)
+}
+
+fn keep_profile(encoder: &mut impl ImageEncoder, profile: Option<Vec<u8>>) {
+    if let Some(profile) = profile {
+        // An encoder that cannot keep it leaves a picture that is taken for sRGB, as most are.
+        let _ = encoder.set_icc_profile(profile);
+    }
+}
+
+fn as_text(result: ImageResult<()>) -> std::result::Result<(), String> {
+    result.map_err(|e| e.to_string())
+}
+
+fn color_type(pixels: &Pixels) -> ExtendedColorType {
+    match (pixels.precision(), pixels.channels()) {
+        (Precision::U8, 1) => ExtendedColorType::L8,
+        (Precision::U8, 3) => ExtendedColorType::Rgb8,
+        (Precision::U8, _) => ExtendedColorType::Rgba8,
+        (Precision::F32, 3) => ExtendedColorType::Rgb32F,
+        (Precision::F32, _) => ExtendedColorType::Rgba32F,
+        (_, 1) => ExtendedColorType::L16,
+        (_, 3) => ExtendedColorType::Rgb16,
+        (..) => ExtendedColorType::Rgba16,
+    }
+}
+
+/// Without alpha, over white: JPEG has none.
+fn opaque(path: &Path, pixels: Pixels) -> Pixels {
+    let (Samples::U8(samples), 4) = (pixels.samples(), pixels.channels()) else { return pixels };
+    if samples.iter().skip(3).step_by(4).any(|a| *a < 255) {
+        output::warn(format_args!(
+            "{}: JPEG keeps no transparency; the picture is put on white",
+            path.display()
+        ));
+    }
+    let over = |v: u8, a: u8| {
+        let (v, a) = (u32::from(v), u32::from(a));
+        ((v * a + 255 * (255 - a) + 127) / 255) as u8
+    };
+    let flat = samples
+        .as_chunks::<4>()
+        .0
+        .iter()
+        .flat_map(|[r, g, b, a]| [*r, *g, *b].map(|v| over(v, *a)))
+        .collect();
+    let (width, height) = (pixels.width(), pixels.height());
+    // Three of four samples of every pixel are left.
+    Pixels::new(width, height, 3, Samples::U8(flat)).unwrap_or(pixels)
+}

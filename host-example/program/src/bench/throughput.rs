@@ -1,0 +1,129 @@
+//! How well reading and writing of a sequence hide behind filtering, for `isophote bench`.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+use serde::Serialize;
+
+use isophote_files::error::{Error, Result};
+use isophote_files::files::Existing;
+use isophote_files::limits::Threads;
+use isophote_files::replacing::Consent;
+use isophote_files::stop::Stop;
+use isophote_finishing::apply::filter::{Filter, Planner};
+use isophote_finishing::apply::masks::Masks;
+use isophote_finishing::apply::memory::Budget;
+use isophote_finishing::apply::reader::{Footage, Reader};
+use isophote_finishing::apply::reel::{Held, Window};
+use isophote_finishing::apply::report::Report;
+use isophote_finishing::apply::sequence::Run;
+use isophote_finishing::apply::tasks::Task;
+use isophote_pictures::exr::{Selection, components};
+use isophote_pictures::floats::{self, Picture, Precision};
+use isophote_pictures::pixels::Pixels;
+use isophote_pictures::read;
+use isophote_pictures::write::Format;
+
+/// What was measured.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Throughput {
+    /// Frames of the sequence.
+    pub frames: u32,
+    /// Seconds that filtering them takes by itself, from memory to memory.
+    pub filter_seconds: f64,
+    /// Seconds of the whole run, from file to file.
+    pub seconds: f64,
+    /// Most memory of the process during the run, bytes; not on all systems.
+    pub peak_bytes: Option<u64>,
+    /// The bound that the run was given, bytes.
+    pub bound_bytes: u64,
+}
+
+/// Finishes `frames` EXR frames of half floats, scan lines and ZIP compression, all of them `picture` (RGBA),
+/// within `bound` bytes. `filters`, at least one, take frames in turn; `planner` is of their style.
+///
+/// # Errors
+/// [`Error::Input`] for styles that do not fit, [`Error::Failure`] when there is no room for the files.
+pub fn measure(
+    filters: &mut [Filter],
+    planner: Planner,
+    picture: &Pixels,
+    frames: u32,
+    bound: u64,
+) -> Result<Throughput> {
+    let folder = tempfile::tempdir().map_err(|e| Error::failure(e, "make room for temporary files"))?;
+    let tasks: Vec<Task> = (1..=i64::from(frames))
+        .map(|frame| Task {
+            frame: Some(frame),
+            input: folder.path().join(format!("in.{frame:04}.exr")),
+            output: folder.path().join(format!("out.{frame:04}.exr")),
+        })
+        .collect();
+    for task in &tasks {
+        save(&task.input, picture)?;
+    }
+    let selection = Selection { wanted: planner.guides().to_vec(), ..Selection::default() };
+    let mut filter_seconds = 0.0;
+    let (budget, report) = (Budget::new(bound, filters.len()), Report::new(tasks.len(), false, false));
+    let masks = Masks::default();
+    let footage =
+        Footage { frames: None, motion: None, selection: &selection, masks: &masks, budget: &budget };
+    // The first of these runs makes the plan and is not counted.
+    for (at, task) in tasks.iter().take(1).chain(&tasks).enumerate() {
+        let source = read::read(&task.input, &selection)?;
+        let own = Arc::new(Held::new(task.frame, source, true, budget.share()));
+        let (exr, window) = (own.take_exr(), Window { own: Arc::clone(&own), frames: vec![own] });
+        let started = Instant::now();
+        filters[0].run("a frame", &window, exr.as_ref(), Format::Exr, &mut |_| {})?;
+        if at > 0 {
+            filter_seconds += started.elapsed().as_secs_f64();
+        }
+    }
+    let stop = Stop::default();
+    let run = Run {
+        tasks: &tasks,
+        format: Format::Exr,
+        consent: Consent::default(),
+        threads: Threads::Several,
+        report: &report,
+        stop: &stop,
+    };
+    forget_peak();
+    let started = Instant::now();
+    let result = run.all(filters, Reader::new(footage, planner, &tasks, None));
+    let seconds = started.elapsed().as_secs_f64();
+    let counts = report.end(false);
+    result?;
+    if counts.written != u64::from(frames) {
+        return Err(Error::failure(
+            format!("{} frames failed", counts.failed),
+            "make room for temporary files",
+        ));
+    }
+    Ok(Throughput { frames, filter_seconds, seconds, peak_bytes: peak(), bound_bytes: bound })
+}
+
+fn save(path: &Path, picture: &Pixels) -> Result<()> {
+    let data = Picture {
+        width: picture.width(),
+        height: picture.height(),
+        channels: picture.channels() as usize,
+        data: picture.to_f32(),
+    };
+    floats::save_exr(path, Existing::Keep, &data, components(picture.channels()), Precision::Half)
+}
+
+/// Lets the system count the peak of this process anew, where it can.
+fn forget_peak() {
+    // Elsewhere the peak since the start counts, which is no less.
+    let _ = fs::write("/proc/self/clear_refs", "5");
+}
+
+/// The most memory that the process held.
+fn peak() -> Option<u64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
+}

@@ -1,0 +1,505 @@
+//! `isophote apply`: a node, graph or preset on a picture or a sequence of frames, without any scene.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueHint};
+
+use super::shared::{ForceArgs, LengthArgs, PrecisionArgs};
+use isophote_files::error::{Error, Result};
+use isophote_files::files::{self, Existing};
+use isophote_files::frames::{FrameList, Pattern};
+use isophote_files::identity::is_same;
+use isophote_files::limits::{self, Threads};
+use isophote_files::replacing::Made;
+use isophote_files::stop::Stop;
+use isophote_finishing::apply::backend::Backend;
+use isophote_finishing::apply::dry_run::DryRun;
+use isophote_finishing::apply::filter::{self, Filter, Look, Planner};
+use isophote_finishing::apply::looks::{self, Entry};
+use isophote_finishing::apply::masks::{MaskChoice, Masks};
+use isophote_finishing::apply::memory::{self, Budget, Bytes, Needs, too_large};
+use isophote_finishing::apply::reader::{Footage, Reader};
+use isophote_finishing::apply::report::{self, Outcome, Report};
+use isophote_finishing::apply::sequence::Run;
+use isophote_finishing::apply::tasks::{OnMissing, Task, Tasks};
+use isophote_finishing::stylize::style::{Setting, Style};
+use isophote_finishing::video::{self, OnError};
+use isophote_loader::Library;
+use isophote_pictures::exr::{Convention, Guide, GuideChoice, MaskSource, OnUnknown, Selection};
+use isophote_pictures::read::{self, Opened};
+use isophote_pictures::space::Space;
+use isophote_pictures::write::Format;
+
+/// Options of `apply`.
+#[derive(Args, Debug)]
+pub struct ApplyArgs {
+    /// The id of a node, a look, or a graph file or preset (.json). Left out where --preset or --layered is given.
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub style: PathBuf,
+    /// The picture: PNG, JPEG, TIFF, WebP, HDR or EXR. A sequence: shot.####.exr, shot.@@@@.exr or shot.%04d.exr. A video
+    /// that ffmpeg reads, such as .mp4, .mov, .mkv or .webm; or - for YUV4MPEG on standard input.
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub input: PathBuf,
+    /// The result: .png, .jpg, .tif or .exr; the input itself with --in-place only. For a sequence with #### as well. For a
+    /// video another one, or - for YUV4MPEG on standard output.
+    #[arg(required_unless_present_any = ["preset", "layered"], value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+    /// A preset with the style and its parameters, or a look.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub preset: Option<PathBuf>,
+    /// A JSON file with a list of looks instead of a style, each made from the picture and laid over those before where its mask
+    /// is: [{"style": "watercolor"}, {"preset": "hero.json", "params": {"sigma": 2}, "mask": "cryptomatte:hero", "invert": false}].
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["preset", "set", "mask"])]
+    pub layered: Option<PathBuf>,
+    /// Frames of the sequence, such as 1001-1100x2,1200 [default: all that are on disk].
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub frames: Option<FrameList>,
+    /// What to do when frames of the sequence have no file.
+    #[arg(long, value_enum, default_value_t = OnMissing::Fail)]
+    pub on_missing: OnMissing,
+    /// Limit of memory, such as 8GiB, which decides how many frames are worked on at once; frames that need more are
+    /// refused [default: 4GiB, or what the machine or the container has].
+    #[arg(long, value_name = "SIZE")]
+    pub memory: Option<Bytes>,
+    /// Skips frames whose result is there already and complete, and makes the others: a run that was begun goes on.
+    #[arg(long, conflicts_with_all = ["force", "in_place"])]
+    pub skip_existing: bool,
+    /// Lets results take the place of the pictures that they are made from.
+    #[arg(long)]
+    pub in_place: bool,
+    /// Treatment of results that are there.
+    #[command(flatten)]
+    pub force: ForceArgs,
+    /// Prints what would be done, and does nothing.
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Prints a line of JSON for every frame; of a picture by itself for every hundredth, too.
+    #[arg(long)]
+    pub json: bool,
+    /// Sets a parameter; node.id=value for one node of a graph. May be repeated.
+    #[arg(long, value_name = "ID=VALUE")]
+    pub set: Vec<Setting>,
+    /// What lengths of parameters are.
+    #[command(flatten)]
+    pub lengths: LengthArgs,
+    /// How precisely it does on graphics devices.
+    #[command(flatten)]
+    pub precision: PrecisionArgs,
+    /// Where the filter runs.
+    #[arg(long, value_enum, default_value_t = Backend::Auto)]
+    pub backend: Backend,
+    /// Colour space of the picture and of the result; without it sRGB for integers, linear for floats, and what
+    /// the chromaticities of an EXR file say.
+    #[arg(long, value_enum)]
+    pub space: Option<Space>,
+    /// The layer of an EXR file that is read and replaced [default: the main layer].
+    #[arg(long, value_name = "LAYER")]
+    pub layer: Option<String>,
+    /// Reads and replaces the layer even where its name says that it holds data, such as N, Z, P or a Cryptomatte.
+    #[arg(long, requires = "layer")]
+    pub force_layer: bool,
+    /// The view of a multi-view EXR file [default: all views, each filtered by itself].
+    #[arg(long, value_name = "VIEW")]
+    pub view: Option<String>,
+    /// The channel of an EXR file that is the layer's alpha, or none [default: the layer's A].
+    #[arg(long, value_name = "CHANNEL")]
+    pub alpha: Option<String>,
+    /// Adds the result to the EXR file as a new layer of this name, and keeps the layer that was read.
+    #[arg(long, value_name = "NEWLAYER")]
+    pub into: Option<String>,
+    /// The layer of an EXR file that guides the filter: normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER,
+    /// motion_forward=LAYER or rest_position=LAYER, or none instead of a layer. Without it guides are found by names such as
+    /// N, normal, Z, depth, P, id, backward, Vector, velocity, Pref and rest; where there is no id, the Cryptomatte of objects
+    /// stands for it, which is object_id=cryptomatte, or `object_id=cryptomatte[LAYER]` for another. May be repeated.
+    #[arg(long, value_name = "GUIDE=LAYER")]
+    pub guide: Vec<GuideChoice>,
+    /// How much of the result is used where: a file such as mask.png, one for each frame (mask.####.exr), a layer or channel of
+    /// the EXR file, or things of its Cryptomatte: `cryptomatte:hero,props/*` or `cryptomatte[crypto_material]:skin`. A star in
+    /// a name stands for any letters, ? for one, and a backslash makes either ordinary. Files of colours count by luminance;
+    /// alpha never counts.
+    #[arg(long, value_name = "MASK", value_hint = ValueHint::FilePath)]
+    pub mask: Option<MaskSource>,
+    /// EXR files that have the mask's layer or Cryptomatte, such as ids.####.exr [default: the input].
+    #[arg(long, value_name = "FILES", value_hint = ValueHint::FilePath)]
+    pub mask_from: Option<PathBuf>,
+    /// Uses the result where the mask is not.
+    #[arg(long, requires = "mask")]
+    pub invert: bool,
+    /// What to do in frames that do not know a name of the mask's.
+    #[arg(long, value_enum, default_value_t = OnUnknown::Fail)]
+    pub on_unknown: OnUnknown,
+    /// How steady frames of a sequence are, from 0 to 1: neighbouring frames are carried along motion and averaged before
+    /// the style decides anything. Needs motion vectors in the EXR files, or --motion [default: what the style says].
+    #[arg(long, value_name = "S")]
+    pub steadiness: Option<f32>,
+    /// EXR files with motion vectors, one for each frame: mv.####.exr; or estimate, for optical flow of the pictures.
+    #[arg(long, value_name = "FILES", value_hint = ValueHint::FilePath)]
+    pub motion: Option<PathBuf>,
+    /// What motion vectors mean: isophote, arnold, blender, renderman, vray or unreal, and after commas what differs, of
+    /// units=pixels|normalised|ndc, y=up|down, direction=backward|forward, sign=1|-1, centre=NUMBER and scale=NUMBER
+    /// [default: what the name of their layer says].
+    #[arg(long, value_name = "NAME")]
+    pub motion_convention: Option<Convention>,
+    /// Options of ffmpeg's encoder for a video, such as "-c:v libx265 -crf 20".
+    #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
+    pub encode: Option<String>,
+    /// What to do where a video is damaged or cut short: fail, or write what can be read of it and warn.
+    #[arg(long, value_enum, default_value_t = OnError::Fail)]
+    pub on_error: OnError,
+    /// Threads on the CPU; 0 for one per core.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1024))]
+    pub threads: u32,
+}
+
+/// Runs the verb.
+///
+/// # Errors
+/// [`Error::Input`] for bad input, before anything is computed where it can be known then; [`Error::Failure`]
+/// when the library or the device fails. Each output is written as a whole or not at all.
+pub fn run(args: &ApplyArgs) -> Result<()> {
+    let files = args.files()?;
+    if video::is_video(files.input) || video::is_video(files.output) {
+        return args.run_on_video(&files);
+    }
+    if args.on_error == OnError::Skip {
+        return Err(Error::input("--on-error", "is for videos", "leave it out"));
+    }
+    let format = Format::of(files.output)?;
+    let tasks = args.tasks()?;
+    let library = Library::open()?;
+    let threads = limits::start_threads(args.threads as usize)?;
+    let entries = args.entries()?;
+    let looks = args.looks(&library, files.style, &entries)?;
+    if tasks.is_sequence() {
+        let frames: Vec<i64> =
+            tasks.ready.iter().chain(&tasks.missing).filter_map(|task| task.frame).collect();
+        looks.iter().for_each(|look| look.style.warn_of_keys_beyond(&frames));
+    }
+    let choices = args.masks(&entries);
+    let masks = Masks::new(&choices, args.mask_from.as_deref(), args.on_unknown)?;
+    masks.check(Some(&tasks))?;
+    let selection = args.selection(&library, &looks, &choices, format)?;
+    let motion = args.motion_files(&tasks, &selection)?;
+    let opened = args.open_first(&tasks, &selection)?;
+    let backend = if args.dry_run { Backend::Cpu } else { args.backend };
+    let mut planner = Planner::new(library.clone(), args.looks(&library, files.style, &entries)?)?;
+    args.check_results(&tasks, &planner, &choices)?;
+    let filter = Filter::new(library.clone(), looks, backend, args.space, args.threads)?;
+    let most = args.memory.unwrap_or_else(memory::usual);
+    let needs = args.needs(&mut planner, &tasks, opened.as_ref(), most)?;
+    if args.dry_run {
+        let (skip_existing, json) = (args.skip_existing, args.json);
+        let run = DryRun { tasks: &tasks, selection: &selection, most, skip_existing, json };
+        let refused = run.print(&mut planner, needs)?;
+        return report::check_failed(files.input, refused, tasks.ready.len(), args.consent());
+    }
+    let stop = Stop::on_signals();
+    if !tasks.is_sequence() {
+        stop.ends_the_process("the picture");
+    }
+    let report = Report::new(tasks.count(), tasks.is_sequence(), args.json);
+    for task in &tasks.missing {
+        report.frame(task, &Outcome::Missing);
+    }
+    let mut filters = vec![filter];
+    if tasks.is_sequence() && threads == Threads::Several {
+        while filters.len() < filters[0].best_count()? {
+            filters.push(filters[0].beside(args.looks(&library, files.style, &entries)?)?);
+        }
+    }
+    let budget = Budget::new(most.0, filters.len());
+    let footage = Footage {
+        frames: tasks.sequence.as_ref(),
+        motion: motion.as_ref(),
+        selection: &selection,
+        masks: &masks,
+        budget: &budget,
+    };
+    let run =
+        Run { tasks: &tasks.ready, format, consent: args.consent(), threads, report: &report, stop: &stop };
+    let result = run.all(&mut filters, Reader::new(footage, planner, &tasks.ready, opened));
+    let counts = report.end(result.is_ok());
+    result?;
+    counts.check(files.input, tasks.ready.len(), args.consent())
+}
+
+/// The files that the command line names.
+pub struct Files<'a> {
+    /// What is done; a file or the name of a node or look.
+    pub style: &'a Path,
+    /// What is read.
+    pub input: &'a Path,
+    /// What is written.
+    pub output: &'a Path,
+}
+
+impl ApplyArgs {
+    /// What the first picture needs of memory, where that can be known: no more than there is.
+    fn needs(
+        &self,
+        planner: &mut Planner,
+        tasks: &Tasks,
+        opened: Option<&Opened>,
+        most: Bytes,
+    ) -> Result<Option<Needs>> {
+        let first = &tasks.ready[0];
+        let needs = match opened {
+            Some(opened) => planner.needs(&first.input, first.frame, opened)?,
+            None => None,
+        };
+        let span = planner.span(first.frame)?;
+        if let Some(needs) = needs.map(|needs| needs.of(span)).filter(|needs| needs.total() > most.0) {
+            return Err(too_large(&first.input, span, needs, most));
+        }
+        let is_in_place = |task: &Task| is_same(&task.input, &task.output);
+        if span > 1 && self.in_place && self.into.is_none() && tasks.ready.iter().any(is_in_place) {
+            return Err(Error::file(
+                self.files()?.output,
+                "would take the place of frames that others depend on",
+                "name another folder for the results, or leave --steadiness out",
+            ));
+        }
+        Ok(needs)
+    }
+
+    /// The files that the command line names. With a preset the style is left out, and the other two move up.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a style beside a preset.
+    pub fn files(&self) -> Result<Files<'_>> {
+        match (&self.output, self.preset.as_ref().or(self.layered.as_ref())) {
+            (Some(output), None) => Ok(Files { style: &self.style, input: &self.input, output }),
+            (None, Some(style)) => Ok(Files { style, input: &self.style, output: &self.input }),
+            _ => {
+                let (option, problem) = match self.preset {
+                    Some(_) => ("--preset", "the preset names the style"),
+                    None => ("--layered", "its looks name the styles"),
+                };
+                Err(Error::input(
+                    option,
+                    problem,
+                    format!("give the picture and the result alone, or leave {option} out"),
+                ))
+            }
+        }
+    }
+
+    /// Filters a video.
+    fn run_on_video(&self, files: &Files<'_>) -> Result<()> {
+        let wrong = |place: &str, problem: &str, fix: &str| Err(Error::input(place, problem, fix));
+        if !video::is_video(files.input) || !video::is_video(files.output) {
+            let place = files.output.display().to_string();
+            return wrong(&place, "a video becomes a video, and pictures pictures", "name two of a kind");
+        }
+        let others = [
+            ("--frames", self.frames.is_some()),
+            ("--dry-run", self.dry_run),
+            ("--motion", self.motion.is_some() && !self.estimates_motion()),
+            ("--into", self.into.is_some()),
+        ];
+        if let Some((option, _)) = others.iter().find(|(_, given)| *given) {
+            return wrong(option, "is not for videos", "leave it out");
+        }
+        let choices = self.masks(&self.entries()?);
+        let made = Made { from: Some(files.input), to: files.output };
+        if files.output != Path::new("-") {
+            self.consent().check(&[made], false, || self.inputs(&choices, None))?;
+        }
+        if self.skip_existing && files.output.is_file() {
+            return Ok(());
+        }
+        if files.output != Path::new("-") {
+            files::check_writable(files.output, Existing::Replace)?;
+            files::sweep(files.output);
+        }
+        let library = Library::open()?;
+        limits::start_threads(self.threads as usize)?;
+        let looks = self.looks(&library, files.style, &self.entries()?)?;
+        let is_file = |mask: &MaskChoice| matches!(mask.source, MaskSource::File(_));
+        if !(self.mask_from.is_some() || choices.iter().all(is_file)) {
+            return wrong(
+                "--mask",
+                "a video has no layers",
+                "name files of masks, or EXR files by --mask-from",
+            );
+        }
+        let masks = Masks::new(&choices, self.mask_from.as_deref(), self.on_unknown)?;
+        masks.check(None)?;
+        let mut filter = Filter::new(library, looks, self.backend, self.space, self.threads)?;
+        let stop = Stop::on_signals();
+        let (input, output, encode) = (files.input, files.output, self.encode.as_deref());
+        let run = |existing| {
+            let (on_error, json, masks, stop) = (self.on_error, self.json, &masks, &stop);
+            let job = video::Job { input, output, existing, encode, on_error, json, masks, stop };
+            video::run(&job, &mut filter)
+        };
+        self.consent().write(made, Path::is_file, run).map(drop)
+    }
+
+    /// The looks of a file; none where there is a style.
+    fn entries(&self) -> Result<Vec<Entry>> {
+        self.layered.as_deref().map_or_else(|| Ok(Vec::new()), looks::read)
+    }
+
+    /// What is done to every picture: the looks of a file, or else the style.
+    fn looks(&self, library: &Library, name: &Path, entries: &[Entry]) -> Result<Vec<Look>> {
+        let mut masks = 0..;
+        let looks = if entries.is_empty() {
+            let style = Style::load(library, name, &self.set)?;
+            vec![Look { style, mask: self.mask.as_ref().and_then(|_| masks.next()) }]
+        } else {
+            let look = |entry: &Entry| {
+                let style = entry.style(library)?;
+                Ok(Look { style, mask: entry.mask.as_ref().and_then(|_| masks.next()) })
+            };
+            entries.iter().map(look).collect::<Result<_>>()?
+        };
+        self.timed(looks)
+    }
+
+    /// Where it is done.
+    fn masks(&self, entries: &[Entry]) -> Vec<MaskChoice> {
+        let choice = |source: &MaskSource| MaskChoice { source: source.clone(), invert: self.invert };
+        let own = self.mask.iter().map(choice);
+        own.chain(entries.iter().filter_map(|entry| entry.mask.clone())).collect()
+    }
+
+    /// The looks with what the command line says of time and lengths. Of several, one that knows of time is enough.
+    fn timed(&self, mut looks: Vec<Look>) -> Result<Vec<Look>> {
+        let mut refused = Vec::new();
+        for Look { style, .. } in &mut looks {
+            self.lengths.apply(style);
+            self.precision.precision.apply(style)?;
+            refused.extend(self.steadiness.and_then(|steadiness| style.steady(steadiness).err()));
+            if self.estimates_motion() {
+                style.estimate_motion()?;
+            }
+        }
+        if refused.len() < looks.len() {
+            Ok(looks)
+        } else {
+            refused.into_iter().next().map_or(Ok(looks), Err)
+        }
+    }
+
+    /// The files of motion vectors.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where they would not be used, and where none is there.
+    fn motion_files(&self, tasks: &Tasks, selection: &Selection) -> Result<Option<Pattern>> {
+        let Some(path) = &self.motion else { return Ok(None) };
+        let wrong = |problem: &str, fix: &str| Err(Error::input("--motion", problem, fix));
+        if !tasks.is_sequence() {
+            return wrong("a picture by itself has no neighbours", "name a sequence such as shot.####.exr");
+        }
+        if self.estimates_motion() {
+            return Ok(None);
+        }
+        if selection.wanted.iter().all(|guide| !guide.is_motion()) {
+            return wrong("the style reads no motion", "give --steadiness 0.5, or another style");
+        }
+        let Some(pattern) = Pattern::new(path)? else {
+            return wrong("has no place for a frame number", "write mv.####.exr");
+        };
+        let mut frames = tasks.ready.iter().filter_map(|task| task.frame);
+        match frames.find(|frame| pattern.file(*frame).is_file()) {
+            Some(_) => Ok(Some(pattern)),
+            None => Err(Error::file(path, "has none of the frames", "name files that exist")),
+        }
+    }
+
+    /// The frames that are read and written.
+    ///
+    /// # Errors
+    /// As [`Tasks::find`]; [`Error::Input`] for an output that is a folder.
+    fn tasks(&self) -> Result<Tasks> {
+        let files = self.files()?;
+        let tasks = Tasks::find(files.input, files.output, self.frames.as_ref(), self.on_missing)?;
+        match tasks.ready.iter().find(|task| task.output.is_dir()) {
+            Some(task) => Err(Error::file(&task.output, "is a folder", "name a file")),
+            None => Ok(tasks),
+        }
+    }
+
+    /// Numbers of the frames, for jobs that split them.
+    ///
+    /// # Errors
+    /// As [`Tasks::find`]; [`Error::Input`] when the input is no sequence.
+    pub fn frame_numbers(&self) -> Result<Vec<i64>> {
+        let tasks = self.tasks()?;
+        if !tasks.is_sequence() {
+            return Err(Error::file(self.files()?.input, "is no sequence", "write shot.####.exr"));
+        }
+        Ok(tasks.ready.iter().filter_map(|task| task.frame).collect())
+    }
+
+    /// Opens the first input and makes sure that the first output can be written.
+    fn open_first(&self, tasks: &Tasks, selection: &Selection) -> Result<Option<Opened>> {
+        let first = &tasks.ready[0];
+        let opened = match read::open(&first.input, selection) {
+            // A picture that cannot be read is reported before a folder that cannot be written.
+            Err(error) if !tasks.is_sequence() && !self.skip_existing => return Err(error),
+            opened => opened.ok(),
+        };
+        if self.dry_run {
+            files::check(&first.output, Existing::Replace)?;
+        } else {
+            files::check_writable(&first.output, Existing::Replace)?;
+            files::sweep(&first.output);
+        }
+        Ok(opened)
+    }
+
+    /// Guides that are looked for.
+    fn wanted(&self, library: &Library, looks: &[Look]) -> Result<Vec<Guide>> {
+        let mut wanted = Vec::new();
+        for look in looks {
+            wanted.extend(filter::usable_guides(library, &look.style)?);
+        }
+        wanted.retain(|guide| !(self.estimates_motion() && guide.is_motion()));
+        Ok(wanted)
+    }
+
+    /// What is read of EXR files.
+    fn selection(
+        &self,
+        library: &Library,
+        looks: &[Look],
+        masks: &[MaskChoice],
+        format: Format,
+    ) -> Result<Selection> {
+        if self.into.is_some() && format != Format::Exr {
+            return Err(Error::input(
+                "--into",
+                "only EXR files hold several layers",
+                "name a result that ends in .exr",
+            ));
+        }
+        let is_bad = |name: &&str| {
+            name.is_empty() || name.split('.').any(str::is_empty) || name.contains(char::is_control)
+        };
+        if let Some(bad) = self.into.as_deref().filter(is_bad) {
+            return Err(Error::input(
+                "--into",
+                format!("'{}' is no name of a layer", bad.escape_default()),
+                "name a layer such as cartoon",
+            ));
+        }
+        Ok(Selection {
+            layer: self.layer.clone(),
+            force: self.force_layer,
+            view: self.view.clone(),
+            alpha: self.alpha.clone(),
+            into: self.into.clone(),
+            guides: self.guide.clone(),
+            wanted: self.wanted(library, looks)?,
+            convention: self.motion_convention,
+            // What lies in other files is not looked for in the picture's.
+            masks: masks
+                .iter()
+                .map(|mask| self.mask_from.clone().map_or(mask.source.clone(), MaskSource::File))
+                .collect(),
+            on_unknown: self.on_unknown,
+        })
+    }
+}

@@ -1,0 +1,14 @@
+//! The verbs of the program, one file each: the arguments and what is done with them. Everything that a verb
+//! uses lives outside of this folder and knows nothing of the command line.
+
+pub mod apply;
+pub mod bench;
+pub mod documents;
+pub mod farm;
+pub mod nodes;
+mod places;
+pub mod preset;
+pub mod render;
+mod shared;
+pub mod sheet;
+pub mod view;

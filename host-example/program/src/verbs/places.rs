@@ -1,0 +1,123 @@
+//! Which arguments of `apply` name files, and what part those have in a run: one list for everything that has to find or
+//! to spare them.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use super::apply::ApplyArgs;
+use isophote_files::error::Result;
+use isophote_files::replacing::{Consent, Inputs, Made};
+use isophote_finishing::apply::filter::Planner;
+use isophote_finishing::apply::masks::MaskChoice;
+use isophote_finishing::apply::tasks::{Task, Tasks};
+use isophote_finishing::stylize::style;
+use isophote_pictures::exr::MaskSource;
+
+/// The word for motion that is estimated.
+const ESTIMATE: &str = "estimate";
+
+/// Part that a file has in a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// It says what is done, and is read once.
+    Style,
+    /// It is a picture or belongs to one, or a pattern of such for each frame; it is read.
+    Frames,
+    /// It is written.
+    Result,
+}
+
+/// A file, or a pattern of files, that an argument names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place<'a> {
+    /// Id of the argument.
+    pub id: &'static str,
+    /// What it is for.
+    pub part: Part,
+    /// The path as it was written.
+    pub path: &'a Path,
+}
+
+impl ApplyArgs {
+    /// All files that the command line names. A new argument that takes a path belongs into this list.
+    ///
+    /// # Errors
+    /// As [`ApplyArgs::files`].
+    pub fn places(&self) -> Result<Vec<Place<'_>>> {
+        let files = self.files()?;
+        // With a preset the input is the first of the arguments without a name.
+        let is_moved = self.output.is_none();
+        let styled = if self.preset.is_some() { "preset" } else { "style" };
+        let [input, output] = if is_moved { ["style", "input"] } else { ["input", "output"] };
+        let mask = self.mask.as_ref().and_then(|mask| match mask {
+            MaskSource::File(path) => Some(path.as_path()),
+            MaskSource::Layer(_) | MaskSource::Mattes(_) => None,
+        });
+        let named = [
+            (
+                styled,
+                Part::Style,
+                Some(files.style).filter(|style| self.layered.is_none() && style::is_file(style)),
+            ),
+            ("layered", Part::Style, self.layered.as_deref()),
+            (input, Part::Frames, Some(files.input)),
+            (output, Part::Result, Some(files.output)),
+            ("mask", Part::Frames, mask),
+            ("mask_from", Part::Frames, self.mask_from.as_deref()),
+            ("motion", Part::Frames, self.motion.as_deref().filter(|_| !self.estimates_motion())),
+        ];
+        // Standard input and output have no path.
+        let is_path = |path: &&Path| *path != Path::new("-");
+        let place =
+            |(id, part, path): (_, _, Option<_>)| Some(Place { id, part, path: path.filter(is_path)? });
+        Ok(named.into_iter().filter_map(place).collect())
+    }
+
+    /// Whether motion is to be found in the pictures themselves.
+    pub fn estimates_motion(&self) -> bool {
+        self.motion.as_deref() == Some(Path::new(ESTIMATE))
+    }
+
+    /// Consent to replace files.
+    pub fn consent(&self) -> Consent {
+        Consent { in_place: self.in_place, skip_existing: self.skip_existing, ..self.force.consent() }
+    }
+
+    /// Files that a run reads: for these frames, or for all that are on disk. `masks` are those of all looks.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Input`] for patterns with several places for a number.
+    pub fn inputs(&self, masks: &[MaskChoice], frames: Option<&BTreeSet<i64>>) -> Result<Inputs> {
+        let mut inputs = Inputs::default();
+        for Place { part, path, .. } in self.places()? {
+            match part {
+                Part::Style => inputs.add(path),
+                Part::Frames => inputs.add_frames(path, frames)?,
+                Part::Result => {}
+            }
+        }
+        for mask in masks {
+            if let MaskSource::File(path) = &mask.source {
+                inputs.add_frames(path, frames)?;
+            }
+        }
+        Ok(inputs)
+    }
+
+    /// Refuses a run whose results would replace files without consent.
+    ///
+    /// # Errors
+    /// As [`Consent::check`].
+    pub fn check_results(&self, tasks: &Tasks, planner: &Planner, masks: &[MaskChoice]) -> Result<()> {
+        let made: Vec<Made<'_>> = tasks.ready.iter().map(Task::made).collect();
+        self.consent().check(&made, tasks.is_sequence(), || {
+            let mut frames = BTreeSet::new();
+            for task in &tasks.ready {
+                let Some(number) = task.frame else { continue };
+                let [past, future] = planner.frames(task.frame)?;
+                frames.extend(number.saturating_sub(past)..=number.saturating_add(future));
+            }
+            self.inputs(masks, Some(&frames))
+        })
+    }
+}

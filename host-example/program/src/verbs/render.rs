@@ -1,0 +1,324 @@
+//! `isophote render`: a scene to a sequence of pictures.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::shared::{ForceArgs, LengthArgs, PrecisionArgs, SceneArgs, parse_size};
+use isophote_files::error::{Error, Result};
+use isophote_files::files::{self, Existing};
+use isophote_files::frames::{FrameList, Pattern};
+use isophote_files::identity::Identity;
+use isophote_files::limits;
+use isophote_files::replacing::{Consent, Inputs, Made};
+use isophote_files::stop::Stop;
+use isophote_finishing::apply::report::{Outcome, Report};
+use isophote_finishing::apply::tasks::Task;
+use isophote_finishing::shot::{Options, Shot};
+use isophote_finishing::staging::{MotionArgs, StagingArgs};
+use isophote_finishing::stylize::style::{Setting, Style};
+use isophote_finishing::video::{self, Film};
+use isophote_loader::Library;
+use isophote_pictures::floats::{self, Layer, Picture, Precision};
+use isophote_pictures::read;
+use isophote_render::targets::{Target, Targets};
+use isophote_scene::Scene;
+
+/// Options of `render`.
+#[derive(Args, Debug)]
+pub struct RenderArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    staging: StagingArgs,
+    /// The picture: .png; or .exr with the scene-linear colour, normals, depth, object numbers, motion and rest
+    /// positions. out.####.exr, out.@@@@.exr or out.%04d.exr for a sequence; .#### is added where it lacks. A video that
+    /// ffmpeg writes, such as .mp4, .mov, .mkv or .webm, on black where the background is transparent.
+    out: PathBuf,
+    /// Size of the picture in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
+    size: (u32, u32),
+    /// How many frames, from 1; or which, such as 1001-1100x2,1200. Of an animation, frame 1 is at --start: with 24 frames
+    /// per second, 49-72 is its third second.
+    #[arg(long, value_name = "N|LIST", default_value = "1", value_parser = FrameList::or_count, allow_hyphen_values = true)]
+    frames: FrameList,
+    /// Leaves pictures alone that are there already and whole, and a video that is there; makes the others.
+    #[arg(long, conflicts_with = "force")]
+    skip_existing: bool,
+    #[command(flatten)]
+    force: ForceArgs,
+    /// Prints a line of JSON for every frame, as apply does.
+    #[arg(long)]
+    json: bool,
+    /// Options of ffmpeg's encoder for a video, such as "-c:v libx265 -crf 20".
+    #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
+    encode: Option<String>,
+    /// Turns the camera once around the scene over all frames.
+    #[arg(long, conflicts_with = "camera")]
+    turntable: bool,
+    #[command(flatten)]
+    motion: MotionArgs,
+    /// Frames per second of the animation, and of a video.
+    #[arg(long, value_name = "N", default_value_t = 24.0)]
+    fps: f32,
+    /// Exposes and tone-maps the colour of EXR files too, as PNG files and the window have it.
+    #[arg(long)]
+    tone_mapped: bool,
+    /// How frames are stylized: none, the id of a node, a look, or a graph file or preset (.json).
+    #[arg(long, default_value = "none")]
+    style: PathBuf,
+    /// Sets a parameter of the style; node.id=value for one node of a graph. May be repeated.
+    #[arg(long, value_name = "ID=VALUE")]
+    set: Vec<Setting>,
+    #[command(flatten)]
+    lengths: LengthArgs,
+    #[command(flatten)]
+    precision: PrecisionArgs,
+    /// How steady the style is over time, from 0 to 1: frames before are carried along the scene's motion and averaged
+    /// before the style decides anything [default: what the style says].
+    #[arg(long, value_name = "S")]
+    steadiness: Option<f32>,
+}
+
+/// Runs the verb.
+///
+/// # Errors
+/// [`Error::Input`] for bad input before anything is rendered, [`Error::Failure`] when the device fails.
+pub fn run(args: &RenderArgs) -> Result<()> {
+    args.check()?;
+    let library = args.is_stylized().then(Library::open).transpose()?;
+    limits::start_threads(0)?;
+    let style = match &library {
+        Some(library) => {
+            let mut style = Style::load(library, &args.style, &args.set)?;
+            args.lengths.apply(&mut style);
+            args.precision.precision.apply(&style)?;
+            args.steadiness.map_or(Ok(()), |steadiness| style.steady(steadiness))?;
+            Some((library, style))
+        }
+        None => None,
+    };
+    if let Some((_, style)) = &style {
+        style.warn_of_keys_beyond(args.frames.frames());
+    }
+    let scene = args.scene.load()?;
+    args.check_scene(&scene)?;
+    let options = args.options(&scene)?;
+    let mut shot = Shot::new(scene, style, options)?;
+    files::sweep(&args.out);
+    let stop = Stop::on_signals();
+    let frames = args.frames.frames();
+    if frames.len() == 1 {
+        stop.ends_the_process("the picture");
+    }
+    let report = Report::new(frames.len(), frames.len() > 1, args.json);
+    let result = match video::is_video(&args.out) {
+        true => args.film(&mut shot, &stop, &report),
+        false => args.pictures(&mut shot, &stop, &report),
+    };
+    report.end(result.is_ok());
+    result
+}
+
+impl RenderArgs {
+    /// Renders every frame to a file of its own.
+    fn pictures(&self, shot: &mut Shot, stop: &Stop, report: &Report) -> Result<()> {
+        let results = self.results()?;
+        let count = results.len();
+        for (done, (number, file)) in results.into_iter().enumerate() {
+            if stop.is_requested() {
+                let problem = format!("stopped after {done} of {count} frames");
+                return Err(Error::failure(problem, self.consent().resuming()));
+            }
+            let is_there = self.skip_existing && read::is_whole(&file);
+            let is_written = !is_there && {
+                let picture = shot.draw(number)?;
+                let made = Made { from: None, to: &file };
+                self.consent().write(made, read::is_whole, |existing| match floats::is_exr(&file) {
+                    true => save_layers(shot, (&file, existing), &picture),
+                    false => floats::save(&file, existing, &picture),
+                })?
+            };
+            let outcome = if is_written { Outcome::Written(0) } else { Outcome::Skipped };
+            report.frame(&self.task(number, file), &outcome);
+        }
+        Ok(())
+    }
+
+    /// Numbers and files of the results; of a video there is one file for all.
+    fn results(&self) -> Result<Vec<(i64, PathBuf)>> {
+        let frames = self.frames.frames();
+        let pattern = match Pattern::new(&self.out)? {
+            _ if video::is_video(&self.out) => None,
+            None if frames.len() == 1 => None,
+            _ => Some(Pattern::or_added(&self.out)?),
+        };
+        let file = |number| pattern.as_ref().map_or_else(|| self.out.clone(), |pattern| pattern.file(number));
+        Ok(frames.iter().map(|number| (*number, file(*number))).collect())
+    }
+
+    fn consent(&self) -> Consent {
+        Consent { skip_existing: self.skip_existing, ..self.force.consent() }
+    }
+
+    /// Refuses results that are there already, or that are files which the command line names.
+    fn check_results(&self) -> Result<()> {
+        let results = self.results()?;
+        let is_sequence = results.len() > 1 && !video::is_video(&self.out);
+        let made: Vec<Made<'_>> = results.iter().map(|(_, file)| Made { from: None, to: file }).collect();
+        let read = || {
+            let named = [Some(self.scene.scene.clone()), self.scene.reading.texture.clone()];
+            let more = [self.staging.surroundings(), Some(self.style.clone())];
+            Ok(Inputs::of(named.into_iter().chain(more).flatten()))
+        };
+        self.consent().check(&made, is_sequence, read)
+    }
+
+    /// Refuses results that are files which the scene was read from.
+    fn check_scene(&self, scene: &Scene) -> Result<()> {
+        let is_read = |file: &PathBuf| Identity::of(file).is_some_and(|file| scene.files.contains(&file));
+        match self.results()?.into_iter().map(|(_, file)| file).find(is_read) {
+            Some(file) => Err(Error::file(&file, "is read with the scene", "name another file")),
+            None => Ok(()),
+        }
+    }
+
+    /// Renders all frames into a video.
+    fn film(&self, shot: &mut Shot, stop: &Stop, report: &Report) -> Result<()> {
+        let frames = self.frames.frames();
+        if self.skip_existing && self.out.is_file() {
+            frames.iter().for_each(|n| report.frame(&self.task(*n, self.out.clone()), &Outcome::Skipped));
+            return Ok(());
+        }
+        let make = |place: &Path| {
+            let mut film = None::<Film<'_>>;
+            for (done, &number) in frames.iter().enumerate() {
+                if stop.is_requested() {
+                    let problem = format!("stopped after {done} of {} frames", frames.len());
+                    return Err(Error::failure(problem, "start again"));
+                }
+                let picture = shot.draw(number)?;
+                let unequal = || Error::failure("a picture has no pixels", "use another --size");
+                let frame = video::shown(&picture).ok_or_else(unequal)?;
+                let film = match &mut film {
+                    Some(film) => film,
+                    None => {
+                        let rate = f64::from(self.fps);
+                        film.insert(Film::start(&frame, rate, (&self.out, place), self.encode.as_deref())?)
+                    }
+                };
+                if !film.put(&frame)? {
+                    break;
+                }
+                report.frame(&self.task(number, self.out.clone()), &Outcome::Written(0));
+            }
+            Film::end(film, &self.out)
+        };
+        let made = Made { from: None, to: &self.out };
+        let write = |existing| files::write_by_path(&self.out, existing, make);
+        self.consent().write(made, Path::is_file, write).map(drop).inspect_err(|_| report.nothing_written())
+    }
+
+    fn task(&self, number: i64, output: PathBuf) -> Task {
+        Task { frame: Some(number), input: self.scene.scene.clone(), output }
+    }
+
+    fn is_stylized(&self) -> bool {
+        self.style != Path::new("none")
+    }
+
+    /// Refuses what can be refused without a library, a scene or a device.
+    fn check(&self) -> Result<()> {
+        let is_video = video::is_video(&self.out) && self.out != Path::new("-");
+        if !is_video {
+            floats::check_extension(&self.out)?;
+        }
+        if self.encode.is_some() && !is_video {
+            return Err(Error::input(
+                "--encode",
+                "is for videos",
+                "leave it out, or name a video such as out.mp4",
+            ));
+        }
+        files::check_writable(&self.out, Existing::Replace)?;
+        self.check_results()?;
+        let steadiness = self.steadiness.map(|s| format!("--steadiness {s}"));
+        let setting = self.set.first().map(|setting| format!("--set {setting}")).or(steadiness);
+        if let (true, Some(setting)) = (!self.is_stylized(), setting) {
+            return Err(Error::input(
+                setting,
+                "the style none has no parameters",
+                "choose a style with --style",
+            ));
+        }
+        if !self.fps.is_finite() || self.fps <= 0.0 || !self.motion.start.is_finite() {
+            return Err(Error::input(
+                "--fps, --start",
+                "must be finite, and frames per second above 0",
+                "use 24 and 0",
+            ));
+        }
+        Ok(())
+    }
+
+    fn options(&self, scene: &Scene) -> Result<Options> {
+        let is_exr = floats::is_exr(&self.out);
+        let frames = self.frames.frames();
+        let first = frames.iter().min().copied().unwrap_or(1);
+        let last = frames.iter().max().copied().unwrap_or(1);
+        Ok(Options {
+            size: self.size,
+            range: (first, last.abs_diff(first) + 1),
+            turntable: self.turntable,
+            framing: self.staging.framing(),
+            camera: self.staging.find_camera(scene)?,
+            light: self.staging.light,
+            exposure: self.staging.exposure,
+            background: self.staging.read_background()?,
+            ground: self.staging.has_ground(scene),
+            animation: self.motion.choose(&self.scene.scene, scene)?,
+            start: self.motion.start,
+            fps: self.fps,
+            scene_referred: is_exr && !self.tone_mapped,
+            rest_positions: is_exr,
+        })
+    }
+}
+
+/// What the renderer knows of a pixel beside its colour: target, names of channels, precision.
+type Guide = (fn(&Targets) -> Option<&Target>, &'static [&'static str], Precision);
+
+/// Named as compositors and `apply` know them.
+const GUIDES: [Guide; 5] = [
+    (|targets| Some(&targets.normal), &["N.X", "N.Y", "N.Z"], Precision::Half),
+    (|targets| Some(&targets.depth), &["Z"], Precision::Float),
+    (|targets| Some(&targets.object_id), &["id"], Precision::Float),
+    (|targets| Some(&targets.motion), &["backward.u", "backward.v"], Precision::Float),
+    (|targets| targets.rest.as_ref(), &["Pref.X", "Pref.Y", "Pref.Z"], Precision::Float),
+];
+
+/// Writes a frame with everything that is known of it into one file.
+fn save_layers(shot: &mut Shot, (file, existing): (&Path, Existing), color: &Picture) -> Result<()> {
+    let (names, precision): (&[&str], _) = match color.channels {
+        1 => (&["Y"], Precision::Float),
+        _ => (&["R", "G", "B", "A"], Precision::Half),
+    };
+    let mut guides = Vec::with_capacity(GUIDES.len());
+    for (target, names, precision) in GUIDES {
+        if let Some(mut picture) = shot.read(target)? {
+            if names == ["backward.u", "backward.v"] {
+                // Compositors count rows from below.
+                picture.data.iter_mut().skip(1).step_by(2).for_each(|v| *v = 0.0 - *v);
+            }
+            guides.push((picture, names, precision));
+        }
+    }
+    let mut layers = vec![Layer { picture: color, names, precision }];
+    layers.extend(guides.iter().map(|(picture, names, precision)| Layer {
+        picture,
+        names,
+        precision: *precision,
+    }));
+    // A matrix column by column is the same for row vectors row by row.
+    floats::save_layers(file, existing, &layers, shot.view().map(|view| view.world_to_view.to_cols_array()))
+}

@@ -1,0 +1,95 @@
+//! Arguments that several verbs have.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use isophote_files::error::Result;
+use isophote_files::files::Existing;
+use isophote_files::replacing::Consent;
+use isophote_finishing::staging::ReadingArgs;
+use isophote_finishing::stylize::lengths::Lengths;
+use isophote_finishing::stylize::precision::Precision;
+use isophote_finishing::stylize::style::Style;
+use isophote_pictures::pixels::MOST_PIXELS;
+use isophote_scene::Scene;
+
+/// The scene of `render`.
+#[derive(Args, Debug)]
+pub struct SceneArgs {
+    /// The scene: .gltf, .glb or .obj.
+    pub scene: PathBuf,
+    /// How it is read.
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+}
+
+impl SceneArgs {
+    /// Loads the scene and prints its warnings.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn load(&self) -> Result<Scene> {
+        self.reading.load(&self.scene)
+    }
+}
+
+/// What lengths of a style mean.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct LengthArgs {
+    /// What lengths of parameters are: pixels of a picture 1080 lines high, so that pictures of all sizes get the same look,
+    /// or pixels of the picture itself [default: what the preset says, else relative].
+    #[arg(long, value_enum)]
+    pub lengths: Option<Lengths>,
+}
+
+impl LengthArgs {
+    /// Lets lengths mean what was asked for.
+    pub fn apply(self, style: &mut Style) {
+        style.lengths = self.lengths.unwrap_or(style.lengths);
+    }
+}
+
+/// How precisely graphics devices compute a style.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct PrecisionArgs {
+    /// How precisely graphics devices compute; the CPU always computes exactly.
+    #[arg(long, value_enum, default_value_t)]
+    pub precision: Precision,
+}
+
+/// Treatment of files that are there already.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct ForceArgs {
+    /// Replaces files that are there already; without it they stay, and the command is refused.
+    #[arg(long)]
+    pub force: bool,
+}
+
+impl ForceArgs {
+    /// Consent that was given.
+    pub fn consent(self) -> Consent {
+        Consent::forced(self.force)
+    }
+
+    /// Treatment of a file that is there.
+    pub fn existing(self) -> Existing {
+        if self.force { Existing::Replace } else { Existing::Keep }
+    }
+}
+
+/// Width and height in pixels, such as `1280x720`.
+///
+/// # Errors
+/// What to write instead.
+pub fn parse_size(text: &str) -> std::result::Result<(u32, u32), String> {
+    let parse = || {
+        let (width, height) = text.split_once(['x', 'X'])?;
+        Some((width.trim().parse::<u32>().ok()?, height.trim().parse::<u32>().ok()?))
+    };
+    parse()
+        .filter(|(width, height)| (1..=MOST_PIXELS).contains(&(u64::from(*width) * u64::from(*height))))
+        .ok_or_else(|| {
+            format!("write width and height such as 1280x720; at most {MOST_PIXELS} pixels in all")
+        })
+}

@@ -1,0 +1,246 @@
+//! What the window writes: by another process, the same as on the command line, and nothing that is not whole.
+
+mod support;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use isophote_window::document::kind::Kind;
+use isophote_window::document::{Document, Options};
+use isophote_window::export::{Export, Job, Progress, State};
+
+use support::{cube, folder, isophote, listing, picture, succeeds};
+
+/// This only ends a test that hangs.
+const PATIENCE: Duration = Duration::from_secs(120);
+const LOOK: &str =
+    r#"{"style": "cartoon", "lengths": "pixels", "parameters": {"posterize": 5, "sigma_d": 2}}"#;
+
+fn job(kind: Kind, input: &Path, output: &Path) -> Job {
+    // It finds the library beside the program.
+    support::library();
+    let mut job = Job::new(kind, input, output, Some(LOOK.into()));
+    job.program = Some(PathBuf::from(env!("CARGO_BIN_EXE_isophote")));
+    if kind != Kind::Scene {
+        job.arguments = vec!["--backend".into(), "cpu".into()];
+    }
+    job
+}
+
+/// Waits until `is_so`; returns how far the export is.
+fn wait_until(export: &Export, is_so: impl Fn(&Progress) -> bool) -> Progress {
+    let started = Instant::now();
+    loop {
+        let progress = export.poll();
+        if is_so(&progress) {
+            return progress;
+        }
+        assert!(started.elapsed() < PATIENCE, "{progress:?}");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+fn ended(job: Job) -> Progress {
+    let export = Export::start(job).unwrap_or_else(|e| panic!("{e}"));
+    wait_until(&export, |progress| progress.state != State::Running)
+}
+
+fn done(job: Job) -> f64 {
+    let progress = ended(job);
+    assert_eq!((&progress.state, progress.done), (&State::Done, progress.total));
+    progress.total
+}
+
+#[test]
+fn exports_are_what_the_command_line_writes() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("look.json"), LOOK).expect("the folder is writable");
+    for number in 1..=3 {
+        picture(90 + number, 60).save(at(&format!("in.000{number}.png"))).expect("the folder is writable");
+    }
+    let apply = |input: &str, output: &str| {
+        let mut command = isophote();
+        command.current_dir(folder.path()).args(["apply", "--preset", "look.json", input, output]);
+        succeeds(command.args(["--backend", "cpu"]));
+    };
+    let same = |a: &str, b: &str| {
+        assert!(fs::read(at(a)).expect("a file") == fs::read(at(b)).expect("a file"), "{a} and {b} differ");
+    };
+    for name in ["out.png", "out.exr", "out.jpg"] {
+        apply("in.0001.png", &format!("apply-{name}"));
+        assert_eq!(done(job(Kind::Picture, &at("in.0001.png"), &at(name))), 1.0);
+        same(name, &format!("apply-{name}"));
+    }
+    apply("in.####.png", "apply.####.exr");
+    assert_eq!(done(job(Kind::Sequence, &at("in.####.png"), &at("out.####.exr"))), 3.0);
+    (1..=3).for_each(|n| same(&format!("out.000{n}.exr"), &format!("apply.000{n}.exr")));
+    let mut second = job(Kind::Sequence, &at("in.####.png"), &at("some.####.exr"));
+    second.frames = Some("2-3".into());
+    assert_eq!(done(second), 2.0);
+    assert!(!at("some.0001.exr").exists());
+}
+
+#[test]
+fn turntables_go_once_around() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("look.json"), LOOK).expect("the folder is writable");
+    let scene = cube(folder.path());
+    let mut turn = job(Kind::Scene, &scene, &at("turn.####.png"));
+    (turn.turntable, turn.frames) = (true, Some("3".into()));
+    turn.arguments = ["--size", "64x48"].map(Into::into).into();
+    assert_eq!(done(turn), 3.0);
+    let (_, _) = succeeds(isophote().current_dir(folder.path()).args([
+        "render",
+        "cube.gltf",
+        "own.####.png",
+        "--style",
+        "look.json",
+        "--size",
+        "64x48",
+        "--turntable",
+        "--frames",
+        "3",
+    ]));
+    let read = |name: &str| fs::read(at(name)).expect("a file");
+    for n in 1..=3 {
+        assert!(read(&format!("turn.000{n}.png")) == read(&format!("own.000{n}.png")), "frame {n} differs");
+    }
+    assert!(read("turn.0001.png") != read("turn.0002.png"), "the camera moves");
+}
+
+#[test]
+fn videos_are_made_of_everything() {
+    if !support::has_ffmpeg() {
+        return;
+    }
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    // An odd row and column are left out.
+    for number in [1, 2, 4] {
+        picture(91, 61).save(at(&format!("in.000{number}.png"))).expect("the folder is writable");
+    }
+    let mut film = job(Kind::Sequence, &at("in.####.png"), &at("film.mp4"));
+    film.arguments.extend(["--on-missing", "skip"].map(Into::into));
+    film.rate = 12.0;
+    done(film);
+    let mut turn = job(Kind::Scene, &cube(folder.path()), &at("turn.mp4"));
+    (turn.turntable, turn.frames) = (true, Some("5".into()));
+    turn.arguments = ["--size", "65x48"].map(Into::into).into();
+    assert_eq!(done(turn), 5.0);
+    assert_eq!(done(job(Kind::Video, &at("turn.mp4"), &at("again.mkv"))), 5.0);
+    for (name, size, count, rate) in
+        [("film.mp4", (90, 60), 3, 12.0), ("turn.mp4", (64, 48), 5, 24.0), ("again.mkv", (64, 48), 5, 24.0)]
+    {
+        let document = Document::open(&at(name), &Options::default()).unwrap_or_else(|e| panic!("{e}"));
+        let frames = document.frames().expect("frames");
+        assert_eq!((frames.last(), frames.rate), (count, rate), "{name}");
+        let frame = document.wait(count).expect("a frame");
+        assert_eq!((frame.width, frame.height), size, "{name}");
+    }
+    // The first frame is the stylized picture, but for what the encoder loses.
+    let mut still = job(Kind::Picture, &at("in.0001.png"), &at("still.png"));
+    still.arguments.extend(["--lengths", "pixels"].map(Into::into));
+    done(still);
+    let still = image::open(at("still.png")).expect("a picture").into_rgb8();
+    let film =
+        Document::open(&at("film.mp4"), &Options::default()).expect("a video").wait(1).expect("a frame");
+    let differences = film.color.iter().enumerate().map(|(i, pixel)| {
+        let expected = still.get_pixel(i as u32 % 90, i as u32 / 90).0;
+        [0, 1, 2].map(|c: usize| (pixel[c] - f32::from(expected[c]) / 255.0).abs()).iter().sum::<f32>() / 3.0
+    });
+    let mean = differences.sum::<f32>() / (90.0 * 60.0);
+    assert!(mean < 0.02, "the video differs by {mean} from its pictures");
+}
+
+#[test]
+fn what_is_cancelled_leaves_nothing() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    picture(1600, 1200).save(at("in.png")).expect("the folder is writable");
+    let look = r#"{"style": "oil_paint"}"#;
+    let start = |output: &str| {
+        let mut job = job(Kind::Picture, &at("in.png"), &at(output));
+        job.preset = Some(look.into());
+        Export::start(job).unwrap_or_else(|e| panic!("{e}"))
+    };
+    let is_left = |names: &[&str]| {
+        let started = Instant::now();
+        while listing(folder.path()) != names {
+            assert!(started.elapsed() < PATIENCE, "{:?} is left", listing(folder.path()));
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    };
+    let mut export = start("out.png");
+    let progress = wait_until(&export, |progress| progress.done > 0.0);
+    assert!(progress.done < 1.0 && progress.total == 1.0, "a picture tells its share: {progress:?}");
+    let asked = Instant::now();
+    export.cancel();
+    assert!(asked.elapsed() < Duration::from_millis(50), "nobody waits for it");
+    assert_eq!(wait_until(&export, |progress| progress.state != State::Running).state, State::Cancelled);
+    assert_eq!(listing(folder.path()), ["in.png"]);
+    let export = start("dropped.png");
+    wait_until(&export, |progress| progress.done > 0.0);
+    drop(export);
+    drop(start("at-once.png"));
+    is_left(&["in.png"]);
+    // What was there before stays.
+    fs::write(at("out.png"), "before").expect("the folder is writable");
+    let mut export = start("out.png");
+    wait_until(&export, |progress| progress.total > 0.0);
+    export.cancel();
+    wait_until(&export, |progress| progress.state == State::Cancelled);
+    assert_eq!(fs::read(at("out.png")).expect("a file"), b"before");
+    is_left(&["in.png", "out.png"]);
+}
+
+#[test]
+fn videos_that_are_cancelled_leave_no_process_and_no_file() {
+    if !support::has_ffmpeg() {
+        return;
+    }
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let mut turn = job(Kind::Scene, &cube(folder.path()), &at("turn.mp4"));
+    (turn.turntable, turn.frames) = (true, Some("500".into()));
+    turn.arguments = ["--size", "320x240"].map(Into::into).into();
+    let before = listing(folder.path());
+    let mut export = Export::start(turn).unwrap_or_else(|e| panic!("{e}"));
+    let progress = wait_until(&export, |progress| progress.done >= 2.0);
+    assert_eq!(progress.total, 500.0);
+    export.cancel();
+    wait_until(&export, |progress| progress.state == State::Cancelled);
+    assert_eq!(listing(folder.path()), before);
+}
+
+#[test]
+fn failures_are_told_in_the_words_of_the_verb() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    picture(40, 30).save(at("in.0001.png")).expect("the folder is writable");
+    fs::write(at("in.0002.png"), "no picture").expect("the folder is writable");
+    let fails = |job: Job, words: &[&str]| {
+        let State::Failed(text) = ended(job).state else { panic!("nothing is wrong") };
+        assert!(words.iter().all(|word| text.contains(word)), "{text}");
+    };
+    fails(job(Kind::Picture, &at("missing.png"), &at("out.png")), &["missing.png"]);
+    fails(job(Kind::Picture, &at("in.0001.png"), &at("no/out.png")), &["no/out.png", "cannot be written"]);
+    fails(job(Kind::Picture, &at("in.0001.png"), &at("out.gif")), &["out.gif", ".png"]);
+    let bad = |text: &str| Job {
+        preset: Some(text.into()),
+        ..job(Kind::Picture, &at("in.0001.png"), &at("out.png"))
+    };
+    fails(bad("{"), &["look.json"]);
+    fails(bad(r#"{"style": "cartoon", "parameters": {"posterise": 1}}"#), &["posterise"]);
+    // The other frames are done.
+    fails(job(Kind::Sequence, &at("in.####.png"), &at("out.####.png")), &["in.0002.png", "1 of 2 frames"]);
+    assert!(at("out.0001.png").is_file());
+    let mut none = job(Kind::Picture, &at("in.0001.png"), &at("out.png"));
+    none.program = Some(at("nowhere"));
+    fails(none, &["cannot be started"]);
+    let plain = Job { preset: None, ..job(Kind::Picture, &at("in.0001.png"), &at("out.png")) };
+    assert!(Export::start(plain).is_err());
+    assert_eq!(listing(folder.path()), ["in.0001.png", "in.0002.png", "out.0001.png"]);
+}

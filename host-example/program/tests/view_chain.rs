@@ -1,0 +1,227 @@
+//! Looks that are lists of nodes: as graphs, as files, and in the window's panel.
+
+mod support;
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use isophote_loader::Library;
+use isophote_scene::Scene;
+use isophote_window::chain::{self, Chain, Watched};
+use isophote_window::look::Look;
+use isophote_window::scenery::{Scenery, Staging};
+use isophote_window::session::Session;
+use isophote_window::settings::Settings;
+use isophote_window::value::Value;
+use isophote_window::{command, ui};
+
+fn library() -> Library {
+    Library::from_file(support::library()).unwrap()
+}
+
+fn session(look: &str) -> Session {
+    let library = library();
+    let look = Look::open(&library, look.as_ref()).unwrap();
+    Session::new(library, vec![look], Settings::default()).unwrap()
+}
+
+fn names(session: &Session) -> Vec<String> {
+    session.chain.as_ref().unwrap().links.iter().map(|link| link.name.clone()).collect()
+}
+
+fn add(session: &mut Session, node: &str) {
+    session.relink(|chain, library| chain.add(library, node, chain.end()).map(drop));
+}
+
+#[test]
+fn graphs_that_are_lists_are_read_as_such_and_others_are_not() {
+    let library = library();
+    let graph = |name: &str| support::root().join(format!("host-example/graphs/{name}.json"));
+    let look = Look::open(&library, &graph("ink")).unwrap();
+    let chain = look.chain(&library).unwrap().unwrap();
+    let names: Vec<&str> = chain.links.iter().map(|link| link.name.as_str()).collect();
+    assert_eq!(names, ["smooth", "lines"]);
+    assert!(chain.has("tensor"));
+    assert_eq!(Chain::read(&library, &chain.json()).unwrap(), chain);
+    for other in ["poster", "flow"] {
+        assert!(Look::open(&library, &graph(other)).unwrap().chain(&library).unwrap().is_none(), "{other}");
+    }
+    for broken in
+        ["", "{}", r#"{"nodes": [], "output": "a"}"#, r#"{"nodes": [{"name": "a"}], "output": "a"}"#]
+    {
+        assert!(Chain::read(&library, broken).is_none(), "{broken}");
+    }
+}
+
+#[test]
+fn every_node_that_fits_can_follow_every_look() {
+    let library = library();
+    let fitting = chain::fitting(&library);
+    assert!(fitting.len() > 15);
+    let mut chain = Look::open(&library, "cartoon".as_ref()).unwrap().chain(&library).unwrap().unwrap();
+    for node in &fitting {
+        chain.add(&library, node.id, chain.end()).unwrap();
+    }
+    let json = chain.json();
+    library.graph_from_json(&json).unwrap();
+    assert_eq!(Chain::read(&library, &json).unwrap().json(), json);
+}
+
+#[test]
+fn nodes_are_added_moved_passed_by_and_removed_step_by_step() {
+    let mut session = session("cartoon");
+    let knob = session.knobs.iter().find(|knob| matches!(knob.default, Value::Float(_))).unwrap().clone();
+    let value = knob.default.others(&knob.param.kind).swap_remove(0);
+    session.set(&knob, &value);
+    session.let_go();
+    add(&mut session, "bilateral");
+    add(&mut session, "bilateral");
+    assert_eq!(names(&session), ["cartoon", "bilateral", "bilateral_2"]);
+    let kept = session.knobs.iter().find(|own| own.name == format!("cartoon.{}", knob.name)).unwrap();
+    assert_eq!(session.look().value(kept), value);
+
+    session.relink(|chain, _| {
+        chain.shift(0, 2);
+        Ok(())
+    });
+    assert_eq!(names(&session), ["bilateral", "bilateral_2", "cartoon"]);
+    session.relink(|chain, _| {
+        assert!(chain.toggle(1));
+        Ok(())
+    });
+    let chain = session.chain.clone().unwrap();
+    assert!(chain.links[1].bypassed);
+    assert_eq!(Chain::read(&session.library, &chain.json()).unwrap(), chain);
+    session.watched = Some(Watched::After("bilateral".into()));
+    assert!(session.seen().preset.style.contains(r#""output":"bilateral""#));
+    session.watched = Some(Watched::Alone("cartoon".into()));
+    assert_ne!(*session.seen(), *session.look());
+
+    session.relink(|chain, _| {
+        assert!(chain.remove(2), "one is left");
+        assert!(!chain.remove(0) && !chain.toggle(0), "the last one stays");
+        Ok(())
+    });
+    assert_eq!(names(&session), ["bilateral", "bilateral_2"]);
+    assert_eq!(session.watched, None, "its node is gone");
+    assert!(session.look().preset.params.is_empty());
+    for _ in 0..5 {
+        session.undo();
+    }
+    assert_eq!(session.look().preset.style, "cartoon");
+    assert_eq!(session.look().value(&knob), value);
+}
+
+#[test]
+fn what_the_window_saves_and_copies_is_what_apply_reads() {
+    let folder = support::folder();
+    let picture = folder.path().join("photo.png");
+    support::picture(64, 48).save(&picture).unwrap();
+    let mut session = session("cartoon");
+    add(&mut session, "bilateral");
+    session.relink(|chain, library| chain.add(library, "kuwahara", 0).map(drop));
+    let knob = session.knobs.iter().find(|knob| knob.name.starts_with("kuwahara.")).unwrap().clone();
+    let value = knob.default.others(&knob.param.kind).swap_remove(0);
+    session.set(&knob, &value);
+    let line = command::line(&session);
+    assert!(line.contains("isophote-graph") && line.contains("kuwahara."), "{line}");
+
+    let file = folder.path().join("mine.json");
+    let mut look = session.look().clone();
+    look.save(&file, look.preset.title.clone()).unwrap();
+    let opened = Look::open(&session.library, &file).unwrap();
+    assert_eq!(opened, look);
+    assert_eq!(
+        opened.chain(&session.library).unwrap().unwrap().json(),
+        session.chain.clone().unwrap().json()
+    );
+
+    let apply = |style: &std::ffi::OsStr, settings: &[String], name: &str| {
+        let output = folder.path().join(name);
+        let mut command = support::isophote();
+        command.arg("apply").arg(style).arg(&picture).arg(&output);
+        command.args(settings.iter().flat_map(|setting| ["--set", setting]));
+        let done = command.output().unwrap();
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        std::fs::read(output).unwrap()
+    };
+    let saved = apply(file.as_os_str(), &[], "saved.png");
+    let live = session.look();
+    let written = apply(live.preset.style.as_ref(), &live.settings(&session.knobs), "written.png");
+    assert!(saved == written);
+    assert!(saved != apply("cartoon".as_ref(), &[], "plain.png"));
+}
+
+#[test]
+fn the_panel_adds_and_removes_nodes() {
+    let mut session = session("cartoon");
+    let folder = support::folder();
+    let scene = Scene::load(&support::cube(folder.path()), None).unwrap();
+    session.show_scene(Scenery::new(scene, Staging::default(), 1.5), None, "cube".into());
+    let mut harness = Harness::builder()
+        .with_size(egui::vec2(1200.0, 1600.0))
+        .build_ui_state(|ui, session: &mut Session| ui::show(ui, session), session);
+    ui::theme::apply(&harness.ctx);
+    harness.run_ok();
+    for label in ["Nodes", "Add a node", "Smoothing", "Bilateral"] {
+        harness.get_by_label(label).click();
+        harness.run_ok();
+    }
+    assert_eq!(names(harness.state()), ["cartoon", "bilateral"]);
+    harness.get_by_label("Earlier bilateral").click();
+    harness.run_ok();
+    assert_eq!(names(harness.state()), ["bilateral", "cartoon"]);
+    harness.get_by_label("Bypass cartoon").click();
+    harness.run_ok();
+    assert!(harness.state().chain.as_ref().unwrap().links[1].bypassed);
+    harness.get_by_label("Solo cartoon").click();
+    harness.run_ok();
+    assert_eq!(harness.state().watched, Some(Watched::Alone("cartoon".into())));
+    harness.get_by_label("Remove cartoon").click();
+    harness.run_ok();
+    assert_eq!(names(harness.state()), ["bilateral"]);
+    harness.get_by_label("Undo").click();
+    harness.run_ok();
+    assert_eq!(names(harness.state()).len(), 2);
+}
+
+#[test]
+fn files_that_change_are_read_again_and_broken_ones_leave_the_look() {
+    let folder = support::folder();
+    let file = folder.path().join("mine.json");
+    std::fs::write(&file, r#"{"style": "cartoon", "parameters": {"posterize": 4}}"#).unwrap();
+    let mut session = session(file.to_str().unwrap());
+    let read = |session: &Session| Look::open(&session.library, &file);
+    let (look, steps) = (session.look().clone(), session.can());
+    session.reload(&file, read(&session));
+    assert_eq!((session.look(), session.can()), (&look, steps), "nothing has changed");
+
+    let knob = session.knobs.iter().find(|knob| knob.name == "posterize").unwrap().clone();
+    session.set(&knob, &Value::parse(&knob.param.kind, "7").unwrap());
+    session.let_go();
+    let edited = session.look().clone();
+    std::fs::write(&file, r#"{"style": "cartoon", "parameters": {"posterize": "#).unwrap();
+    session.reload(&file, read(&session));
+    assert_eq!(session.look(), &edited);
+    std::fs::write(&file, r#"{"style": "cartoon", "parameters": {"posterize": 9}}"#).unwrap();
+    session.reload(&file, read(&session));
+    assert_eq!(session.look().value(&knob).text(), "9");
+    assert!(!session.look().is_changed());
+    session.undo();
+    assert_eq!(session.look(), &edited, "what was not saved comes back");
+}
+
+#[test]
+fn a_graph_file_that_changes_beside_its_preset_is_another_look() {
+    let folder = support::folder();
+    let (graph, file) = (folder.path().join("graph.json"), folder.path().join("mine.json"));
+    let ink = std::fs::read_to_string(support::root().join("host-example/graphs/ink.json")).unwrap();
+    std::fs::write(&graph, &ink).unwrap();
+    std::fs::write(&file, r#"{"style": "graph.json"}"#).unwrap();
+    let mut session = session(file.to_str().unwrap());
+    assert_eq!(session.look().files(), [file.clone(), graph.clone()]);
+    std::fs::write(&graph, ink.replace("2.5", "4.5")).unwrap();
+    let read = Look::open(&session.library, &file);
+    session.reload(&file, read);
+    let knob = session.knobs.iter().find(|knob| knob.name == "tensor.rho").unwrap();
+    assert_eq!(session.look().value(knob).text(), "4.5");
+}

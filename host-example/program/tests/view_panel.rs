@@ -1,0 +1,198 @@
+//! The controls of `isophote view`, without a window: every parameter of every style is found by its label, and what is done
+//! to it changes the look.
+
+mod support;
+
+use std::collections::HashMap;
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use isophote_files::files::Existing;
+use isophote_loader::Library;
+use isophote_pictures::floats::{self, Layer, Picture, Precision};
+use isophote_scene::Scene;
+use isophote_window::document::{Document, Options};
+use isophote_window::look::Look;
+use isophote_window::reel::Reel;
+use isophote_window::scenery::{Scenery, Staging};
+use isophote_window::session::{Session, Wish};
+use isophote_window::settings::Settings;
+use isophote_window::ui;
+use isophote_window::value::Value;
+
+/// A session of all styles with a scene.
+fn session() -> Session {
+    let library = Library::from_file(support::library()).unwrap();
+    let mut names = vec!["none".to_owned()];
+    let catalogue = library.catalogue().unwrap();
+    names.extend(catalogue.nodes.iter().filter(|n| n.group == "styles").map(|n| n.id.to_owned()));
+    let looks = names.iter().map(|name| Look::open(&library, name.as_ref()).unwrap()).collect();
+    let mut session = Session::new(library, looks, Settings::default()).unwrap();
+    let folder = support::folder();
+    let scene = Scene::load(&support::cube(folder.path()), None).unwrap();
+    session.show_scene(Scenery::new(scene, Staging::default(), 1.5), None, "cube".into());
+    session
+}
+
+/// The controls in a window large enough for all of them.
+fn harness(session: Session) -> Harness<'static, Session> {
+    let mut harness = Harness::builder()
+        .with_size(egui::vec2(1200.0, 2400.0))
+        .build_ui_state(|ui, session: &mut Session| ui::show(ui, session), session);
+    ui::theme::apply(&harness.ctx);
+    harness.run_ok();
+    harness
+}
+
+/// Opens headings that are not among those that were opened before: they stay open from style to style.
+fn open_headings(harness: &mut Harness<'_, Session>, closed: &mut Vec<&str>) {
+    closed.retain(|heading| {
+        let found = harness.query_by_label(heading).map(|heading| heading.click());
+        harness.run_ok();
+        found.is_none()
+    });
+}
+
+#[test]
+fn every_parameter_of_every_style_is_found_by_its_label() {
+    let mut harness = harness(session());
+    let mut closed = vec!["Advanced", "Time", "Output", "Scene and light"];
+    for index in 1..harness.state().looks.len() {
+        harness.state_mut().choose(index);
+        harness.run_ok();
+        open_headings(&mut harness, &mut closed);
+        let session = harness.state();
+        let mut labels: HashMap<&str, usize> = HashMap::new();
+        for knob in &session.knobs {
+            *labels.entry(knob.param.label).or_default() += 1;
+        }
+        assert!(labels.len() > 10);
+        let name = session.look().name.clone();
+        for (label, count) in labels {
+            let is_control = |role| role != egui::accesskit::Role::Label;
+            let found =
+                harness.query_all_by_label(label).filter(|node| is_control(node.accesskit_node().role()));
+            let found = found.count();
+            assert!(found >= count, "{name}: '{label}' is the name of {found} controls");
+        }
+    }
+}
+
+#[test]
+fn a_value_is_undone_redone_and_set_back() {
+    let mut harness = harness(session());
+    harness.state_mut().choose(1);
+    harness.run_ok();
+    let session = harness.state_mut();
+    let knob = session.knobs.iter().find(|knob| matches!(knob.default, Value::Float(_))).unwrap().clone();
+    let Value::Float(before) = session.look().value(&knob) else { unreachable!() };
+    for step in 1..4 {
+        session.set(&knob, &Value::Float(before + 0.125 * step as f32));
+    }
+    session.let_go();
+    let after = Value::Float(before + 0.375);
+    assert_eq!(session.look().value(&knob), after);
+    assert!(session.look().differs(&knob) && session.look().is_changed());
+    session.undo();
+    assert_eq!(session.look().value(&knob), Value::Float(before), "a drag is one step");
+    session.redo();
+    assert_eq!(session.look().value(&knob), after);
+    harness.run_ok();
+    harness.get_by_label("Reset all").click();
+    harness.run_ok();
+    assert!(!harness.state().look().differs(&knob));
+    harness.get_by_label("Undo").click();
+    harness.run_ok();
+    assert_eq!(harness.state().look().value(&knob), after);
+}
+
+#[test]
+fn controls_can_be_used_by_programs_that_read_windows_aloud() {
+    let mut harness = harness(session());
+    let index = harness.state().looks.iter().position(|look| look.name == "Cartoon").unwrap();
+    harness.state_mut().choose(index);
+    harness.run_ok();
+    let knob = harness.state().knobs.iter().find(|knob| knob.param.label == "Posterize").unwrap().clone();
+    let slider = harness
+        .query_all_by_label("Posterize")
+        .find(|node| node.accesskit_node().role() == egui::accesskit::Role::Slider);
+    slider.unwrap().click();
+    harness.run_ok();
+    assert!(harness.state().look().differs(&knob), "a click in the middle of a slider sets it");
+    harness.get_by_label("Wipe").click();
+    harness.run_ok();
+    assert_eq!(harness.query_all_by_label("Wipe").count(), 2, "the line of the wipe has a name, too");
+    harness.get_by_label("?").click();
+    harness.run_ok();
+    assert!(harness.query_by_label_contains("original while it is held").is_some());
+}
+
+#[test]
+fn a_saved_look_is_the_same_look_and_its_command_is_short() {
+    let folder = support::folder();
+    let file = folder.path().join("mine.json");
+    let mut session = session();
+    session.choose(1);
+    let knobs = session.knobs.clone();
+    let changed = knobs.iter().filter(|knob| !matches!(knob.default, Value::Choice(_)));
+    for knob in changed.take(4) {
+        let other = knob.default.others(&knob.param.kind).swap_remove(0);
+        session.set(knob, &other);
+    }
+    let mut look = session.look().clone();
+    assert_eq!(look.settings(&knobs).len(), 4);
+    look.save(&file, look.preset.title.clone()).unwrap();
+    assert!(!look.is_changed() && look.settings(&knobs).is_empty());
+    let opened = Look::open(&session.library, &file).unwrap();
+    assert_eq!(opened, look);
+    std::fs::write(&file, r#"{"style": "cartoon", "parameters": {"later": 1}}"#).unwrap();
+    let error = Look::open(&session.library, &file).unwrap_err().to_string();
+    assert!(error.contains("later"), "{error}");
+}
+
+#[test]
+fn an_export_is_asked_for_in_a_window_of_its_own() {
+    let folder = support::folder();
+    let mut session = session();
+    session.file = Some(folder.path().join("cube.gltf"));
+    session.plan_export();
+    let mut harness = harness(session);
+    harness.get_by_label("A turntable").click();
+    harness.run_ok();
+    let plan = harness.state().plan.clone().expect("a plan");
+    assert!(plan.path.ends_with("cube-look.####.png"), "{}", plan.path);
+    assert_eq!(plan.frames().as_deref(), Some("96"));
+    harness.get_by_label("Start the export").click();
+    harness.run_ok();
+    assert_eq!(harness.state().wishes, [Wish::Export]);
+}
+
+#[test]
+fn layers_are_chosen_from_a_list() {
+    let folder = support::folder();
+    let file = folder.path().join("layers.exr");
+    write_layers(&file);
+    let mut session = session();
+    let document = Document::open(&file, &Options::default()).unwrap();
+    session.show_reel(Reel::new(document).unwrap());
+    let mut harness = harness(session);
+    harness.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Layer").click();
+    harness.run_ok();
+    harness.get_by_label("beauty").click();
+    harness.run_ok();
+    let wishes = &harness.state().wishes;
+    assert!(matches!(&wishes[..], [Wish::ChooseLayer(layer, None)] if layer.name == "beauty"), "{wishes:?}");
+}
+
+/// Writes a picture with a layer beside the main one.
+fn write_layers(file: &std::path::Path) {
+    let data: Vec<f32> = (0..8 * 4 * 6).map(|n| n as f32 / 192.0).collect();
+    let picture = |at: usize| Picture { width: 8, height: 4, channels: 3, data: data[at..at + 96].to_vec() };
+    let (main, beauty) = (picture(0), picture(96));
+    let precision = Precision::Half;
+    let layers = [
+        Layer { picture: &main, names: &["R", "G", "B"], precision },
+        Layer { picture: &beauty, names: &["beauty.R", "beauty.G", "beauty.B"], precision },
+    ];
+    floats::save_layers(file, Existing::Replace, &layers, None).unwrap();
+}

@@ -1,0 +1,37 @@
+//! The renderer: a scene to a picture, with everything that is known about each pixel beside its colour.
+//!
+//! | module | content |
+//! |---|---|
+//! | [`renderer`] | scene on a device, drawn frame by frame |
+//! | [`gpu`] | device of a program's own |
+//! | [`drivers`] | environment that drivers want |
+//! | [`look`] | lights and exposure of a frame |
+//! | [`background`] | sky, colour or surroundings behind the scene |
+//! | [`targets`] | textures that a frame is drawn into |
+//! | [`readback`] | textures to pictures in main memory |
+//! | [`timestamps`] | times of passes on the device |
+//! | [`buffers`], [`layouts`], [`pipelines`] | objects of the device, and how they are bound |
+
+#![forbid(unsafe_code)]
+
+pub mod background;
+pub mod buffers;
+pub mod drivers;
+pub mod gpu;
+mod ground;
+pub mod layouts;
+pub mod look;
+pub mod pipelines;
+pub mod readback;
+pub mod renderer;
+mod rest;
+mod shadow;
+pub mod targets;
+#[cfg(test)]
+mod tests;
+mod textures;
+pub mod timestamps;
+mod tone_map;
+mod uniforms;
+mod upload;
+mod visible;

@@ -1,0 +1,475 @@
+//! The renderer: a scene on a wgpu device that the caller owns, frame by frame, with everything that is known
+//! about each pixel beside its colour.
+//!
+//! A frame is a few passes over the scene and the picture: the shadow maps, the multisampled colours, the
+//! geometry buffer with one sample per pixel, and the tone mapping. They are recorded into the caller's
+//! command encoder; nothing is allocated once every pipeline that the scene needs has been used.
+
+use glam::Mat4;
+
+use crate::background::{Backdrop, Background};
+use crate::layouts::{Layouts, bind_buffer};
+use crate::look::Look;
+use crate::pipelines::{Pass, Pipelines, Variant};
+use crate::shadow::{Cascades, ShadowMaps};
+use crate::targets::{REST_FORMAT, Target, Targets};
+use crate::textures::TextureStore;
+use crate::tone_map::ToneMap;
+use crate::uniforms::{FrameBlock, InstanceBlock, LightBlock};
+use crate::upload::GpuPrimitive;
+use crate::visible::Visible;
+use crate::{ground, layouts, look, rest, uniforms, upload};
+use isophote_files::error::Result;
+use isophote_scene::camera::View;
+use isophote_scene::pose::Pose;
+use isophote_scene::{AlphaMode, Scene};
+
+/// A scene on the GPU with the targets it is rendered into.
+pub struct Renderer {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    layouts: Layouts,
+    pipelines: Pipelines,
+    backdrop: Backdrop,
+    /// Draws the shadow on the ground, where there is to be one.
+    ground: Option<wgpu::RenderPipeline>,
+    /// Whether this frame has one.
+    shows_ground: bool,
+    targets: Targets,
+    primitives: Vec<Vec<GpuPrimitive>>,
+    materials: Vec<wgpu::BindGroup>,
+    buffers: Buffers,
+    shadow_maps: ShadowMaps,
+    cascades: Option<Cascades>,
+    tone_map: ToneMap,
+    joints: Vec<Option<u32>>,
+    weights: Vec<u32>,
+    /// For every draw, from its mesh to the scene at rest.
+    rest: Vec<Mat4>,
+    joint_count: usize,
+    weight_count: usize,
+    history: History,
+    scratch: Scratch,
+    visible: Visible,
+}
+
+/// Buffers that are filled anew for each frame, and the group that binds them.
+struct Buffers {
+    frame: wgpu::Buffer,
+    instances: wgpu::Buffer,
+    joints: wgpu::Buffer,
+    weights: wgpu::Buffer,
+    lights: wgpu::Buffer,
+    bind_group: wgpu::BindGroup,
+}
+
+/// The frame before this one; empty before the first.
+#[derive(Default)]
+struct History {
+    view_projection: Option<Mat4>,
+    models: Vec<Mat4>,
+}
+
+/// Memory that is reused from frame to frame. Joints and weights hold the current frame's values and then the
+/// previous one's.
+#[derive(Default)]
+struct Scratch {
+    instances: Vec<InstanceBlock>,
+    joints: Vec<Mat4>,
+    weights: Vec<f32>,
+    lights: Vec<LightBlock>,
+    mirrored: Vec<bool>,
+}
+
+impl Renderer {
+    /// Uploads a scene and allocates targets of `size` pixels. Errors that the device reports later than this
+    /// are found by [`crate::gpu::Gpu::check`].
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Input`] when the size or a part of the scene is beyond the limits of the device.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene, size: (u32, u32)) -> Result<Self> {
+        let targets = Targets::new(device, size.0, size.1)?;
+        let layouts = Layouts::new(device);
+        let mut textures = TextureStore::new(device, queue);
+        let mut primitives = Vec::with_capacity(scene.meshes.len());
+        for mesh in &scene.meshes {
+            let uploaded: Result<Vec<_>> =
+                mesh.primitives.iter().map(|p| upload::primitive(device, &layouts, &mesh.name, p)).collect();
+            primitives.push(uploaded?);
+        }
+        let mut materials = Vec::with_capacity(scene.materials.len());
+        for material in &scene.materials {
+            materials.push(upload::material(device, queue, &layouts, &mut textures, scene, material)?);
+        }
+        let (joints, joint_count) = joint_offsets(scene);
+        let (weights, weight_count) = weight_offsets(scene);
+        let light_count = look::visible_lights(scene).count();
+        let buffers =
+            Buffers::new(device, &layouts, scene.draws.len(), joint_count, weight_count, light_count);
+        let shadow_maps = ShadowMaps::new(device, &layouts);
+        let tone_map = ToneMap::new(device, &targets);
+        Ok(Self {
+            pipelines: Pipelines::new(device, &layouts),
+            layouts,
+            backdrop: Backdrop::sky(),
+            ground: None,
+            shows_ground: false,
+            device: device.clone(),
+            queue: queue.clone(),
+            targets,
+            primitives,
+            materials,
+            buffers,
+            shadow_maps,
+            cascades: None,
+            tone_map,
+            joints,
+            weights,
+            rest: rest::matrices(scene),
+            joint_count,
+            weight_count,
+            history: History::default(),
+            scratch: Scratch::default(),
+            visible: Visible::default(),
+        })
+    }
+
+    /// What the last frame was rendered into.
+    pub fn targets(&self) -> &Targets {
+        &self.targets
+    }
+
+    /// Replaces the targets by ones of another size; motion begins anew.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`]; the old targets then stay.
+    pub fn resize(&mut self, size: (u32, u32)) -> Result<()> {
+        if size != (self.targets.width, self.targets.height) {
+            let has_rest = self.targets.rest.is_some();
+            self.targets = Targets::new(&self.device, size.0, size.1)?;
+            if has_rest {
+                self.add_rest_positions();
+            }
+            self.tone_map.bind(&self.device, &self.targets);
+            self.forget_motion();
+        }
+        Ok(())
+    }
+
+    /// Renders rest positions too from now on, in a pass of their own.
+    pub fn add_rest_positions(&mut self) {
+        if self.targets.rest.is_some() {
+            return;
+        }
+        let size = (self.targets.width, self.targets.height);
+        self.targets.rest = Some(Target::new(&self.device, "rest position", REST_FORMAT, 1, size));
+    }
+
+    /// Takes another background from now on. `scene_referred` says that colours are wanted before tone mapping.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Input`] for pictures beyond the limits of the device.
+    pub fn set_background(&mut self, background: &Background, scene_referred: bool) -> Result<()> {
+        let (device, queue) = (&self.device, &self.queue);
+        self.backdrop = Backdrop::new(device, queue, &self.layouts, background, scene_referred)?;
+        Ok(())
+    }
+
+    /// Lets the scene cast its shadow on an invisible ground at its lowest point from now on.
+    pub fn add_ground(&mut self) {
+        self.ground.get_or_insert_with(|| ground::pipeline(&self.device, &self.layouts));
+    }
+
+    /// Makes the next frame the first of a sequence: its motion vectors are 0.
+    pub fn forget_motion(&mut self) {
+        self.history = History::default();
+    }
+
+    /// Makes a frame that is not rendered the one before the next, which its motion starts from.
+    pub fn pass_over(&mut self, scene: &Scene, pose: &Pose, view: &View, look: &Look) {
+        let frame = self.write_buffers(scene, pose, view, look);
+        self.history.view_projection = Some(frame.view_projection);
+    }
+
+    /// Records one frame of `scene`, which must be the one given to [`Renderer::new`], in `pose`. Buffers are
+    /// written through the queue, so the encoder must be submitted before the next call.
+    pub fn encode(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &Scene,
+        pose: &Pose,
+        view: &View,
+        look: &Look,
+    ) {
+        let frame = self.write_buffers(scene, pose, view, look);
+        for draw in 0..scene.draws.len() {
+            for pass in [Pass::Shadow, Pass::Depth, Pass::Surface, Pass::Geometry] {
+                self.pipelines.prepare(&self.device, self.variant(scene, draw, pass));
+            }
+            if self.targets.rest.is_some() {
+                self.pipelines.prepare(&self.device, self.variant(scene, draw, Pass::Rest));
+            }
+        }
+        let eye = frame.eye.truncate();
+        self.visible.update(scene, &self.primitives, pose, eye, frame.view_projection);
+        self.shadow_passes(encoder, scene);
+        self.surface_pass(encoder, scene);
+        let targets = &self.targets;
+        let geometry = [&targets.normal, &targets.depth, &targets.object_id, &targets.motion];
+        self.geometry_pass(encoder, scene, Pass::Geometry, &geometry);
+        if let Some(rest) = &self.targets.rest {
+            self.geometry_pass(encoder, scene, Pass::Rest, &[rest]);
+        }
+        self.tone_map.encode(encoder, &self.targets);
+        self.history.view_projection = Some(frame.view_projection);
+    }
+
+    fn write_buffers(&mut self, scene: &Scene, pose: &Pose, view: &View, look: &Look) -> FrameBlock {
+        let scratch = &mut self.scratch;
+        let first = self.history.models.len() != scene.draws.len();
+        fill_joints(scene, pose, &self.joints, self.joint_count, &mut scratch.joints, first);
+        fill_weights(pose, &self.weights, self.weight_count, &mut scratch.weights, first);
+        scratch.instances.clear();
+        scratch.mirrored.clear();
+        self.history.models.resize(scene.draws.len(), Mat4::IDENTITY);
+        for (index, draw) in scene.draws.iter().enumerate() {
+            let primitive = scene.primitive(draw);
+            let joints = self.joints[draw.node].filter(|_| !primitive.influences.is_empty());
+            let model = pose.world[draw.node];
+            let previous = std::mem::replace(&mut self.history.models[index], model);
+            let skeleton = joints.map(|j| scratch.joints[j as usize]);
+            scratch.mirrored.push(skeleton.unwrap_or(model).determinant() < 0.0);
+            scratch.instances.push(InstanceBlock {
+                model,
+                previous_model: if first { model } else { previous },
+                rest: self.rest[index],
+                joints: joints.unwrap_or(0),
+                previous_joints: joints.unwrap_or(0) + self.joint_count as u32,
+                weights: self.weights[draw.node],
+                previous_weights: self.weights[draw.node] + self.weight_count as u32,
+                morph_targets: primitive.morph_targets.len() as u32,
+                vertex_count: primitive.vertices.len() as u32,
+                influence_sets: if joints.is_some() { primitive.influence_sets as u32 } else { 0 },
+                object_id: index as u32 + 1,
+            });
+        }
+        uniforms::lights(scene, pose, look, &mut scratch.lights);
+        let size = (self.targets.width, self.targets.height);
+        let cascades = Cascades::new(scene, look, view, size.0 as f32 / size.1 as f32);
+        self.cascades = look.sun_color.map(|_| cascades);
+        let ground = self.ground.as_ref().and_then(|_| ground::plane(scene, look, view));
+        self.shows_ground = ground.is_some();
+        let mut frame = FrameBlock::new(view, look, &cascades, ground, size, self.history.view_projection);
+        frame.settings.y = scratch.lights.len() as f32;
+        let write = |buffer: &wgpu::Buffer, bytes: &[u8]| {
+            if !bytes.is_empty() {
+                self.queue.write_buffer(buffer, 0, bytes);
+            }
+        };
+        write(&self.buffers.frame, bytemuck::bytes_of(&frame));
+        write(&self.buffers.instances, bytemuck::cast_slice(&scratch.instances));
+        write(&self.buffers.joints, bytemuck::cast_slice(&scratch.joints));
+        write(&self.buffers.weights, bytemuck::cast_slice(&scratch.weights));
+        write(&self.buffers.lights, bytemuck::cast_slice(&scratch.lights));
+        self.tone_map.set(&self.queue, look.exposure, self.backdrop.behind);
+        frame
+    }
+
+    fn variant(&self, scene: &Scene, draw: usize, pass: Pass) -> Variant {
+        let material = &scene.materials[scene.primitive(&scene.draws[draw]).material];
+        Variant::new(pass, material, self.scratch.mirrored[draw])
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass, scene: &Scene, index: usize, kind: Pass) {
+        let Some(pipeline) = self.pipelines.get(self.variant(scene, index, kind)) else { return };
+        let draw = &scene.draws[index];
+        let primitive = &self.primitives[draw.mesh][draw.primitive];
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(1, &primitive.bind_group, &[]);
+        pass.set_bind_group(2, &self.materials[scene.primitive(draw).material], &[]);
+        pass.set_vertex_buffer(0, primitive.vertices.slice(..));
+        pass.set_index_buffer(primitive.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..primitive.index_count, 0, index as u32..index as u32 + 1);
+    }
+
+    fn shadow_passes(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene) {
+        let Some(cascades) = &self.cascades else { return };
+        for cascade in 0..cascades.count {
+            let depth = layouts::depth(&self.shadow_maps.layers[cascade], 1.0, wgpu::StoreOp::Store);
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("shadow"),
+                depth_stencil_attachment: Some(depth),
+                ..Default::default()
+            });
+            pass.set_bind_group(0, &self.buffers.bind_group, &[]);
+            pass.set_bind_group(3, &self.shadow_maps.layer_groups[cascade], &[]);
+            for (index, sphere) in self.visible.spheres.iter().enumerate() {
+                // What is shown as it is, such as a painted sky, stands in no light.
+                let unlit = scene.materials[scene.primitive(&scene.draws[index]).material].unlit;
+                if !unlit && sphere.is_none_or(|(middle, radius)| cascades.reaches(cascade, middle, radius)) {
+                    self.draw(&mut pass, scene, index, Pass::Shadow);
+                }
+            }
+        }
+    }
+
+    fn surface_pass(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene) {
+        let targets = &self.targets;
+        let mut color = layouts::cleared(&targets.multisampled.view, self.backdrop.clear);
+        color.resolve_target = Some(&targets.radiance.view);
+        color.ops.store = wgpu::StoreOp::Discard;
+        let depth = layouts::depth(&targets.multisampled_depth.view, 0.0, wgpu::StoreOp::Discard);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("surface"),
+            color_attachments: &[Some(color)],
+            depth_stencil_attachment: Some(depth),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.buffers.bind_group, &[]);
+        pass.set_bind_group(3, &self.shadow_maps.group, &[]);
+        for &(_, index) in &self.visible.solid {
+            let material = &scene.materials[scene.primitive(&scene.draws[index]).material];
+            if material.alpha_mode == AlphaMode::Opaque {
+                self.draw(&mut pass, scene, index, Pass::Depth);
+            }
+        }
+        for &(_, index) in &self.visible.solid {
+            self.draw(&mut pass, scene, index, Pass::Surface);
+        }
+        self.backdrop.draw(&mut pass, &self.pipelines.background);
+        if let Some(ground) = self.ground.as_ref().filter(|_| self.shows_ground) {
+            pass.set_pipeline(ground);
+            pass.set_bind_group(1, &self.shadow_maps.group, &[]);
+            pass.draw(0..4, 0..1);
+        }
+        for &(_, index) in &self.visible.blended {
+            self.draw(&mut pass, scene, index, Pass::Surface);
+        }
+    }
+
+    /// One sample a pixel of what is nearest, into `targets`.
+    fn geometry_pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &Scene,
+        kind: Pass,
+        targets: &[&Target],
+    ) {
+        let attachments: Vec<_> =
+            targets.iter().map(|t| Some(layouts::cleared(&t.view, wgpu::Color::TRANSPARENT))).collect();
+        let depth = layouts::depth(&self.targets.geometry_depth.view, 0.0, wgpu::StoreOp::Discard);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("geometry"),
+            color_attachments: &attachments,
+            depth_stencil_attachment: Some(depth),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.buffers.bind_group, &[]);
+        pass.set_bind_group(3, &self.shadow_maps.group, &[]);
+        for &(_, index) in self.visible.solid.iter().chain(&self.visible.blended) {
+            self.draw(&mut pass, scene, index, kind);
+        }
+    }
+}
+
+/// Where the joints of each skinned node begin, and how many there are in all.
+fn joint_offsets(scene: &Scene) -> (Vec<Option<u32>>, usize) {
+    let mut total = 0;
+    let offsets = scene
+        .nodes
+        .iter()
+        .map(|node| {
+            let skin = node.skin.filter(|_| node.visible && node.mesh.is_some())?;
+            let start = total;
+            total += scene.skins[skin].joints.len();
+            Some(start as u32)
+        })
+        .collect();
+    (offsets, total)
+}
+
+/// Where the morph weights of each node begin, and how many there are in all.
+fn weight_offsets(scene: &Scene) -> (Vec<u32>, usize) {
+    let mut total = 0;
+    let offsets = scene
+        .nodes
+        .iter()
+        .map(|node| {
+            let start = total;
+            total += node.weights.len();
+            start as u32
+        })
+        .collect();
+    (offsets, total)
+}
+
+fn fill_joints(
+    scene: &Scene,
+    pose: &Pose,
+    offsets: &[Option<u32>],
+    count: usize,
+    joints: &mut Vec<Mat4>,
+    first: bool,
+) {
+    joints.resize(2 * count, Mat4::IDENTITY);
+    joints.copy_within(..count, count);
+    for (node, offset) in offsets.iter().enumerate() {
+        let (Some(offset), Some(skin)) = (offset, scene.nodes[node].skin) else { continue };
+        for joint in 0..scene.skins[skin].joints.len() {
+            joints[*offset as usize + joint] = pose.joint_matrix(scene, skin, joint);
+        }
+    }
+    if first {
+        joints.copy_within(..count, count);
+    }
+}
+
+fn fill_weights(pose: &Pose, offsets: &[u32], count: usize, weights: &mut Vec<f32>, first: bool) {
+    weights.resize(2 * count, 0.0);
+    weights.copy_within(..count, count);
+    for (node, own) in pose.weights.iter().enumerate() {
+        let start = offsets[node] as usize;
+        weights[start..start + own.len()].copy_from_slice(own);
+    }
+    if first {
+        weights.copy_within(..count, count);
+    }
+}
+
+impl Buffers {
+    fn new(
+        device: &wgpu::Device,
+        layouts: &Layouts,
+        draws: usize,
+        joints: usize,
+        weights: usize,
+        lights: usize,
+    ) -> Self {
+        let make = |label, size: usize, usage| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: size as u64,
+                usage: usage | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let storage = wgpu::BufferUsages::STORAGE;
+        let frame = make("frame", size_of::<FrameBlock>(), wgpu::BufferUsages::UNIFORM);
+        let instances = make("instances", draws.max(1) * size_of::<InstanceBlock>(), storage);
+        let joints = make("joints", 2 * joints.max(1) * size_of::<Mat4>(), storage);
+        let weights = make("weights", 2 * weights.max(1) * size_of::<f32>(), storage);
+        let lights = make("lights", lights.max(1) * size_of::<LightBlock>(), storage);
+        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("frame"),
+            layout: &layouts.frame,
+            entries: &[
+                bind_buffer(0, &frame),
+                bind_buffer(1, &instances),
+                bind_buffer(2, &joints),
+                bind_buffer(3, &weights),
+                bind_buffer(4, &lights),
+            ],
+        });
+        Self { frame, instances, joints, weights, lights, bind_group }
+    }
+}

@@ -1,0 +1,212 @@
+//! Meshes of a glTF document: attributes, morph targets and skin influences of each primitive.
+
+use std::collections::HashMap;
+
+use gltf::Semantic;
+use gltf::mesh::Mode;
+
+use super::accessors::{Accessors, Pick};
+use super::materials::label;
+use crate::geometry::{self, Topology};
+use crate::model::{Influence, Mesh, MorphDelta, Primitive, Scene, Vertex};
+
+/// Reads all meshes into the scene, whose materials must be there already.
+///
+/// # Errors
+/// A clause naming the mesh and what is wrong with it.
+pub fn read(document: &gltf::Document, accessors: &Accessors, scene: &mut Scene) -> Result<(), String> {
+    for mesh in document.meshes() {
+        let name = label(mesh.name(), mesh.index());
+        let mut primitives = Vec::new();
+        for primitive in mesh.primitives() {
+            let topology = match primitive.mode() {
+                Mode::Triangles => Topology::List,
+                Mode::TriangleStrip => Topology::Strip,
+                Mode::TriangleFan => Topology::Fan,
+                other => {
+                    scene
+                        .warnings
+                        .push(format!("mesh {name} has a primitive of {other:?}, which is left out"));
+                    continue;
+                }
+            };
+            let read = read_primitive(primitive, topology, accessors, scene)
+                .map_err(|problem| format!("mesh {name}: {problem}"))?;
+            if !read.indices.is_empty() {
+                primitives.push(read);
+            }
+        }
+        scene.meshes.push(Mesh {
+            name: mesh.name().unwrap_or_default().to_owned(),
+            primitives,
+            weights: mesh.weights().unwrap_or_default().to_vec(),
+        });
+    }
+    Ok(())
+}
+
+/// What the parts of a primitive are read with.
+struct Reader<'a> {
+    source: gltf::Primitive<'a>,
+    accessors: &'a Accessors<'a>,
+    /// Vertices in the file.
+    count: usize,
+    /// Those that a triangle uses.
+    used: Pick<'a>,
+}
+
+fn read_primitive(
+    source: gltf::Primitive,
+    topology: Topology,
+    accessors: &Accessors,
+    scene: &Scene,
+) -> Result<Primitive, String> {
+    let count = source.get(&Semantic::Positions).ok_or("it has no positions")?.count();
+    let mut indices = read_indices(&source, topology, count, accessors)?;
+    let kept = compact(&mut indices, count);
+    let used = kept.as_deref().map_or(Pick::All, Pick::These);
+    let material = source.material().index().unwrap_or(scene.materials.len() - 1);
+    let reader = Reader { source, accessors, count, used };
+    let mut primitive = Primitive { indices, material, ..Primitive::default() };
+    let positions = reader.attribute(Semantic::Positions, &[3], [0.0; 3])?.unwrap_or_default();
+    let normals = reader.attribute(Semantic::Normals, &[3], [0.0; 3])?;
+    let tangents = reader.attribute(Semantic::Tangents, &[4], [0.0; 4])?;
+    let (flat, bent) = (normals.is_none(), normals.is_none() || tangents.is_none());
+    // Flat normals need vertices of their own for every corner.
+    let vertices = if flat { primitive.indices.len().max(positions.len()) } else { positions.len() };
+    accessors.budget.take(vertices, size_of::<Vertex>())?;
+    primitive.vertices =
+        positions.into_iter().map(|position| Vertex { position, ..Vertex::default() }).collect();
+    fill(&mut primitive, normals, |v, x| v.normal = x);
+    fill(&mut primitive, tangents, |v, x| v.tangent = x);
+    fill(&mut primitive, reader.attribute(Semantic::TexCoords(0), &[2], [0.0; 2])?, |v, x| v.uv0 = x);
+    fill(&mut primitive, reader.attribute(Semantic::TexCoords(1), &[2], [0.0; 2])?, |v, x| v.uv1 = x);
+    fill(&mut primitive, reader.attribute(Semantic::Colors(0), &[3, 4], [1.0; 4])?, |v, x| v.color = x);
+    reader.influences(&mut primitive, vertices)?;
+    reader.morph_targets(&mut primitive, vertices)?;
+    if flat {
+        geometry::flat_normals(&mut primitive);
+    }
+    if let Some(map) = scene.materials[primitive.material].normal_texture.filter(|_| bent) {
+        geometry::tangents(&mut primitive, map.uv_set);
+    }
+    Ok(primitive)
+}
+
+/// The triangles of a primitive as indices of its `count` vertices.
+fn read_indices(
+    source: &gltf::Primitive,
+    topology: Topology,
+    count: usize,
+    accessors: &Accessors,
+) -> Result<Vec<u32>, String> {
+    let indices = match source.indices() {
+        Some(accessor) => accessors.integers(&accessor, 1, Pick::All)?,
+        None => {
+            accessors.budget.take(count, size_of::<u32>())?;
+            (0..count as u32).collect()
+        }
+    };
+    if let Some(bad) = indices.iter().find(|i| **i as usize >= count) {
+        return Err(format!("it has an index {bad} but only {count} vertices"));
+    }
+    accessors.budget.take(indices.len(), 3 * size_of::<u32>())?;
+    Ok(geometry::triangle_list(topology, &indices))
+}
+
+/// Makes indices count only the vertices that they use, and yields these in ascending order; `None` where all
+/// `count` are used. The time is that of the indices, however many vertices there are.
+fn compact(indices: &mut [u32], count: usize) -> Option<Vec<u32>> {
+    let mut used = indices.to_vec();
+    used.sort_unstable();
+    used.dedup();
+    if used.len() == count {
+        return None;
+    }
+    let places: HashMap<u32, u32> = used.iter().zip(0..).map(|(&index, place)| (index, place)).collect();
+    for index in indices {
+        *index = places[index];
+    }
+    Some(used)
+}
+
+fn fill<T>(primitive: &mut Primitive, values: Option<Vec<T>>, set: impl Fn(&mut Vertex, T)) {
+    for (vertex, value) in primitive.vertices.iter_mut().zip(values.into_iter().flatten()) {
+        set(vertex, value);
+    }
+}
+
+impl Reader<'_> {
+    /// An attribute of every used vertex; surplus numbers are dropped, missing ones taken from `default`.
+    fn attribute<const N: usize>(
+        &self,
+        semantic: Semantic,
+        widths: &[usize],
+        default: [f32; N],
+    ) -> Result<Option<Vec<[f32; N]>>, String> {
+        let Some(accessor) = self.source.get(&semantic) else { return Ok(None) };
+        if accessor.count() != self.count {
+            return Err(format!("its {semantic:?} are not as many as its positions"));
+        }
+        Ok(Some(self.accessors.floats(&accessor, widths, self.used)?.arrays(default)))
+    }
+
+    fn influences(&self, primitive: &mut Primitive, vertices: usize) -> Result<(), String> {
+        let mut sets = Vec::new();
+        let semantics = |set: usize| (Semantic::Joints(set as u32), Semantic::Weights(set as u32));
+        loop {
+            let (joints, weights) = semantics(sets.len());
+            let (Some(joints), Some(_)) = (self.source.get(&joints), self.source.get(&weights)) else {
+                break;
+            };
+            if joints.count() != self.count {
+                return Err("its joints or weights are not as many as its positions".into());
+            }
+            let joints = self.accessors.integers(&joints, 4, self.used)?;
+            sets.push((joints, self.attribute(weights, &[4], [0.0; 4])?.unwrap_or_default()));
+        }
+        self.accessors.budget.take(vertices, sets.len() * size_of::<Influence>())?;
+        primitive.influence_sets = sets.len();
+        for vertex in 0..primitive.vertices.len() {
+            let start = primitive.influences.len();
+            for (joints, weights) in &sets {
+                let joints = [0, 1, 2, 3].map(|k| joints[vertex * 4 + k]);
+                primitive.influences.push(Influence { joints, weights: weights[vertex].map(|w| w.max(0.0)) });
+            }
+            // Quantized weights rarely sum to 1 exactly; a vertex without any follows the first joint.
+            let own = &mut primitive.influences[start..];
+            let sum: f32 = own.iter().flat_map(|i| i.weights).sum();
+            if sum > 0.0 {
+                own.iter_mut().for_each(|i| i.weights = i.weights.map(|w| w / sum));
+            } else if let Some(first) = own.first_mut() {
+                first.weights[0] = 1.0;
+            }
+        }
+        Ok(())
+    }
+
+    fn morph_targets(&self, primitive: &mut Primitive, vertices: usize) -> Result<(), String> {
+        let read = |accessor: Option<gltf::Accessor>| {
+            let Some(accessor) = accessor else { return Ok(None) };
+            if accessor.count() != self.count {
+                return Err("a morph target has not as many deltas as the mesh has positions".to_owned());
+            }
+            Ok(Some(self.accessors.floats(&accessor, &[3], self.used)?.arrays([0.0; 3])))
+        };
+        for target in self.source.morph_targets() {
+            let (positions, normals, tangents) =
+                (read(target.positions())?, read(target.normals())?, read(target.tangents())?);
+            self.accessors.budget.take(vertices, size_of::<MorphDelta>())?;
+            let delta = |deltas: &Option<Vec<[f32; 3]>>, i: usize| deltas.as_ref().map_or([0.0; 3], |d| d[i]);
+            let deltas = (0..primitive.vertices.len())
+                .map(|i| MorphDelta {
+                    position: delta(&positions, i),
+                    normal: delta(&normals, i),
+                    tangent: delta(&tangents, i),
+                })
+                .collect();
+            primitive.morph_targets.push(deltas);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,39 @@
+//! Scenes: reading them, posing them, and where they are seen from.
+//!
+//! | module | content |
+//! |---|---|
+//! | [`model`] | meshes, nodes and lights of a scene, and their bounds |
+//! | [`material`] | materials, textures and images |
+//! | [`geometry`] | normals and tangents where a file has none |
+//! | [`gltf_file`], [`obj_file`] | readers of the two formats |
+//! | [`budget`] | bytes that a file may take |
+//! | [`animation`], [`pose`] | animations, and places of all nodes at a time |
+//! | [`camera`] | cameras, framing and orbits |
+//! | [`environment`] | surroundings as a picture, and their light |
+//! | [`floor`] | search for a floor in a scene |
+//!
+//! Conventions are those of glTF 2.0: right-handed, +Y up, metres, counter-clockwise front faces, texture
+//! coordinates with (0, 0) at the upper left of the image.
+
+#![forbid(unsafe_code)]
+
+pub mod animation;
+pub mod budget;
+pub mod camera;
+pub mod environment;
+pub mod floor;
+pub mod geometry;
+pub mod gltf_file;
+mod load;
+pub mod material;
+pub mod model;
+pub mod obj_file;
+pub mod pose;
+#[cfg(test)]
+mod tests;
+
+pub use material::{AlphaMode, ColorSpace, Image, Material, Sampler, Texture, TextureUse};
+pub use model::{
+    Bounds, Camera, Draw, Influence, Light, LightKind, Mesh, MorphDelta, Node, Primitive, Projection, Scene,
+    Skin, Transform, Vertex,
+};

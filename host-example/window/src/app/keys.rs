@@ -1,0 +1,89 @@
+//! Keys: those of the window, and those that belong to a field, a menu or a question.
+
+use std::time::Instant;
+
+use egui_winit::State;
+use winit::event::{ElementState, KeyEvent, WindowEvent};
+use winit::keyboard::{Key, NamedKey};
+
+use super::App;
+use crate::leaving::Leaving;
+use crate::session::Wish;
+use crate::ui;
+
+impl App {
+    /// What a key does.
+    pub(super) fn key(&mut self, event: &KeyEvent) {
+        let key = event.logical_key.as_ref();
+        if !self.is_for_window(&event.logical_key) {
+            return;
+        }
+        let pressed = event.state == ElementState::Pressed;
+        let session = &mut self.session;
+        if key == Key::Character("\\") {
+            session.viewport.peek = pressed && !session.leaving.is_shown();
+            return;
+        }
+        if !pressed {
+            return;
+        }
+        self.due = Some(Instant::now());
+        if !self.is_command() {
+            return ui::keys::press(&mut self.session, &event.logical_key);
+        }
+        let session = &mut self.session;
+        match key {
+            Key::Character("q" | "Q") => self.leave(),
+            _ if session.leaving.is_shown() => {}
+            Key::Character("z") if !self.modifiers.shift_key() => session.undo(),
+            Key::Character("z" | "Z" | "y") => session.redo(),
+            Key::Character("e") => session.plan_export(),
+            Key::Character("o") => session.wishes.push(Wish::ChooseFile),
+            Key::Character("s") => session.save_look(self.modifiers.shift_key()),
+            Key::Character("S") => session.save_look(true),
+            _ => {}
+        }
+    }
+
+    /// Closes the window, or asks in it before, which must be seen then.
+    pub(super) fn leave(&mut self) {
+        self.session.leave();
+        self.due = Some(Instant::now());
+        if let Some(window) = self.window.as_ref().filter(|_| self.hidden)
+            && self.session.leaving == Leaving::Asks
+        {
+            window.set_minimized(false);
+            window.focus_window();
+        }
+    }
+
+    fn is_command(&self) -> bool {
+        self.modifiers.control_key() || self.modifiers.super_key()
+    }
+
+    /// Whether a key is not for the field that is being typed in, or for the menu that is open. Those that close the window
+    /// or a dialog are for the window in fields, too.
+    fn is_for_window(&self, key: &Key) -> bool {
+        let Some(context) = self.input.as_ref().map(State::egui_ctx) else { return true };
+        let closes = self.is_command() && matches!(key.as_ref(), Key::Character("q" | "Q"));
+        let closes_dialog = *key == Key::Named(NamedKey::Escape) && self.session.has_dialog();
+        let is_typing = context.text_edit_focused() && !closes_dialog;
+        closes || self.session.leaving.is_shown() || !egui::Popup::is_any_open(context) && !is_typing
+    }
+
+    /// Lets the controls see an event first.
+    pub(super) fn pass_on(&mut self, event: &WindowEvent) {
+        let (Some(window), Some(input)) = (&self.window, &mut self.input) else { return };
+        let tab = matches!(event, WindowEvent::KeyboardInput { event, .. }
+            if event.logical_key == Key::Named(NamedKey::Tab));
+        // Tab goes from style to style, unless nothing is open or something is being typed, asked or chosen.
+        let session = &self.session;
+        let is_asked = session.is_covered() || session.has_dialog() || session.leaving.is_shown();
+        if tab && session.has_picture() && !is_asked && !input.egui_ctx().text_edit_focused() {
+            return;
+        }
+        if input.on_window_event(window, event).repaint && !matches!(event, WindowEvent::RedrawRequested) {
+            self.due = Some(Instant::now());
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! The looks that there are: those of the program, those in folders of the user, and plain styles. Read beside the window.
+
+use std::collections::HashSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::entry::{Content, Group};
+use crate::look::{Look, PLAIN};
+use isophote_files::error::Error;
+use isophote_finishing::stylize::looks;
+use isophote_finishing::stylize::title::Title;
+use isophote_loader::Library;
+
+/// Most folders within folders.
+const DEEPEST: usize = 4;
+/// Most files of all folders together.
+const MOST_FILES: usize = 2000;
+
+/// What is to be read.
+#[derive(Debug)]
+pub struct Question {
+    /// The library.
+    pub library: Library,
+    /// The user's folders.
+    pub folders: Vec<PathBuf>,
+}
+
+/// What was found.
+#[derive(Debug, Default)]
+pub struct Listing {
+    /// The looks, those of one group together.
+    pub found: Vec<Found>,
+    /// Files and folders that may change.
+    pub watched: Vec<PathBuf>,
+    /// What is wrong with folders.
+    pub problems: Vec<Error>,
+}
+
+/// One look.
+#[derive(Debug)]
+pub struct Found {
+    /// Where it belongs.
+    pub group: Group,
+    /// What it is opened as.
+    pub source: PathBuf,
+    /// What people call its style.
+    pub style: String,
+    /// The look, or why it cannot be used.
+    pub content: Content,
+}
+
+/// Reads everything anew.
+pub fn read(Question { library, folders }: Question) -> Listing {
+    let mut listing = Listing::default();
+    let mut seen = HashSet::new();
+    for folder in folders {
+        // Two names of one folder, or one inside the other, show each file once.
+        listing.read_folder(&library, &folder, 0, &mut seen);
+    }
+    for look in looks::all().unwrap_or_default() {
+        listing.found.push(found(&library, Group::Shipped, look.style().into()));
+    }
+    listing.found.push(found(&library, Group::Styles, PLAIN.into()));
+    let nodes = library.catalogue().map(|catalogue| catalogue.nodes).unwrap_or_default();
+    for node in nodes.iter().filter(|node| node.group == "styles") {
+        listing.found.push(found(&library, Group::Styles, node.id.into()));
+    }
+    listing
+}
+
+impl Listing {
+    fn read_folder(&mut self, library: &Library, folder: &Path, depth: usize, seen: &mut HashSet<PathBuf>) {
+        self.watched.push(folder.to_owned());
+        let real = fs::canonicalize(folder);
+        let entries =
+            real.and_then(|real| if seen.insert(real) { fs::read_dir(folder).map(Some) } else { Ok(None) });
+        let entries = match entries {
+            Ok(Some(entries)) => entries,
+            Ok(None) => return,
+            Err(problem) => {
+                let fix = "mend it, or take it off the list of folders";
+                self.problems.push(Error::file(folder, format!("cannot be read: {problem}"), fix));
+                return;
+            }
+        };
+        let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+        paths.retain(|path| !path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.')));
+        paths.sort_by_key(|path| path.to_string_lossy().to_lowercase());
+        let is_look = |path: &PathBuf| {
+            path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) && path.is_file()
+        };
+        for path in paths.iter().filter(|path| is_look(path)) {
+            if self.watched.len() >= MOST_FILES {
+                return;
+            }
+            self.watched.push(path.clone());
+            self.found.push(found(library, Group::Folder(folder.to_owned()), path.clone()));
+        }
+        for path in paths.iter().filter(|path| path.is_dir()) {
+            if depth < DEEPEST && self.watched.len() < MOST_FILES {
+                self.read_folder(library, path, depth + 1, seen);
+            }
+        }
+    }
+}
+
+fn found(library: &Library, group: Group, source: PathBuf) -> Found {
+    let (style, content) = match Look::open(library, &source) {
+        Ok(look) => (style_of(library, &look), Content::Look(Arc::new(look))),
+        Err(error) => (String::new(), Content::Broken(error.to_string())),
+    };
+    Found { group, source, style, content }
+}
+
+/// What people call the style of a look.
+fn style_of(library: &Library, look: &Look) -> String {
+    match library.find_node(&look.preset.style) {
+        Ok(node) => node.label.to_owned(),
+        Err(_) if look.is_plain() => String::new(),
+        Err(_) => "Graph".to_owned(),
+    }
+}
+
+impl Found {
+    /// What people call it.
+    pub fn name(&self) -> String {
+        match &self.content {
+            Content::Look(look) => look.name.clone(),
+            Content::Broken(_) => self.source.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        }
+    }
+
+    /// What it says about itself; a style by itself says what its node does.
+    pub fn title(&self, library: &Library) -> Title {
+        let Content::Look(look) = &self.content else { return Title::default() };
+        let about = match self.group {
+            Group::Styles => library.find_node(&look.preset.style).ok().map(|node| node.doc.to_owned()),
+            _ => None,
+        };
+        look.preset.title.clone().or(Title { name: None, about, tags: Vec::new() })
+    }
+}

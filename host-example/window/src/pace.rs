@@ -1,0 +1,77 @@
+//! How large pictures are rendered while something moves: where the processor draws, small ones keep up with the mouse, and
+//! the whole one follows when it rests.
+
+use std::time::{Duration, Instant};
+
+use super::look::Look;
+use super::scenery::Scenery;
+use super::session::{Session, Which};
+use super::stage::Drawn;
+use isophote_render::look::Look as Light;
+use isophote_scene::camera::View;
+
+/// How long nothing must move before the whole picture is rendered.
+const REST: Duration = Duration::from_millis(150);
+/// What a picture may take while something moves.
+const GOAL: f32 = 0.08;
+/// Sizes over that of the whole picture.
+const SCALES: [f32; 4] = [1.0, 0.5, 1.0 / 3.0, 0.25];
+
+/// What a picture looks like, as far as an artist can change it.
+#[derive(Clone, Debug, PartialEq)]
+struct Face {
+    look: Look,
+    view: Option<View>,
+    light: Option<Light>,
+    shown: [Which; 2],
+}
+
+/// What is known of the device's speed.
+#[derive(Debug, Default)]
+pub struct Pace {
+    /// Whether the processor draws.
+    pub is_software: bool,
+    /// Seconds that a whole picture would take.
+    whole: Option<f32>,
+    scale: f32,
+    face: Option<Face>,
+    moved: Option<Instant>,
+}
+
+impl Pace {
+    /// The size over that of the whole picture at which the next one is rendered.
+    pub fn scale(&mut self, session: &Session) -> f32 {
+        if !self.is_software {
+            return 1.0;
+        }
+        let scenery = session.scenery.as_ref();
+        let face = Some(Face {
+            look: session.seen().into_owned(),
+            view: scenery.map(Scenery::view),
+            light: scenery.map(|scenery| *scenery.light()),
+            shown: session.shown(),
+        });
+        if self.face.is_some() && self.face != face {
+            self.moved = Some(Instant::now());
+        }
+        self.face = face;
+        let rests = self.moved.is_none_or(|at| at.elapsed() >= REST) && !session.is_playing();
+        let whole = self.whole.unwrap_or(GOAL * 2.0);
+        let fits = |scale: &&f32| whole * **scale * **scale <= GOAL;
+        let moving = SCALES.iter().find(fits).copied().unwrap_or(SCALES[SCALES.len() - 1]);
+        self.scale = if rests { 1.0 } else { moving };
+        self.scale
+    }
+
+    /// A frame was drawn, its picture in so much time; says when the next one is wanted at the latest.
+    pub fn next(&mut self, drawn: Drawn, took: Duration) -> Option<Duration> {
+        if !self.is_software {
+            return None;
+        }
+        if drawn == Drawn::Picture {
+            self.whole = Some(took.as_secs_f32() / (self.scale * self.scale));
+        }
+        let left = self.moved.and_then(|at| REST.checked_sub(at.elapsed()));
+        left.or((self.scale < 1.0).then_some(Duration::ZERO))
+    }
+}

@@ -1,0 +1,292 @@
+//! A scene as it is looked at: its camera, its light, its time. Nothing here lives on the graphics device.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use glam::Vec3;
+
+use isophote_finishing::staging::ReadingArgs;
+use isophote_render::background::Background;
+use isophote_render::look::Look as Light;
+use isophote_scene::Scene;
+use isophote_scene::animation::Animation;
+use isophote_scene::camera::{self, Direction, Framing, Orbit, View};
+use isophote_scene::pose::Pose;
+
+/// What a scene is shown with besides itself.
+#[derive(Clone, Debug, Default)]
+pub struct Staging {
+    /// How the default camera frames the scene.
+    pub framing: Framing,
+    /// Node of the camera of the file that is looked through at first; the default camera otherwise.
+    pub camera: Option<usize>,
+    /// What can be changed of the light.
+    pub lighting: Lighting,
+    /// Whether the scene casts its shadow on an invisible ground.
+    pub ground: bool,
+    /// Options that the file was read with.
+    pub reading: ReadingArgs,
+}
+
+/// Where a camera stands, as the options of `render` say it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Framed {
+    /// By how many degrees it is turned to the right of where cameras are by default.
+    pub azimuth: f32,
+    /// Its height above the horizon in degrees.
+    pub elevation: f32,
+    /// Its distance over that from which the scene fills the picture.
+    pub distance: f32,
+    /// What it looks at, if that is not the middle of the scene.
+    pub target: Option<Vec3>,
+    /// Its vertical field of view in degrees, if it is not the usual one.
+    pub fov: Option<f32>,
+}
+
+/// What an artist changes of the light.
+#[derive(Clone, Debug, Default)]
+pub struct Lighting {
+    /// Where the sun is, seen from the camera as it stood at first, if not where it usually is.
+    pub sun: Option<Direction>,
+    /// Brightness in stops.
+    pub exposure: f32,
+    /// What is behind the scene, and lights it where it is a picture of the surroundings.
+    pub background: Background,
+    /// The file of that picture.
+    pub surroundings: Option<PathBuf>,
+}
+
+impl PartialEq for Lighting {
+    fn eq(&self, other: &Self) -> bool {
+        is_same(&self.background, &other.background)
+            && self.sun == other.sun
+            && self.exposure == other.exposure
+    }
+}
+
+/// Whether two backgrounds are one.
+pub fn is_same(a: &Background, b: &Background) -> bool {
+    match (a, b) {
+        (Background::Environment(a), Background::Environment(b)) => Arc::ptr_eq(a, b),
+        (Background::Color(a), Background::Color(b)) => a == b,
+        (a, b) => std::mem::discriminant(a) == std::mem::discriminant(b),
+    }
+}
+
+/// A scene that is shown.
+pub struct Scenery {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// Where everything stands now.
+    pub pose: Pose,
+    /// What an artist has changed of the light.
+    pub lighting: Lighting,
+    /// Whether the scene casts its shadow on an invisible ground.
+    pub ground: bool,
+    /// Options that the file was read with.
+    pub reading: ReadingArgs,
+    /// Whether time passes.
+    pub playing: bool,
+    /// Which animation plays.
+    pub animation: usize,
+    light: Light,
+    /// The camera that light was placed by.
+    first_view: View,
+    framing: Framing,
+    orbit: Orbit,
+    /// Node of the camera of the file that is looked through.
+    through: Option<usize>,
+    /// Node of the one that a key looks through.
+    file_camera: Option<usize>,
+    time: f32,
+    ticked: Instant,
+}
+
+impl Scenery {
+    /// `scene` at rest, in a picture of this aspect.
+    pub fn new(scene: Scene, staging: Staging, aspect: f32) -> Self {
+        let Staging { framing, camera, lighting, ground, reading } = staging;
+        let pose = Pose::at_rest(&scene);
+        let orbit = Orbit::framing(&scene, aspect, framing);
+        let from_file = camera.and_then(|node| View::from_node(&scene, &pose, node));
+        let first_view = from_file.unwrap_or_else(|| orbit.view());
+        let mut scenery = Self {
+            playing: !scene.animations.is_empty(),
+            animation: 0,
+            light: Light::default(),
+            through: camera,
+            file_camera: camera.or_else(|| camera::file_camera(&scene)),
+            first_view,
+            framing,
+            orbit,
+            pose,
+            lighting,
+            ground,
+            reading,
+            time: 0.0,
+            ticked: Instant::now(),
+            scene: Arc::new(scene),
+        };
+        scenery.relight();
+        scenery
+    }
+
+    /// Takes over what has been changed of the light.
+    pub fn relight(&mut self) {
+        let Lighting { sun, exposure, background, .. } = &self.lighting;
+        let rest = Pose::at_rest(&self.scene);
+        let environment = background.environment();
+        self.light = Light::for_scene(&self.scene, &rest, &self.first_view, *sun, environment);
+        self.light.exposure *= exposure.exp2();
+    }
+
+    /// Sun and sky.
+    pub fn light(&self) -> &Light {
+        &self.light
+    }
+
+    /// Where the sun is, seen from the camera as it stood at first.
+    pub fn sun(&self) -> Direction {
+        self.sun_by(&self.first_view)
+    }
+
+    /// Where the sun is, seen from a camera.
+    fn sun_by(&self, view: &View) -> Direction {
+        let to_sun: Vec3 = self.light.sun_direction;
+        let azimuth = to_sun.x.atan2(to_sun.z) - view.azimuth();
+        let turns = (azimuth / std::f32::consts::TAU).round();
+        Direction {
+            azimuth: azimuth - turns * std::f32::consts::TAU,
+            elevation: to_sun.y.clamp(-1.0, 1.0).asin(),
+        }
+    }
+
+    /// Starts or stops the animation.
+    pub fn toggle_playing(&mut self) {
+        self.playing = !self.playing && !self.scene.animations.is_empty();
+        self.ticked = Instant::now();
+    }
+
+    /// Seconds since the beginning, and how long the animation is.
+    pub fn time(&self) -> (f32, f32) {
+        let length = self.scene.animations.get(self.animation).map_or(0.0, Animation::duration);
+        (if length > 0.0 { self.time % length } else { 0.0 }, length)
+    }
+
+    /// Goes to a time and stays there.
+    pub fn seek(&mut self, time: f32) {
+        (self.time, self.playing) = (time.max(0.0), false);
+        self.stand();
+    }
+
+    /// Lets everything stand where it is at the time.
+    fn stand(&mut self) {
+        let animation = (!self.scene.animations.is_empty()).then_some(self.animation);
+        self.pose.update(&self.scene, animation, self.time);
+    }
+
+    /// Frames the whole scene.
+    pub fn frame_all(&mut self, aspect: f32) {
+        self.orbit = Orbit::framing(&self.scene, aspect, self.framing);
+        self.through = None;
+    }
+
+    /// Nodes of the cameras of the file, with their names.
+    pub fn cameras(&self) -> Vec<(usize, String)> {
+        let names = camera::list_file_cameras(&self.scene);
+        let node =
+            |name: &String| camera::find_file_camera(&self.scene, name.split(' ').next().unwrap_or(name));
+        names.iter().filter_map(|name| Some((node(name)?, name.clone()))).collect()
+    }
+
+    /// Node of the camera of the file that is looked through.
+    pub fn camera(&self) -> Option<usize> {
+        self.through
+    }
+
+    /// Looks through a camera of the file, or through one that the mouse turns.
+    pub fn look_through(&mut self, node: Option<usize>) {
+        if node.is_none() {
+            self.orbit();
+        }
+        self.through = node;
+    }
+
+    /// Looks through the file's camera, where it has one.
+    pub fn use_file_camera(&mut self) {
+        self.through = self.file_camera;
+    }
+
+    /// The camera that the mouse turns. It takes over from where the file's camera stands.
+    pub fn orbit(&mut self) -> &mut Orbit {
+        if let Some(view) =
+            self.through.take().and_then(|node| View::from_node(&self.scene, &self.pose, node))
+        {
+            let offset = view.eye() - self.orbit.target;
+            let distance = offset.length();
+            if distance.is_finite() && distance > 0.0 {
+                self.orbit.distance = distance;
+                self.orbit.azimuth = offset.x.atan2(offset.z);
+                self.orbit.elevation = (offset.y / distance).clamp(-1.0, 1.0).asin();
+            }
+        }
+        &mut self.orbit
+    }
+
+    /// Where the camera that the mouse turns stands in a picture of this aspect.
+    pub fn framed(&self, aspect: f32) -> Framed {
+        let usual = Framing::default();
+        let framing = Framing {
+            direction: Direction { azimuth: self.orbit.azimuth, elevation: self.orbit.elevation },
+            distance: 1.0,
+            target: None,
+            ..self.framing
+        };
+        let fitting = Orbit::framing(&self.scene, aspect, framing);
+        let azimuth = self.orbit.azimuth - usual.direction.azimuth;
+        let aside = (fitting.target - self.orbit.target).length();
+        Framed {
+            azimuth: azimuth.to_degrees(),
+            elevation: self.orbit.elevation.to_degrees(),
+            distance: (self.orbit.distance / fitting.distance).clamp(0.1, 100.0),
+            target: (aside > 1e-4 * self.orbit.distance).then_some(self.orbit.target),
+            fov: (self.framing.vertical_fov != usual.vertical_fov)
+                .then(|| self.framing.vertical_fov.to_degrees()),
+        }
+    }
+
+    /// Where the sun is, seen from the camera as it stands now, where a picture taken from there would have it elsewhere by
+    /// itself.
+    pub fn sun_from_here(&self) -> Option<Direction> {
+        let rest = Pose::at_rest(&self.scene);
+        let through = self.through.and_then(|node| View::from_node(&self.scene, &rest, node));
+        let view = through.unwrap_or_else(|| self.orbit.view());
+        let environment = self.lighting.background.environment();
+        let usual = Light::for_scene(&self.scene, &rest, &view, None, environment).sun_direction;
+        if usual.abs_diff_eq(self.light.sun_direction, 1e-3) {
+            return None;
+        }
+        Some(self.sun_by(&view))
+    }
+
+    /// How far away the middle of the picture is.
+    pub fn distance(&self) -> f32 {
+        (self.view().eye() - self.scene.bounds.center()).length()
+    }
+
+    /// Lets time pass.
+    pub fn advance(&mut self) {
+        if self.playing {
+            self.time += self.ticked.elapsed().as_secs_f32();
+            self.stand();
+        }
+        self.ticked = Instant::now();
+    }
+
+    /// Where the camera is.
+    pub fn view(&self) -> View {
+        let through = self.through.and_then(|node| View::from_node(&self.scene, &self.pose, node));
+        through.unwrap_or_else(|| self.orbit.view())
+    }
+}

@@ -1,0 +1,391 @@
+//! What the window shows and what was done to it. All of it outlives a lost device.
+
+mod browsing;
+mod leaving;
+mod looks;
+mod steps;
+
+use std::borrow::Cow;
+use std::collections::{HashMap, HashSet};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::browser::Browser;
+use super::chain::{self, Chain, Watched};
+use super::comparison::Comparison;
+use super::document::kind::Kind;
+use super::file_steps::FileSteps;
+use super::history::History;
+use super::leaving::Leaving;
+use super::look::{Knob, Look};
+use super::notes::Notes;
+use super::plan::Plan;
+use super::preview::Previews;
+use super::record::Record;
+use super::reel::Reel;
+use super::samples::Thumbnails;
+use super::saving::Saving;
+use super::scenery::{Lighting, Scenery};
+use super::settings::Settings;
+use super::viewport::{Compare, Overlay, Viewport};
+use isophote_files::error::Result;
+use isophote_finishing::stylize::precision::Precision;
+use isophote_finishing::stylize::preset::Preset;
+use isophote_loader::Library;
+use isophote_loader::catalogue::Node;
+use isophote_loader::printable;
+use isophote_pictures::exr::{Guide, Layer};
+
+/// What only the window itself can do, asked for by its controls.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Wish {
+    /// Open this file.
+    Open(PathBuf),
+    /// Show a dialog and open what is chosen.
+    ChooseFile,
+    /// Open the scene that comes with the program.
+    OpenDemo,
+    /// Open a picture that comes with the program.
+    OpenSample(usize),
+    /// Show a dialog and take the look that is chosen.
+    ChooseLook,
+    /// Show a dialog and take the folder that is chosen among those of looks.
+    ChooseFolder,
+    /// Show a dialog and save the look to what is chosen.
+    ChooseLookFile,
+    /// Show a dialog and take the picture that is chosen as what is around the scene.
+    ChooseSurroundings,
+    /// Show this layer of the file, and a view of it.
+    ChooseLayer(Layer, Option<String>),
+    /// Show a dialog and export to what is chosen.
+    ChooseOutput,
+    /// Make what is planned.
+    Export,
+    /// End the export.
+    CancelExport,
+    /// Put the command line of the present picture on the clipboard.
+    CopyCommand,
+}
+
+/// What undo brings back.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    current: usize,
+    looks: Vec<Arc<Look>>,
+    lighting: Option<Lighting>,
+    /// Changes of files that were made.
+    files: usize,
+}
+
+/// What a picture is made of, as the canvas has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// The picture as it was.
+    Original,
+    /// The look.
+    Look,
+    /// What the look is compared with.
+    Compared,
+    /// What is shown instead of the look.
+    Overlay,
+}
+
+/// All that the window knows.
+pub struct Session {
+    /// The dynamic library.
+    pub library: Library,
+    /// How precisely looks are computed.
+    pub precision: Precision,
+    /// Looks in the order of the keys 1, 2, ...
+    pub looks: Vec<Arc<Look>>,
+    /// Parameters of the present look.
+    pub knobs: Vec<Knob>,
+    /// The list of nodes that the present look is, if it is one.
+    pub chain: Option<Chain>,
+    /// The part of it that is looked at, if not the whole.
+    pub watched: Option<Watched>,
+    /// The node whose parameters are shown, if not those of all.
+    pub selected: Option<String>,
+    /// Nodes that can be put into a list.
+    pub fitting: Vec<Node>,
+    /// Names of those that have no effect at the moment.
+    pub idle: HashSet<String>,
+    /// What the look is compared with, if not with the original.
+    pub compared: Option<Look>,
+    /// The scene that is open.
+    pub scenery: Option<Scenery>,
+    /// The picture, sequence or video that is open, where no scene is.
+    pub reel: Option<Reel>,
+    /// The file that is open.
+    pub file: Option<PathBuf>,
+    /// What is open, for the title.
+    pub name: String,
+    /// Where pictures lie.
+    pub viewport: Viewport,
+    /// The browser of looks.
+    pub browser: Browser,
+    /// The looks that are seen beside each other, if any.
+    pub comparison: Option<Comparison>,
+    /// A look that is about to be saved.
+    pub saving: Option<Saving>,
+    /// Pictures that come with the program, small.
+    pub thumbnails: Thumbnails,
+    /// What looks make of the picture, small.
+    pub previews: Previews,
+    /// What there is to say.
+    pub notes: Notes,
+    /// Frames and times.
+    pub record: Record,
+    /// What is remembered from one time to the next.
+    pub settings: Settings,
+    /// What the controls ask the window for.
+    pub wishes: Vec<Wish>,
+    /// Whether the help is open.
+    pub shows_help: bool,
+    /// What is being done beside the window.
+    pub busy: Option<&'static str>,
+    /// What is to be exported, while that is asked.
+    pub plan: Option<Plan>,
+    /// Whether the window is to be closed.
+    pub leaving: Leaving,
+    /// The share of an export that is done, while there is one.
+    pub exported: Option<f32>,
+    /// Where the pointer is on the picture, in pixels of the window.
+    pub pointer: Option<[f32; 2]>,
+    /// Colours under the pointer, before and after.
+    pub probed: Option<[[f32; 4]; 2]>,
+    /// Whether the scene was opened before its place in the window was known.
+    is_unframed: bool,
+    current: usize,
+    /// What looks are in their files, or as the command line has made them: that much is not lost with the window. Others are as
+    /// they were opened.
+    kept: HashMap<PathBuf, Preset>,
+    edits: History<State>,
+    files: FileSteps,
+}
+
+impl Session {
+    /// A window of these looks, at least one, with nothing open.
+    ///
+    /// # Errors
+    /// As [`Look::knobs`].
+    pub fn new(library: Library, looks: Vec<Look>, settings: Settings) -> Result<Self> {
+        let knobs = looks.first().map_or_else(|| Ok(Vec::new()), |look| look.knobs(&library))?;
+        let chain = looks.first().map_or(Ok(None), |look| look.chain(&library))?;
+        Ok(Self {
+            fitting: chain::fitting(&library),
+            library,
+            precision: Precision::default(),
+            looks: looks.into_iter().map(Arc::new).collect(),
+            knobs,
+            chain,
+            watched: None,
+            selected: None,
+            idle: HashSet::new(),
+            compared: None,
+            scenery: None,
+            reel: None,
+            file: None,
+            name: String::new(),
+            viewport: Viewport::default(),
+            browser: Browser::default(),
+            comparison: None,
+            saving: None,
+            thumbnails: Thumbnails::default(),
+            previews: Previews::default(),
+            notes: Notes::default(),
+            record: Record::default(),
+            settings,
+            wishes: Vec::new(),
+            shows_help: false,
+            busy: None,
+            plan: None,
+            leaving: Leaving::default(),
+            exported: None,
+            pointer: None,
+            probed: None,
+            is_unframed: false,
+            current: 0,
+            kept: HashMap::new(),
+            edits: History::default(),
+            files: FileSteps::default(),
+        })
+    }
+
+    /// The look that is shown and edited.
+    pub fn look(&self) -> &Look {
+        &self.looks[self.current]
+    }
+
+    /// The look as far as it is looked at.
+    pub fn seen(&self) -> Cow<'_, Look> {
+        let (Some(chain), Some(watched)) = (&self.chain, &self.watched) else {
+            return Cow::Borrowed(self.look());
+        };
+        let part = self.look().watched(&self.library, chain, watched);
+        part.map_or_else(|_| Cow::Borrowed(self.look()), Cow::Owned)
+    }
+
+    /// Its place among the looks.
+    pub fn current(&self) -> usize {
+        self.current
+    }
+
+    /// Whether there is anything to look at.
+    pub fn has_picture(&self) -> bool {
+        self.scenery.is_some() || self.reel.is_some()
+    }
+
+    /// Whether there is such a thing to show of the picture.
+    pub fn has_overlay(&self, overlay: Overlay) -> bool {
+        let guide = match overlay {
+            Overlay::None | Overlay::Orientation | Overlay::Lines => return true,
+            Overlay::Normal => Guide::Normal,
+            Overlay::Depth => Guide::Depth,
+            Overlay::ObjectId => Guide::ObjectId,
+            Overlay::Motion => Guide::Motion,
+        };
+        let frame = self.reel.as_ref().and_then(|reel| reel.frame(false));
+        self.scenery.is_some() || frame.is_some_and(|(frame, _)| frame.guide(guide).is_some())
+    }
+
+    /// Whether time passes.
+    pub fn is_playing(&self) -> bool {
+        self.scenery.as_ref().is_some_and(|scenery| scenery.playing)
+            || self.reel.as_ref().is_some_and(|reel| reel.playing)
+    }
+
+    /// Starts or stops time.
+    pub fn toggle_playing(&mut self) {
+        if let Some(scenery) = &mut self.scenery {
+            scenery.toggle_playing();
+        } else if let Some(reel) = &mut self.reel {
+            reel.toggle_playing();
+        }
+    }
+
+    /// Shows all there is.
+    pub fn frame_all(&mut self) {
+        self.viewport.fit();
+        let [_, half] = self.viewport.halves();
+        if let Some(scenery) = &mut self.scenery {
+            scenery.frame_all(half.width / half.height);
+        }
+    }
+
+    /// Frames a scene that was just opened, by the place that it has in the window.
+    fn frame_first(&mut self) {
+        if std::mem::take(&mut self.is_unframed) {
+            self.frame_all();
+        }
+    }
+
+    /// Lets time pass, and frames a scene that was just opened.
+    pub fn advance(&mut self) {
+        self.frame_first();
+        if let Some(scenery) = &mut self.scenery {
+            scenery.advance();
+        }
+        if let Some(Err(error)) = self.reel.as_mut().map(Reel::advance) {
+            self.notes.complain(&error);
+        }
+    }
+
+    /// Puts away what is open.
+    pub fn close(&mut self) {
+        (self.scenery, self.reel) = (None, None);
+        self.begin(None, String::new());
+    }
+
+    /// Size of the picture as it is placed: what is rendered smaller for the moment is shown as large.
+    pub fn nominal_size(&self) -> (u32, u32) {
+        let [_, half] = self.viewport.halves();
+        self.reel.as_ref().map_or((half.width as u32, half.height as u32), Reel::size)
+    }
+
+    /// The pictures on the left and on the right of the split.
+    pub fn shown(&self) -> [Which; 2] {
+        let look = if self.viewport.overlay == Overlay::None { Which::Look } else { Which::Overlay };
+        let other = if self.compared.is_some() { Which::Compared } else { Which::Original };
+        match self.viewport.compare {
+            _ if self.viewport.peek || self.is_covered() => [Which::Original; 2],
+            Compare::Off => [look; 2],
+            Compare::Wipe | Compare::Side => [other, look],
+        }
+    }
+
+    /// A scene is open from now on.
+    pub fn show_scene(&mut self, scenery: Scenery, file: Option<PathBuf>, name: String) {
+        self.is_unframed = scenery.camera().is_none();
+        (self.scenery, self.reel) = (Some(scenery), None);
+        self.begin(file, name);
+    }
+
+    /// A picture, sequence or video is open from now on.
+    pub fn show_reel(&mut self, reel: Reel) {
+        let file = reel.path();
+        let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        (self.scenery, self.reel) = (None, Some(reel));
+        self.begin(Some(file), name);
+    }
+
+    /// Shows the same file, read in another way.
+    pub fn show_again(&mut self, mut reel: Reel) {
+        if let Some(old) = &self.reel {
+            reel.rate = old.rate;
+            reel.seek(old.number());
+        }
+        self.reel = Some(reel);
+        if !self.has_overlay(self.viewport.overlay) {
+            self.viewport.overlay = Overlay::None;
+        }
+    }
+
+    /// Asks what is to be exported, if anything can be.
+    pub fn plan_export(&mut self) {
+        let Some(file) = self.file.as_deref().filter(|_| !self.look().is_plain() || self.reel.is_none())
+        else {
+            return;
+        };
+        let kind = self.reel.as_ref().map_or(Kind::Scene, |reel| reel.document.kind());
+        let length = self.scenery.as_ref().map_or(0.0, |scenery| scenery.time().1);
+        let frames = self.reel.as_ref().and_then(Reel::frames);
+        let animated = (length * 24.0).ceil() as u32;
+        self.plan = Some(Plan::new(kind, file, frames, self.nominal_size(), animated));
+    }
+
+    fn begin(&mut self, file: Option<PathBuf>, name: String) {
+        if let Some(file) = &file {
+            self.settings.remember(file);
+        }
+        (self.file, self.name) = (file, name);
+        self.plan = None;
+        self.previews.clear();
+        self.viewport.fit();
+        self.viewport.overlay = Overlay::None;
+        self.record.begin();
+        self.forget_lighting();
+    }
+
+    /// Title of the window: what is open, the look, frames shown since the last switch, time of the last one.
+    pub fn title(&self) -> String {
+        // Programs that list windows print their titles.
+        let style = self.look().source.file_stem().unwrap_or_default().to_string_lossy();
+        let style = printable(&style);
+        if !self.has_picture() {
+            return "Isophote".into();
+        }
+        let precision = match self.precision {
+            Precision::Exact => String::new(),
+            precision => format!(" - {} precision", precision.name()),
+        };
+        let name = printable(&self.name);
+        match self.record.present() {
+            Some((frames, time)) => {
+                let time = time.as_secs_f64() * 1e3;
+                format!("{name} - {style} - frame {frames} - {time:.1} ms{precision}")
+            }
+            None => format!("{name} - {style}{precision}"),
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! What is open, on its way to the device: large pictures and scenes are uploaded beside the window.
+
+use std::sync::Arc;
+
+use super::document::frame::Frame;
+use super::pictures::PictureSource;
+use super::session::Session;
+use super::source::{SceneSource, Source, Stand};
+use super::worker::{Wake, Worker};
+use isophote_files::error::{AtPlace, Result};
+use isophote_loader::abi::IsophoteRequest;
+use isophote_render::gpu::Gpu;
+use isophote_scene::Scene;
+
+/// What is to be uploaded.
+enum Job {
+    Scene { stand: Box<Stand>, size: (u32, u32), usual: IsophoteRequest },
+    Picture { frame: Arc<Frame>, scale: f32, usual: IsophoteRequest },
+}
+
+/// Which it is.
+#[derive(Clone)]
+enum Thing {
+    Scene(Arc<Scene>),
+    Picture(Arc<Frame>),
+}
+
+/// What was uploaded, or why it could not be.
+type Uploaded = (Thing, Result<Source>);
+
+/// What looks are put on, as far as it is on the device.
+pub struct Sources {
+    gpu: Gpu,
+    worker: Worker<Job, Uploaded>,
+    present: Option<Source>,
+    /// The picture at its other size: whole, or its small copy.
+    spare: Option<Source>,
+    /// What is being uploaded, or cannot be.
+    asked: Option<Thing>,
+    number: u64,
+}
+
+impl Sources {
+    /// Nothing yet.
+    ///
+    /// # Errors
+    /// As [`Worker::new`].
+    pub fn new(gpu: &Gpu, wake: &Wake) -> Result<Self> {
+        let own = gpu.clone();
+        let worker = Worker::new("upload", Arc::clone(wake), move |job| upload(&own, job))?;
+        Ok(Self { gpu: gpu.clone(), worker, present: None, spare: None, asked: None, number: 0 })
+    }
+
+    /// What looks are put on.
+    pub fn present(&self) -> Option<&Source> {
+        self.present.as_ref()
+    }
+
+    /// What looks are put on, to be rendered.
+    pub fn present_mut(&mut self) -> Option<&mut Source> {
+        self.present.as_mut()
+    }
+
+    /// A number that grows when what looks read is another one.
+    pub fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// Whether something is being uploaded.
+    pub fn is_busy(&self) -> bool {
+        self.worker.is_busy()
+    }
+
+    /// Takes over the scene or picture that is open, its frame and its size, and says whether looks must be bound to it anew.
+    ///
+    /// # Errors
+    /// Why it cannot be shown. It is not tried again.
+    pub fn follow(&mut self, session: &Session, scale: f32) -> Result<bool> {
+        let usual = session.library.request((1, 1)).map_err(|e| e.at("the library", "install it again"))?;
+        let is_new = self.take(session)?;
+        let is_other = match (&session.scenery, &session.reel) {
+            (Some(scenery), _) => {
+                let [_, half] = session.viewport.halves();
+                let pixels = |length: f32| ((length * scale).round() as u32).max(1);
+                let size = (pixels(half.width), pixels(half.height));
+                match &mut self.present {
+                    Some(Source::Scene(source)) if source.is_of(scenery) => {
+                        source.follow(scenery, size, scale)?
+                    }
+                    _ => {
+                        let usual = IsophoteRequest { scale, ..usual };
+                        self.replace(Thing::Scene(Arc::clone(&scenery.scene)), || Job::Scene {
+                            stand: Box::new(Stand::of(scenery)),
+                            size,
+                            usual,
+                        });
+                        false
+                    }
+                }
+            }
+            (None, Some(reel)) => {
+                let Some((frame, share)) = reel.frame(scale < 1.0) else { return Ok(is_new) };
+                self.follow_picture(frame, reel.frame(scale >= 1.0).map(|(other, _)| other), share, usual);
+                false
+            }
+            (None, None) => {
+                (self.present, self.spare) = (None, None);
+                false
+            }
+        };
+        self.number += u64::from(is_other);
+        Ok(is_new || is_other)
+    }
+
+    /// Shows a frame; `other` is the same picture at another size.
+    fn follow_picture(
+        &mut self,
+        frame: &Arc<Frame>,
+        other: Option<&Arc<Frame>>,
+        scale: f32,
+        usual: IsophoteRequest,
+    ) {
+        if shows(self.present.as_ref(), frame) {
+            return;
+        }
+        if shows(self.spare.as_ref(), frame) {
+            std::mem::swap(&mut self.present, &mut self.spare);
+            self.number += 1;
+            return;
+        }
+        // Frames that follow one another take each other's place.
+        if frame.number.is_some()
+            && let Some(Source::Picture(source)) = &mut self.present
+            && source.follow(&self.gpu, frame, scale)
+        {
+            self.number += 1;
+            return;
+        }
+        let job = || Job::Picture { frame: Arc::clone(frame), scale, usual };
+        match other {
+            Some(other) if shows(self.present.as_ref(), other) => {
+                self.ask(Thing::Picture(frame.clone()), job)
+            }
+            _ => self.replace(Thing::Picture(frame.clone()), job),
+        }
+    }
+
+    /// Takes what has been uploaded, and says whether there is anything.
+    fn take(&mut self, session: &Session) -> Result<bool> {
+        let Some((thing, uploaded)) = self.worker.answer() else { return Ok(false) };
+        if self.asked.as_ref().is_none_or(|asked| !asked.is(&thing)) {
+            return Ok(false);
+        }
+        let source = uploaded?;
+        self.asked = None;
+        let old = self.present.replace(source);
+        let is_of_same = |frame: &Arc<Frame>| shows(old.as_ref(), frame);
+        let frames = session.reel.iter().flat_map(|reel| [reel.frame(false), reel.frame(true)]);
+        let is_same = frames.flatten().any(|(frame, _)| is_of_same(frame));
+        self.spare = old.filter(|_| is_same);
+        self.number += 1;
+        Ok(true)
+    }
+
+    /// Shows nothing until something is uploaded.
+    fn replace(&mut self, thing: Thing, job: impl FnOnce() -> Job) {
+        (self.present, self.spare) = (None, None);
+        self.ask(thing, job);
+    }
+
+    fn ask(&mut self, thing: Thing, job: impl FnOnce() -> Job) {
+        if self.asked.as_ref().is_some_and(|asked| asked.is(&thing)) {
+            return;
+        }
+        self.asked = Some(thing);
+        self.worker.ask(job());
+    }
+}
+
+impl Thing {
+    fn is(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Scene(a), Self::Scene(b)) => Arc::ptr_eq(a, b),
+            (Self::Picture(a), Self::Picture(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+}
+
+fn shows(source: Option<&Source>, frame: &Arc<Frame>) -> bool {
+    matches!(source, Some(Source::Picture(source)) if source.shows(frame))
+}
+
+fn upload(gpu: &Gpu, job: Job) -> Uploaded {
+    match job {
+        Job::Scene { stand, size, usual } => {
+            let source = SceneSource::new(gpu, &stand, size, usual);
+            (Thing::Scene(stand.scene), source.map(|source| Source::Scene(Box::new(source))))
+        }
+        Job::Picture { frame, scale, usual } => {
+            let source = PictureSource::new(gpu, &frame, scale, usual);
+            (Thing::Picture(frame), source.map(Source::Picture))
+        }
+    }
+}
