@@ -16,22 +16,14 @@ mod shader;
 #[path = "build/uniform.rs"]
 mod uniform;
 
+use imports::{GPU, Name, SHARED};
 use shader::Shader;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// What several shaders share, and its twins in Rust.
-const SHARED: &str = "shared";
-
-/// What only GPUs need, such as where a texture lies in the picture; it has no twins.
-const GPU: &str = "gpu";
-
-/// What only CPUs need, such as how pixels are read and lines followed; it has no twins.
+/// Folders for CPUs alone: how pixels are read and lines followed; they have no twins.
 const CPU: [&str; 2] = ["simd", "trace"];
-
-/// Group and stem of a file.
-type Name = (String, String);
 
 fn main() {
     let library = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));

@@ -33,11 +33,11 @@ pub fn folder_circles(root: &Path) -> Vec<String> {
     read(&root).of_folders().circles(&root)
 }
 
-/// Imports of files in one folder below `root` from files in another, as `file imports from file`.
+/// Imports of files in one folder below `root` from files in another: the importing file and the other.
 ///
 /// # Panics
 /// When a file cannot be read.
-pub fn between(root: &Path, from: &str, to: &str) -> Vec<String> {
+pub fn between(root: &Path, from: &str, to: &str) -> Vec<[PathBuf; 2]> {
     let root = root.canonicalize().unwrap();
     read(&root).between(&root, from, to)
 }

@@ -8,6 +8,7 @@ pub mod cases;
 pub mod compare;
 pub mod device;
 pub mod imports;
+pub mod lengths;
 pub mod library;
 pub mod marks;
 pub mod ofx;

@@ -47,11 +47,13 @@ fn rooms_of_the_library_import_only_what_stands_below_them() {
         );
         for room in below {
             let wrong = between(room, above);
-            assert!(wrong.is_empty(), "{room} stands below {above}:\n{}", wrong.join("\n"));
+            assert!(wrong.is_empty(), "{room} stands below {above}: {wrong:#?}");
         }
     }
-    let wrong = between("nodes", "nodes");
-    assert!(wrong.is_empty(), "nodes import stages and kernels, never each other:\n{}", wrong.join("\n"));
+    let mut wrong = between("nodes", "nodes");
+    // What has a single user lies in a folder of its name.
+    wrong.retain(|[node, other]| !other.starts_with(node.with_extension("")));
+    assert!(wrong.is_empty(), "nodes import stages and kernels, never each other: {wrong:#?}");
 }
 
 /// A package with these files below `src`.

@@ -2,6 +2,7 @@
 
 use isophote::kernels::KERNELS;
 use isophote::registry;
+use isophote_tests::lengths::{Function, functions};
 use isophote_tests::shaders;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -64,6 +65,17 @@ fn every_kernel_is_one_shader_and_one_twin_of_its_name() {
         twins.iter().map(|t| t.rsplit('/').next().unwrap_or_default().to_owned()).collect();
     assert_eq!(names, files);
     assert_eq!(names.len(), KERNELS.len(), "two kernels share a name");
+}
+
+#[test]
+fn shaders_are_the_sum_of_their_pieces() {
+    for kernel in KERNELS {
+        let imports = kernel.pieces.imports.iter().flat_map(|import| import.text);
+        let pieces = imports.chain(kernel.pieces.own).chain(kernel.pieces.entry);
+        let text: String = pieces.map(|piece| piece.text()).collect();
+        assert!(text == kernel.shader, "{}:\n{text}", kernel.name);
+        assert_eq!(kernel.pieces.textures.len(), kernel.inputs, "{}", kernel.name);
+    }
 }
 
 #[test]
@@ -251,6 +263,26 @@ fn promised_ids_are_there() {
     assert!(missing.is_empty(), "missing: {}", missing.join(", "));
 }
 
+/// Lines of a file, and of a function, at most.
+const LINES_OF_A_FILE: usize = 500;
+const LINES_OF_A_FUNCTION: usize = 60;
+
+#[test]
+fn every_function_stays_short() {
+    let mut counted = 0;
+    let mut wrong = Vec::new();
+    for path in sources(&[".rs"]) {
+        let found = functions(&std::fs::read_to_string(&path).unwrap());
+        counted += found.len();
+        for function in found.iter().filter(|function| function.lines > LINES_OF_A_FUNCTION) {
+            let Function { name, line, lines } = function;
+            wrong.push(format!("{}:{line}: {name} has {lines} lines", path.display()));
+        }
+    }
+    assert!(counted > 1000, "{counted}");
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
 #[test]
 fn every_file_says_what_it_is_for_and_stays_short() {
     let mut wrong = Vec::new();
@@ -261,7 +293,7 @@ fn every_file_says_what_it_is_for_and_stays_short() {
         if !first.is_some_and(|l| l.starts_with(opening)) {
             wrong.push(format!("{} does not open with what it is for", path.display()));
         }
-        if text.lines().count() > 550 {
+        if text.lines().count() > LINES_OF_A_FILE {
             wrong.push(format!("{} has {} lines", path.display(), text.lines().count()));
         }
     }

@@ -40,7 +40,7 @@ pub struct Kernel {
     pub params_size: usize,
     /// The shader in pieces, for dispatches of several kernels and textures of 16-bit floats.
     pub pieces: Pieces,
-    /// What it offers to fusion.
+    /// Part that it can take in a dispatch of several.
     pub fusible: Fusible,
     /// The CPU twin: fills one band of the outputs.
     #[cfg(feature = "cpu")]
@@ -88,12 +88,12 @@ pub struct Pair {
     /// WGSL with the entry point, of [`PAIR_WORKGROUP`]. It knows the two uniform blocks as [`Piece::Params`] and
     /// [`Piece::ColumnsParams`] and what rows sum as `pair_source(p: vec2i) -> vec4f`; `pair_hold` is called before it asks.
     pub own: &'static [Piece],
-    /// Whether passes with these uniform blocks are the rows and the columns of a window.
+    /// Test of two uniform blocks: true for those of the rows and the columns of a window.
     pub fits: fn(&[u8], &[u8]) -> bool,
 }
 
 impl Fusible {
-    /// Whether kernels of single pixels can follow in the same dispatch.
+    /// True where kernels of single pixels can follow in the same dispatch.
     pub const fn can_lead(&self) -> bool {
         !matches!(self, Self::Never)
     }

@@ -1,10 +1,7 @@
 //! Functions for devices that interpolate by samplers, in the place of those of the shaders.
 
-use crate::imports::{imported, read};
+use crate::imports::{GPU, imported, read};
 use std::path::Path;
-
-/// The folder of what only GPUs need; files of a stem of `shared` hold functions for devices that filter.
-const GPU: &str = "gpu";
 
 /// That text with the functions of `shaders/gpu` of the same stem in the place of its own, for devices that filter; none
 /// where there is no such file.

@@ -1,8 +1,8 @@
 //! The text of `kernels.rs`, which the crate includes: shaders, uniform blocks, modules and the list of kernels.
 
-use crate::imports::{Text, imported, packed};
+use crate::imports::{GPU, Name, SHARED, Text, imported, packed};
 use crate::shader::{Fusible, Shader, StructParams, parse};
-use crate::{GPU, Name, SHARED, filtered, pieces};
+use crate::{filtered, pieces};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ pub fn text(
 fn shared_texts(shaders: &Path, kernels: &BTreeMap<Name, Shader>) -> Result<String, String> {
     let names: BTreeSet<&String> = kernels.values().flat_map(|shader| &shader.imports).collect();
     let mut text = String::from(
-        "/// What shaders import.\npub mod imports {\nuse isophote_engine::wgsl::{Import, Piece as P};\n",
+        "/// Texts that shaders import.\npub mod imports {\nuse isophote_engine::wgsl::{Import, Piece as P};\n",
     );
     for name in names {
         let cut = |text: String| rust(pieces::shared(&text).iter().map(|piece| format!("{piece:?}")));
@@ -81,8 +81,8 @@ fn kernel(shaders: &Path, group: &str, stem: &str, shader: &Shader) -> Result<St
     Ok(text)
 }
 
-/// What a kernel offers to fusion: a constant, or, where `shaders/gpu/<kernel>_pair.wgsl` has its rows and columns in one
-/// dispatch, a function of what says which passes are such.
+/// Part that a kernel can take in a dispatch of several: a constant, or, where `shaders/gpu/<kernel>_pair.wgsl` has its rows and columns in one
+/// dispatch, a function of the test which passes are such.
 fn fusible(shaders: &Path, stem: &str, shader: &Shader) -> Result<String, String> {
     let path = shaders.join(GPU).join(format!("{stem}_pair.wgsl"));
     let case = match &shader.fusible {
@@ -92,7 +92,7 @@ fn fusible(shaders: &Path, stem: &str, shader: &Shader) -> Result<String, String
             check_pair(&text, block).map_err(|fault| format!("{}: {fault}", path.display()))?;
             return Ok(format!(
                 "const PAIR_IMPORTS: &[&isophote_engine::wgsl::Import] = {};\n\
-                 /// What it offers to fusion; `fits` says whether passes are the rows and the columns of a window.\n\
+                 /// Part that it can take in a dispatch of several; `fits` is true for the rows and the columns of a window.\n\
                  pub const fn fusible(fits: fn(&[u8], &[u8]) -> bool) -> super::F {{\n\
                  super::F::Window(isophote_engine::kernel::Pair {{\nimports: PAIR_IMPORTS,\n\
                  block: OWN.split_at({}).1.split_at({}).0,\nown: {},\nfits }})\n}}\n",
@@ -110,7 +110,9 @@ fn fusible(shaders: &Path, stem: &str, shader: &Shader) -> Result<String, String
         Fusible::BeforeWindow(pieces) => format!("BeforeWindow {{ anywhere: OWN.split_at({pieces}).0 }}"),
         Fusible::SinglePixels(around) => format!("SinglePixels {{ around: &{around:?} }}"),
     };
-    Ok(format!("/// What it offers to fusion.\npub const FUSIBLE: super::F = super::F::{case};\n"))
+    Ok(format!(
+        "/// Part that it can take in a dispatch of several.\npub const FUSIBLE: super::F = super::F::{case};\n"
+    ))
 }
 
 /// Validates rows and columns in one dispatch, with stand-ins for what the engine gives them.
@@ -151,7 +153,7 @@ fn rust(pieces: impl Iterator<Item = String>) -> String {
     format!("&[{}]", pieces.map(|piece| format!("P::{piece}")).collect::<Vec<_>>().join(", "))
 }
 
-/// What is imported under these names, in a module of `shaders`.
+/// Constants of what is imported under these names, in a module of `shaders`.
 fn imported_names(names: &[String]) -> String {
     let constants = names.iter().map(|name| format!("&super::super::imports::{}", constant(name)));
     format!("&[{}]", constants.collect::<Vec<_>>().join(", "))

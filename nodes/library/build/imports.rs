@@ -3,6 +3,16 @@
 use std::fs;
 use std::path::Path;
 
+/// Group and stem of a file.
+pub type Name = (String, String);
+
+/// What several shaders share, and its twins in Rust.
+pub const SHARED: &str = "shared";
+
+/// What only GPUs need, such as where a texture lies in the picture, and functions for devices that filter, under the
+/// stems of `shared`; it has no twins.
+pub const GPU: &str = "gpu";
+
 /// The function that a shader has in the place of an entry point when each pixel of its result depends on the same
 /// pixel of its textures alone.
 pub const OF_PIXEL: &str = "of_pixel";

@@ -45,14 +45,14 @@ pub enum Piece<'t> {
     Load,
 }
 
-/// Places in a text, and what stands there.
+/// Places in a text, and the pieces that stand there.
 type Marks<'t> = Vec<(Range<usize>, Piece<'t>)>;
 
 /// Text in pieces.
 pub struct Cut<'t> {
     /// The pieces; what they stand for is the text.
     pub pieces: Vec<Piece<'t>>,
-    /// Where each begins.
+    /// Beginning of each in the text.
     starts: Vec<usize>,
 }
 
@@ -88,7 +88,7 @@ impl<'t> Cut<'t> {
         }
     }
 
-    /// How many pieces stand before a place of the text where one begins.
+    /// Number of pieces before a place of the text where one begins.
     pub fn before(&self, at: usize) -> usize {
         self.starts.partition_point(|start| *start < at)
     }
@@ -97,7 +97,7 @@ impl<'t> Cut<'t> {
 /// A kernel's own text and what naga found in it.
 pub struct Own<'m> {
     text: &'m str,
-    /// Where it begins in the text that was parsed.
+    /// Its beginning in the text that was parsed.
     start: usize,
     module: &'m Module,
 }
@@ -108,14 +108,14 @@ impl<'m> Own<'m> {
         Self { text: own, start: shared.len(), module }
     }
 
-    /// Where a declaration lies in the text, if it does.
+    /// Place of a declaration in the text, if it lies there.
     fn place(&self, span: Span) -> Option<Range<usize>> {
         let Range { start, end } = span.to_range()?;
         (start >= self.start && end <= self.start + self.text.len())
             .then(|| start - self.start..end - self.start)
     }
 
-    /// What it declares for the whole module but entry points: where, and by which name.
+    /// Places and names of its declarations for the whole module, without entry points.
     fn declared(&self) -> Vec<(Range<usize>, &'m str)> {
         let m = self.module;
         let functions = m.functions.iter().map(|(at, f)| (m.functions.get_span(at), &f.name));
@@ -138,7 +138,7 @@ impl<'m> Own<'m> {
         })
     }
 
-    /// Whether it declares a function of this name.
+    /// True when it declares a function of this name.
     pub fn has_function(&self, name: &str) -> bool {
         self.module.functions.iter().any(|(_, function)| function.name.as_deref() == Some(name))
     }
@@ -167,13 +167,13 @@ impl<'m> Own<'m> {
         textures.filter(|(_, name)| has_constant(name)).map(|(slot, _)| slot).collect()
     }
 
-    /// Where the struct of the uniform block lies, with the end of its last line.
+    /// Place of the struct of the uniform block, with the end of its last line.
     pub fn block(&self) -> Option<Range<usize>> {
         let (place, _) = self.declared().into_iter().find(|(_, name)| *name == "Params")?;
         Some(place.start..line(self.text, place.end - 1).end)
     }
 
-    /// Where that begins which needs a workgroup: its memory or the entry point.
+    /// Beginning of what needs a workgroup: its memory or the entry point.
     pub fn workgroup(&self) -> Option<usize> {
         let m = self.module;
         let shared = m.global_variables.iter().filter(|(_, v)| v.space == AddressSpace::WorkGroup);

@@ -22,7 +22,7 @@ pub struct Shader {
     pub entry: Vec<String>,
     /// Names of the textures that it reads.
     pub textures: Vec<String>,
-    /// What it offers to fusion.
+    /// Part that it can take in a dispatch of several.
     pub fusible: Fusible,
     /// The struct of its uniform block.
     pub struct_params: Option<StructParams>,
@@ -38,24 +38,23 @@ pub struct Shader {
 
 /// The struct of a uniform block in the text of its shader.
 pub struct StructParams {
-    /// How many pieces stand before it.
+    /// Number of pieces before it.
     pub before: usize,
-    /// How many pieces it has.
+    /// Number of its pieces.
     pub pieces: usize,
     /// Its text.
     pub text: String,
 }
 
-/// What a kernel offers to fusion, but for windows. Its debug text is the engine's value as Rust has it, but for pieces.
-#[derive(Debug)]
+/// Part that a kernel can take in a dispatch of several, but for windows.
 pub enum Fusible {
-    /// Nothing.
+    /// None.
     Never,
-    /// To be first.
+    /// The first.
     First,
-    /// To be computed for the window of another kernel by its first pieces, so many.
+    /// Before the window of another kernel, by so many of its first pieces.
     BeforeWindow(usize),
-    /// To follow; the inputs that it reads itself.
+    /// Any; the inputs that it reads itself.
     SinglePixels(Vec<usize>),
 }
 
@@ -110,7 +109,7 @@ impl Shader {
 /// Parses and validates a module.
 ///
 /// # Errors
-/// What naga says.
+/// The words of naga.
 pub fn parse(source: &str) -> Result<Module, String> {
     let mut options = Options::new();
     options.parse_doc_comments = true;
@@ -122,7 +121,7 @@ pub fn parse(source: &str) -> Result<Module, String> {
     Ok(module)
 }
 
-/// What a kernel with an entry point of its own offers to fusion.
+/// Part that a kernel with an entry point of its own can take.
 fn fusible(text: &str, own: &Own<'_>, cut: &Cut<'_>, outputs: usize) -> Result<Fusible, String> {
     let stores_once = text.matches("textureStore(").count() == 1 && text.contains(STORE) && outputs == 1;
     match own.workgroup() {

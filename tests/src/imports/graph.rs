@@ -66,13 +66,13 @@ impl Imports {
         folders
     }
 
-    /// What files in the folder `from` below `root` import from files in the folder `to`.
-    pub fn between(&self, root: &Path, from: &str, to: &str) -> Vec<String> {
+    /// Imports of files in the folder `from` below `root` from files in the folder `to`.
+    pub fn between(&self, root: &Path, from: &str, to: &str) -> Vec<[PathBuf; 2]> {
         let (from, to) = (root.join(from), root.join(to));
         let importing = self.0.iter().filter(|(file, _)| file.starts_with(&from));
         let pairs = importing.flat_map(|(file, targets)| targets.keys().map(move |target| (file, target)));
         let pairs = pairs.filter(|(_, target)| target.starts_with(&to));
-        pairs.map(|(file, target)| format!("{} imports from {}", file.display(), target.display())).collect()
+        pairs.map(|(file, target)| [file.clone(), target.clone()]).collect()
     }
 
     fn report(&self, root: &Path, members: &BTreeSet<&Path>) -> String {

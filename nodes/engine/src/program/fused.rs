@@ -8,7 +8,7 @@ use crate::wgsl::Piece;
 use std::collections::HashSet;
 use std::fmt::Write as _;
 
-/// What takes the place of [`STORE`](crate::wgsl::STORE) where other kernels follow.
+/// Text in the place of [`STORE`](crate::wgsl::STORE) where other kernels follow.
 const FOLLOW: &str = "follow(id, ";
 
 /// A kernel among those of a dispatch.
@@ -220,7 +220,7 @@ struct Place<'s> {
     number: usize,
     /// By input: where its texture is among all that are read.
     slots: &'s [Option<usize>],
-    /// Whether a window holds what it reads.
+    /// True where a window holds what it reads.
     is_held: bool,
     reading: Reading,
 }

@@ -30,7 +30,7 @@ pub struct Shader {
     pub filtered: Cow<'static, [usize]>,
 }
 
-/// What takes the place of [`STORE`] where 16-bit floats are stored.
+/// Text in the place of [`STORE`] where 16-bit floats are stored.
 const STORE_HALF: &str = "store_half(id, ";
 
 /// Devices may cut bits off instead of rounding, which adds up from pass to pass, and may make what is too large infinite.

@@ -26,7 +26,7 @@ impl Flow {
         Some(Self::new(scope.plan, map, STRENGTH.default_float(), softness, INVERT_Y.default_bool()))
     }
 
-    /// What an artist painted, as strong and as soft as asked for.
+    /// Flow of a painted map, as strong and as soft as asked for.
     pub(crate) fn new(
         plan: &mut PlanBuilder,
         map: ImageId,

@@ -154,7 +154,7 @@ fn is_square([x, y]: [f64; 2]) -> bool {
     x.max(y) <= SQUARE * x.min(y)
 }
 
-/// Whether `bounds` lie within `picture`, to a pixel.
+/// True when `bounds` lie within `picture`, to a pixel.
 fn is_within(bounds: &Bounds, picture: &Bounds) -> bool {
     (0..4).all(|i| {
         let beyond = i64::from(picture[i]) - i64::from(bounds[i]);

@@ -23,15 +23,15 @@ pub fn pass(
 
 /// Eight pixels of an average that another frame is taken into.
 pub struct Carried<S: Simd, const N: usize> {
-    /// Where they are.
+    /// Their place.
     pub block: Block,
     /// The average.
     pub own: [f32x8<S>; N],
-    /// How much the other frame counts; nothing where it is not above zero.
+    /// Share of the other frame; it counts for nothing where that is not above zero.
     pub share: f32x8<S>,
     /// The motion that leads there.
     pub motion: [f32x8<S>; 2],
-    /// Where it leads, absolute.
+    /// Place to which it leads, absolute.
     pub place: [f32x8<S>; 2],
 }
 
