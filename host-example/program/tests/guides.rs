@@ -52,7 +52,7 @@ fn a_flow_map_bends_what_a_style_draws() {
     assert_ne!(read("plain.png"), read("bent.png"));
     // As the library does it.
     let library = Library::from_file(support::library()).expect("the library");
-    let style = Style::load(&library, "oil_paint", &[]).expect("the style");
+    let mut style = Style::load(&library, "oil_paint", &[]).expect("the style");
     let request = style.request(&library, SIZE).expect("the size is possible");
     let pixels =
         |channels, bytes| Pixels::new(SIZE.0, SIZE.1, channels, Samples::U8(bytes)).expect("as many");
