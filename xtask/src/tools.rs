@@ -143,7 +143,7 @@ pub fn run(command: &mut Command) -> Result<()> {
 /// When the list cannot be read.
 pub fn looks() -> Result<Vec<(String, PathBuf)>> {
     let folder = root().join("nodes/library/looks");
-    let order = folder.join("order.rs");
+    let order = folder.join("order.txt");
     let text = std::fs::read_to_string(&order).context(|| format!("cannot read {}", order.display()))?;
     let list = text.split_once('{').and_then(|(_, rest)| rest.split_once('}'));
     let (ids, _) = list.ok_or_else(|| Failure(format!("{} has no list", order.display())))?;

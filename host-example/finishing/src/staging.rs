@@ -8,6 +8,7 @@ use std::sync::Arc;
 use clap::{Args, Command, ValueEnum};
 use glam::Vec3;
 
+use crate::stylize::preset;
 use isophote_files::error::{Error, Result};
 use isophote_files::output;
 use isophote_pictures::space::{srgb_decode, srgb_encode};
@@ -215,11 +216,10 @@ impl FromStr for Behind {
             "transparent" => return Ok(Self::Transparent),
             _ => {}
         }
-        if let Some(digits) = text.strip_prefix('#') {
-            let is_color = digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit());
-            let number = u32::from_str_radix(digits, 16).ok().filter(|_| is_color).ok_or(refusal)?;
-            let [_, rgb @ ..] = number.to_be_bytes();
-            return Ok(Self::Color(rgb.map(|v| srgb_decode(f32::from(v) / 255.0)).into()));
+        if text.starts_with('#') {
+            // What is behind the scene has nothing behind it.
+            let [rgb @ .., alpha] = preset::color(text).ok_or(refusal)?;
+            return if alpha == 1.0 { Ok(Self::Color(rgb.map(srgb_decode).into())) } else { Err(refusal) };
         }
         let path = PathBuf::from(text);
         let extension = path.extension().unwrap_or_default();

@@ -14,7 +14,7 @@ use isophote_example::plan_runner::PlanRunner;
 use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::apply::filter::{self, Filter, Look};
 use isophote_finishing::apply::memory::Budget;
-use isophote_finishing::apply::reel::{Held, Window, guide_bit};
+use isophote_finishing::apply::reel::{Held, Window};
 use isophote_finishing::stylize::style::Style;
 use isophote_loader::abi::IsophoteRequest;
 use isophote_loader::{Control, Input, Library};
@@ -112,7 +112,8 @@ fn on_the_device(frame: &Frame, name: &str) -> Vec<f32> {
     let usable = filter::usable_guides(&library, &style).expect("the library answers");
     let size = (frame.width, frame.height);
     let wanted: Vec<_> = frame.guides.iter().filter(|image| usable.contains(&image.guide)).collect();
-    let guides = wanted.iter().fold(0, |all, image| all | guide_bit(image.guide.id()));
+    let names = wanted.iter().map(|image| image.guide.id());
+    let guides = library.guide_bits(names).expect("the library knows them");
     let usual = style.request(&library, size).expect("a request");
     let request = frame.request(IsophoteRequest { guides, ..usual });
     let plan = style.plan(&library, &request, 0).expect("a plan");

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use isophote_example::kernels::Kernels;
 use isophote_example::plan_runner::Counts;
 use isophote_finishing::stylize::Stylizer;
-use isophote_finishing::stylize::lengths::Lengths;
+use isophote_finishing::stylize::preset::Lengths;
 use isophote_finishing::stylize::style::{Setting, Style};
 use isophote_loader::abi::{ISOPHOTE_SPACE_LINEAR, IsophoteRequest};
 use isophote_loader::{Control, Input, Library};

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use isophote_finishing::stylize::preset::Preset;
+use isophote_finishing::stylize::preset::{self as file, Preset};
 use isophote_loader::Library;
 use isophote_window::browser::entry::{Content, Group};
 use isophote_window::browser::listing::{self, Listing, Question};
@@ -97,8 +97,8 @@ fn shown(session: &Session) -> Vec<String> {
     session.browser.groups().into_iter().flat_map(|(_, list)| list).map(|entry| entry.name.clone()).collect()
 }
 
-fn preset(file: &Path) -> Preset {
-    Preset::parse(file, &fs::read_to_string(file).expect("the file is there")).expect("a preset")
+fn preset(path: &Path) -> Preset {
+    file::parse(path, &fs::read_to_string(path).expect("the file is there")).expect("a preset")
 }
 
 #[test]
@@ -369,7 +369,9 @@ fn looks_that_ship_are_copied_to_files_of_ones_own() {
     click(&mut harness, Role::Button, "Save a copy…");
     click(&mut harness, Role::Button, "Save");
     let copy = preset(&folder.path().join("linocut-copy.json"));
-    let shipped = isophote_finishing::stylize::looks::find("linocut").expect("it ships").preset;
+    let looks = file::looks().expect("the looks");
+    let shipped = looks.iter().find(|look| look.id == "linocut").expect("it ships");
+    let shipped = file::of_look(shipped).expect("it is a preset");
     assert_eq!(
         (copy.style, copy.params, copy.title.tags),
         (shipped.style, shipped.params, shipped.title.tags)

@@ -25,6 +25,7 @@ use super::session::{Session, Wish};
 use super::watch::Watch;
 use super::worker::{Wake, Worker};
 use isophote_files::error::{Error, Result};
+use isophote_finishing::stylize::preset;
 use isophote_loader::Library;
 use isophote_loader::abi::IsophoteRequest;
 use isophote_pictures::exr::Selection;
@@ -264,8 +265,11 @@ impl Background {
         let Some(plan) = session.plan.take() else { return };
         let Some(file) = &session.file else { return };
         let look = session.look();
-        let preset =
-            if look.is_plain() { Ok(None) } else { look.whole().map(|preset| Some(preset.to_json())) };
+        let preset = if look.is_plain() {
+            Ok(None)
+        } else {
+            look.whole().and_then(|preset| preset::text(&preset).map(Some))
+        };
         let started = preset.and_then(|preset| {
             let mut job = export::Job::new(plan.kind, file, Path::new(&plan.path), preset);
             (job.frames, job.turntable) = (plan.frames(), plan.what == What::Turntable);

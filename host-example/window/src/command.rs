@@ -6,8 +6,8 @@ use super::reel::Reel;
 use super::scenery::Scenery;
 use super::session::Session;
 use isophote_finishing::staging::{Behind, MotionArgs, StagingArgs};
-use isophote_finishing::stylize::lengths::Lengths;
 use isophote_finishing::stylize::precision::Precision;
+use isophote_finishing::stylize::preset::Lengths;
 use isophote_render::background::Background;
 use isophote_scene::floor;
 

@@ -9,10 +9,9 @@ use super::chain::{Chain, Watched};
 use super::value::Value;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::files::{self, Existing};
-use isophote_finishing::stylize::preset::{self, Preset, Track};
+use isophote_finishing::stylize::preset::{self, Preset, Title, Track};
 use isophote_finishing::stylize::source;
 use isophote_finishing::stylize::style::{Setting, Style};
-use isophote_finishing::stylize::title::Title;
 use isophote_loader::Library;
 use isophote_loader::catalogue::Param;
 
@@ -72,7 +71,7 @@ impl Look {
                 Style::load(library, path, &[])?;
                 let text = source::read(path)?;
                 let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-                let preset = if preset::is_graph(&text) { bare(file) } else { Preset::parse(path, &text)? };
+                let preset = if preset::is_graph(&text) { bare(file) } else { preset::parse(path, &text)? };
                 let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
                 (preset.title.name.clone().unwrap_or(stem), preset)
             }
@@ -324,7 +323,7 @@ impl Look {
 
     /// What names the style for `apply` and `render`: the id of a node, or the path of a graph file.
     pub fn style_name(&self) -> PathBuf {
-        self.preset.style_beside(&self.source).into()
+        preset::style_beside(&self.preset, &self.source).into()
     }
 
     /// The preset as it can be read from anywhere: the path of its graph file is absolute.
@@ -357,7 +356,7 @@ impl Look {
         if self.source.parent() != file.parent() {
             preset.style = self.whole()?.style;
         }
-        let text = preset.to_json();
+        let text = preset::text(&preset)?;
         files::write_bytes(file, Existing::Replace, text.as_bytes())?;
         self.opened = preset.clone();
         self.preset = preset;

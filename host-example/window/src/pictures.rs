@@ -8,9 +8,9 @@ use isophote_example::kernels::checked;
 use isophote_files::error::{Error, Result};
 use isophote_finishing::stylize::Stylizer;
 use isophote_loader::abi::{
-    ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_MOTION_FORWARD, ISOPHOTE_GUIDE_NORMAL,
-    ISOPHOTE_GUIDE_OBJECT_ID, ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR,
-    IsophoteRequest, IsophoteSpace,
+    ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_FLOW, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_MOTION_FORWARD,
+    ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID, ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_ACESCG,
+    ISOPHOTE_SPACE_LINEAR, IsophoteRequest, IsophoteSpace,
 };
 use isophote_pictures::exr::Guide;
 use isophote_render::gpu::Gpu;
@@ -154,6 +154,7 @@ pub fn request(frame: &Frame, scale: f32, usual: IsophoteRequest) -> IsophoteReq
         Guide::Motion => ISOPHOTE_GUIDE_MOTION,
         Guide::MotionForward => ISOPHOTE_GUIDE_MOTION_FORWARD,
         Guide::RestPosition => ISOPHOTE_GUIDE_REST_POSITION,
+        Guide::Flow => ISOPHOTE_GUIDE_FLOW,
     });
     let (width, height) = (frame.width, frame.height);
     let guides = guides.fold(0, |all, guide| all | guide);

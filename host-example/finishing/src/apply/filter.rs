@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::asked::Asked;
 use super::backend::Backend;
 use super::memory::Needs;
-use super::reel::{Window, guide_bit};
+use super::reel::Window;
 use crate::stylize::style::Style;
 use isophote_example::history::{is_stage, split};
 use isophote_files::error::{AtPlace, Error, Result};
@@ -86,6 +86,8 @@ pub struct Planner {
     library: Library,
     layers: Vec<Layer>,
     guides: Vec<Guide>,
+    /// Whether frames have painted flow maps.
+    has_flow: bool,
     /// What filtering a picture of this size takes, as was found last.
     last: Option<((u32, u32), u64)>,
 }
@@ -106,7 +108,7 @@ fn layers(looks: Vec<Look>) -> Result<Vec<Layer>> {
                 "choose a style that yields a colour",
             ));
         }
-        let input = if is_single && style.takes_mask()? { *mask } else { None };
+        let input = if is_single && style.takes("mask")? { *mask } else { None };
         layers.push(Layer { look, input, sequences: Vec::new() });
     }
     Ok(layers)
@@ -123,9 +125,9 @@ fn frames(library: &Library, layers: &[Layer]) -> Result<[i64; 2]> {
 }
 
 impl Layer {
-    /// Bits of guides beside those of the picture.
-    fn bits(&self) -> u32 {
-        self.input.map_or(0, |_| guide_bit("mask"))
+    /// The guide beside those of the picture, by its name.
+    fn guide(&self) -> Option<&'static str> {
+        self.input.map(|_| "mask")
     }
 
     /// Whether its result is mixed with what is below it.
@@ -154,7 +156,7 @@ impl Layer {
             all.extend(inputs);
             return Ok(style.graph.process(device, &request, &all, result, control)?.replaced);
         }
-        request.guides = inputs.fold(0, |all, input| all | guide_bit(input.name));
+        request.guides = library.guide_bits(inputs.map(|input| input.name))?;
         let size = (request.width, request.height);
         self.sequences.truncate(if self.sequences.get(at).is_some_and(|k| k.size != size) {
             at
@@ -317,7 +319,12 @@ impl Planner {
         for look in &looks {
             guides.extend(usable_guides(&library, &look.style)?);
         }
-        Ok(Self { library, layers: layers(looks)?, guides, last: None })
+        Ok(Self { library, layers: layers(looks)?, guides, has_flow: false, last: None })
+    }
+
+    /// Counts the painted flow map that each frame has, if it has one.
+    pub fn with_flow(self, has_flow: bool) -> Self {
+        Self { has_flow, ..self }
     }
 
     /// Guides that the styles can use.
@@ -336,13 +343,15 @@ impl Planner {
         }
         let refused = |e: isophote_loader::Error| e.at(name, "choose another picture or style");
         let pixels = u64::from(size.0) * u64::from(size.1);
-        let guides = self.guides.iter().fold(0, |all, guide| all | guide_bit(guide.id()));
+        let is_counted = |guide: &&Guide| **guide != Guide::Flow || self.has_flow;
+        let guides = self.guides.iter().filter(is_counted).map(|guide| guide.id());
         // One look is made at a time; what it keeps of frames stays.
         let (mut kept, mut most) = (0, 0);
         for layer in &self.layers {
             let style = &layer.look.style;
             let mut request = style.request(&self.library, size).map_err(refused)?;
-            request.guides = guides | layer.bits();
+            let all = guides.clone().chain(layer.guide());
+            request.guides = self.library.guide_bits(all).map_err(refused)?;
             let frames = self.library.frames(&style.graph).map_err(refused)?;
             let plan = match frames {
                 [0, 0] => style.graph.plan(&request),
@@ -396,8 +405,9 @@ impl Planner {
         let filter = self.filter_memory(&file.display().to_string(), frame, size)?;
         // Each as it is read, as it is kept and as one of all frames.
         let masks = self.layers.iter().filter(|layer| layer.look.mask.is_some()).count() as u64;
-        let masks = u64::from(size.0) * u64::from(size.1) * 4 * 3 * masks;
-        Ok(Some(Needs { frame: opened.weight().saturating_add(masks), filter }))
+        let masks = masks + if self.has_flow { 4 } else { 0 };
+        let maps = u64::from(size.0) * u64::from(size.1) * 4 * 3 * masks;
+        Ok(Some(Needs { frame: opened.weight().saturating_add(maps), filter }))
     }
 }
 
@@ -455,6 +465,7 @@ pub fn usable_guides(library: &Library, style: &Style) -> Result<Vec<Guide>> {
                 Kind::Depth => guides.push(Guide::Depth),
                 Kind::ObjectId => guides.push(Guide::ObjectId),
                 Kind::Position => guides.push(Guide::RestPosition),
+                Kind::Flow => guides.push(Guide::Flow),
                 Kind::Motion if is_steady && port.id == "motion" => guides.push(Guide::Motion),
                 Kind::Motion if is_steady => guides.push(Guide::MotionForward),
                 _ => {}

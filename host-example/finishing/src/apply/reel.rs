@@ -2,8 +2,6 @@
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use isophote_loader::abi;
-
 use super::memory::Share;
 use isophote_pictures::convert;
 use isophote_pictures::exr::{ExrFile, Picture};
@@ -81,19 +79,5 @@ impl Window<'_> {
         let size = |picture: &Picture| (picture.pixels.width(), picture.pixels.height());
         let is_alike = size(own) == size(other) && self.own.source.state == held.source.state;
         is_alike.then_some((held, other))
-    }
-}
-
-/// The bit of a guide in a request.
-pub fn guide_bit(input: &str) -> u32 {
-    match input {
-        "normal" => abi::ISOPHOTE_GUIDE_NORMAL,
-        "depth" => abi::ISOPHOTE_GUIDE_DEPTH,
-        "object_id" => abi::ISOPHOTE_GUIDE_OBJECT_ID,
-        "mask" => abi::ISOPHOTE_GUIDE_MASK,
-        "motion" => abi::ISOPHOTE_GUIDE_MOTION,
-        "motion_forward" => abi::ISOPHOTE_GUIDE_MOTION_FORWARD,
-        "rest_position" => abi::ISOPHOTE_GUIDE_REST_POSITION,
-        _ => 0,
     }
 }

@@ -4,13 +4,10 @@
 //! after the scene's, and read the renderer's textures directly. Once warm, a frame creates no GPU object and
 //! is one submission.
 
-pub mod lengths;
-pub mod looks;
 pub mod precision;
 pub mod preset;
 pub mod source;
 pub mod style;
-pub mod title;
 
 use std::sync::Arc;
 

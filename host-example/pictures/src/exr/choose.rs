@@ -69,12 +69,21 @@ pub enum Guide {
     MotionForward,
     /// Where surfaces are before anything moves.
     RestPosition,
+    /// A painted flow map.
+    Flow,
 }
 
 impl Guide {
     /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::Normal, Self::Depth, Self::ObjectId, Self::Motion, Self::MotionForward, Self::RestPosition];
+    pub const ALL: [Self; 7] = [
+        Self::Normal,
+        Self::Depth,
+        Self::ObjectId,
+        Self::Motion,
+        Self::MotionForward,
+        Self::RestPosition,
+        Self::Flow,
+    ];
 
     /// The name of the graph's input.
     pub fn id(self) -> &'static str {
@@ -85,6 +94,7 @@ impl Guide {
             Self::Motion => "motion",
             Self::MotionForward => "motion_forward",
             Self::RestPosition => "rest_position",
+            Self::Flow => "flow",
         }
     }
 
@@ -100,7 +110,7 @@ impl Guide {
 }
 
 /// How to write a guide.
-const FIX: &str = "write normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER, motion_forward=LAYER or rest_position=LAYER";
+const FIX: &str = "write normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER, motion_forward=LAYER, rest_position=LAYER or flow=LAYER";
 
 /// One `--guide`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -408,6 +418,10 @@ fn xyz(group: &Group) -> Option<Vec<usize>> {
     group.all(["X", "Y", "Z"]).or_else(|| group.all(["R", "G", "B"]))
 }
 
+fn rgba(group: &Group) -> Option<Vec<usize>> {
+    group.all(["R", "G", "B", "A"])
+}
+
 /// Motion vectors in a group; `name` is the layer that was asked for.
 fn vectors(
     exr: &File,
@@ -437,7 +451,7 @@ fn source(exr: &File, group: &Group, guide: Guide, name: Option<&str>) -> Option
     };
     if let Some(name) = name {
         let channel = group.members.iter().find(|(_, at)| part.channels[*at].name == name).map(|m| m.1);
-        if !guide.is_of_surfaces() && channel.is_some() {
+        if !guide.is_of_surfaces() && guide != Guide::Flow && channel.is_some() {
             return channel.map(|c| found(vec![c]));
         }
         if !is_named(exr, group, name) {
@@ -447,6 +461,7 @@ fn source(exr: &File, group: &Group, guide: Guide, name: Option<&str>) -> Option
             Guide::Normal | Guide::RestPosition => xyz(group),
             Guide::Depth => single(&["Z", "depth", "Y", "V", "R"]).map(|c| vec![c]),
             Guide::ObjectId => single(&["id", "object_id", "Y", "R"]).map(|c| vec![c]),
+            Guide::Flow => rgba(group),
             Guide::Motion | Guide::MotionForward => None,
         }
         .map(found);
@@ -473,7 +488,9 @@ fn source(exr: &File, group: &Group, guide: Guide, name: Option<&str>) -> Option
             _ => vec![["id", "object_id", "objectid"].iter().find_map(|c| group.member(c))?],
         },
         Guide::RestPosition if REST.contains(&word.as_str()) => xyz(group)?,
-        Guide::RestPosition | Guide::Motion | Guide::MotionForward => return None,
+        // "flow" alone may be optical flow.
+        Guide::Flow if matches!(word.as_str(), "flow_map" | "flowmap") => rgba(group)?,
+        Guide::RestPosition | Guide::Flow | Guide::Motion | Guide::MotionForward => return None,
     };
     Some(found(channels))
 }

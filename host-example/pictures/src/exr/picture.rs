@@ -261,7 +261,7 @@ pub fn guide(
         let vectors = all.as_chunks::<3>().0.iter().flat_map(valid).collect();
         return Ok(Pixels::new(size.0, size.1, 4, Samples::F32(vectors)));
     }
-    Ok(Pixels::new(size.0, size.1, 1, Samples::F32(all)))
+    Ok(Pixels::new(size.0, size.1, count as u32, Samples::F32(all)))
 }
 
 /// As floats; integers that floats do not tell apart are folded into those that they do.

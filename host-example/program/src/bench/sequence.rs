@@ -7,7 +7,7 @@ use isophote_files::output;
 use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::apply::filter::{Filter, Look, Planner};
 use isophote_finishing::apply::memory::{self, Bytes};
-use isophote_finishing::stylize::lengths::Lengths;
+use isophote_finishing::stylize::preset::Lengths;
 use isophote_finishing::stylize::style::Style;
 use isophote_loader::Library;
 use isophote_pictures::pixels::Pixels;

@@ -108,8 +108,8 @@ pub struct ApplyArgs {
     #[arg(long, value_name = "NEWLAYER")]
     pub into: Option<String>,
     /// The layer of an EXR file that guides the filter: normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER,
-    /// motion_forward=LAYER or rest_position=LAYER, or none instead of a layer. Without it guides are found by names such as
-    /// N, normal, Z, depth, P, id, backward, Vector, velocity, Pref and rest; where there is no id, the Cryptomatte of objects
+    /// motion_forward=LAYER, rest_position=LAYER or flow=LAYER, or none instead of a layer. Without it guides are found by names
+    /// such as N, normal, Z, depth, P, id, backward, Vector, velocity, Pref, rest and flow_map; where there is no id, the Cryptomatte of objects
     /// stands for it, which is object_id=cryptomatte, or `object_id=cryptomatte[LAYER]` for another. May be repeated.
     #[arg(long, value_name = "GUIDE=LAYER")]
     pub guide: Vec<GuideChoice>,
@@ -128,6 +128,10 @@ pub struct ApplyArgs {
     /// What to do in frames that do not know a name of the mask's.
     #[arg(long, value_enum, default_value_t = OnUnknown::Fail)]
     pub on_unknown: OnUnknown,
+    /// A painted flow map, along which the style draws: a file such as flow.png, or one for each frame (flow.####.exr). Red and
+    /// green say where it leads, 0.5 for nowhere, and alpha how much it counts.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub flow: Option<PathBuf>,
     /// How steady frames of a sequence are, from 0 to 1: neighbouring frames are carried along motion and averaged before
     /// the style decides anything. Needs motion vectors in the EXR files, or --motion [default: what the style says].
     #[arg(long, value_name = "S")]
@@ -176,13 +180,14 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         looks.iter().for_each(|look| look.style.warn_of_keys_beyond(&frames));
     }
     let choices = args.masks(&entries);
-    let masks = Masks::new(&choices, args.mask_from.as_deref(), args.on_unknown)?;
+    let masks = args.maps(&choices, &looks)?;
     masks.check(Some(&tasks))?;
     let selection = args.selection(&library, &looks, &choices, format)?;
     let motion = args.motion_files(&tasks, &selection)?;
     let opened = args.open_first(&tasks, &selection)?;
     let backend = if args.dry_run { Backend::Cpu } else { args.backend };
-    let mut planner = Planner::new(library.clone(), args.looks(&library, files.style, &entries)?)?;
+    let planner = Planner::new(library.clone(), args.looks(&library, files.style, &entries)?)?;
+    let mut planner = planner.with_flow(args.flow.is_some());
     args.check_results(&tasks, &planner, &choices)?;
     let filter = Filter::new(library.clone(), looks, backend, args.space, args.threads)?;
     let most = args.memory.unwrap_or_else(memory::usual);
@@ -323,7 +328,7 @@ impl ApplyArgs {
                 "name files of masks, or EXR files by --mask-from",
             );
         }
-        let masks = Masks::new(&choices, self.mask_from.as_deref(), self.on_unknown)?;
+        let masks = self.maps(&choices, &looks)?;
         masks.check(None)?;
         let mut filter = Filter::new(library, looks, self.backend, self.space, self.threads)?;
         let stop = Stop::on_signals();
@@ -380,6 +385,24 @@ impl ApplyArgs {
         } else {
             refused.into_iter().next().map_or(Ok(looks), Err)
         }
+    }
+
+    /// What lies over the pictures: masks, and the flow map.
+    ///
+    /// # Errors
+    /// As [`Masks::new`]; [`Error::Input`] for a flow map that no style would follow.
+    fn maps(&self, choices: &[MaskChoice], looks: &[Look]) -> Result<Masks> {
+        if self.flow.is_some() {
+            let mut followed = false;
+            for look in looks {
+                followed |= look.style.takes("flow")?;
+            }
+            if !followed {
+                let fix = "choose another style, or connect @flow in its graph";
+                return Err(Error::input("--flow", "the style follows no flow map", fix));
+            }
+        }
+        Masks::new(choices, self.mask_from.as_deref(), self.on_unknown)?.with_flow(self.flow.as_deref())
     }
 
     /// The files of motion vectors.

@@ -64,6 +64,7 @@ impl ApplyArgs {
             (output, Part::Result, Some(files.output)),
             ("mask", Part::Frames, mask),
             ("mask_from", Part::Frames, self.mask_from.as_deref()),
+            ("flow", Part::Frames, self.flow.as_deref()),
             ("motion", Part::Frames, self.motion.as_deref().filter(|_| !self.estimates_motion())),
         ];
         // Standard input and output have no path.

@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use isophote_files::error::Result;
 use isophote_files::files::Existing;
 use isophote_files::replacing::Consent;
 use isophote_finishing::staging::ReadingArgs;
-use isophote_finishing::stylize::lengths::Lengths;
 use isophote_finishing::stylize::precision::Precision;
+use isophote_finishing::stylize::preset::Lengths;
 use isophote_finishing::stylize::style::Style;
 use isophote_pictures::pixels::MOST_PIXELS;
 use isophote_scene::Scene;
@@ -39,8 +40,22 @@ impl SceneArgs {
 pub struct LengthArgs {
     /// What lengths of parameters are: pixels of a picture 1080 lines high, so that pictures of all sizes get the same look,
     /// or pixels of the picture itself [default: what the preset says, else relative].
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = lengths())]
     pub lengths: Option<Lengths>,
+}
+
+/// Reads the words for lengths.
+fn lengths() -> impl TypedValueParser<Value = Lengths> {
+    let word = |lengths: Lengths| {
+        PossibleValue::new(lengths.id()).help(match lengths {
+            Lengths::Relative => {
+                "Pixels of a picture 1080 lines high: pictures of all sizes get the same look"
+            }
+            Lengths::Pixels => "Pixels of the picture itself",
+        })
+    };
+    let of = |word: String| Lengths::ALL.into_iter().find(|lengths| lengths.id() == word);
+    PossibleValuesParser::new(Lengths::ALL.map(word)).try_map(move |word| of(word).ok_or("write a word"))
 }
 
 impl LengthArgs {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::look::Look;
-use isophote_finishing::stylize::title::Title;
+use isophote_finishing::stylize::preset::Title;
 
 /// Where a look belongs.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -62,7 +62,7 @@ mod tests {
 
     use super::super::entry::{Content, Group};
     use super::*;
-    use isophote_finishing::stylize::title::Title;
+    use isophote_finishing::stylize::preset::Title;
 
     fn entry(name: &str, style: &str, tags: &[&str]) -> Entry {
         Entry {

@@ -8,8 +8,7 @@ use std::sync::Arc;
 use super::entry::{Content, Group};
 use crate::look::{Look, PLAIN};
 use isophote_files::error::Error;
-use isophote_finishing::stylize::looks;
-use isophote_finishing::stylize::title::Title;
+use isophote_finishing::stylize::preset::Title;
 use isophote_loader::Library;
 
 /// Most folders within folders.
@@ -58,8 +57,8 @@ pub fn read(Question { library, folders }: Question) -> Listing {
         // Two names of one folder, or one inside the other, show each file once.
         listing.read_folder(&library, &folder, 0, &mut seen);
     }
-    for look in looks::all().unwrap_or_default() {
-        listing.found.push(found(&library, Group::Shipped, look.style().into()));
+    for look in library.looks().unwrap_or_default() {
+        listing.found.push(found(&library, Group::Shipped, look.name().into()));
     }
     listing.found.push(found(&library, Group::Styles, PLAIN.into()));
     let nodes = library.catalogue().map(|catalogue| catalogue.nodes).unwrap_or_default();

@@ -15,7 +15,7 @@ use crate::preview::picture::Picture;
 use crate::saving::Saving;
 use crate::viewport::Compare;
 use isophote_files::error::Error;
-use isophote_finishing::stylize::title::Title;
+use isophote_finishing::stylize::preset::Title;
 
 impl Session {
     /// Whether something else is shown instead of the picture.

@@ -8,7 +8,7 @@ use crate::chain::Chain;
 use crate::look::{Knob, Look};
 use crate::value::Value;
 use isophote_files::error::Result;
-use isophote_finishing::stylize::lengths::Lengths;
+use isophote_finishing::stylize::preset::Lengths;
 use isophote_finishing::stylize::style::Setting;
 use isophote_loader::Library;
 

@@ -88,5 +88,6 @@ fn title(guide: Guide) -> &'static str {
         Guide::Motion => "Motion",
         Guide::MotionForward => "Motion forward",
         Guide::RestPosition => "Rest positions",
+        Guide::Flow => "Flow map",
     }
 }
