@@ -33,7 +33,7 @@ const CLOSING: Duration = Duration::from_millis(20);
 /// Time between two updates of the title.
 const TITLE: Duration = Duration::from_millis(250);
 
-/// What arrives at the window besides its own events.
+/// Events that arrive at the window besides its own.
 #[derive(Debug)]
 pub enum Event {
     /// Something was done beside the window.
@@ -58,7 +58,7 @@ pub struct App {
     size: Option<(u32, u32)>,
     // Dropped in order: the device before the window.
     stage: Option<Stage>,
-    /// What the controls have on the device.
+    /// Textures of the controls on the device.
     textures: Textures,
     input: Option<State>,
     window: Option<Arc<Window>>,
@@ -75,7 +75,7 @@ pub struct App {
     hidden: bool,
     /// When the next frame is wanted, if nothing happens before.
     due: Option<Instant>,
-    /// What the title tells, and since when.
+    /// The title of the window, and since when it stands.
     titled: Option<(Instant, String)>,
     /// Events for the next frame.
     late: Vec<egui::Event>,
@@ -109,12 +109,12 @@ impl App {
         })
     }
 
-    /// What is shown, for whoever asked for a report.
+    /// The session that is shown, for whoever asked for a report.
     pub fn session(&self) -> &Session {
         &self.session
     }
 
-    /// What is shown, to be changed as the controls do. The window sees it with the next event.
+    /// The session that is shown, to be changed as the controls do. The window sees it with the next event.
     pub fn session_mut(&mut self) -> &mut Session {
         self.due = Some(Instant::now());
         &mut self.session
@@ -130,12 +130,12 @@ impl App {
         self.devices
     }
 
-    /// What was made on the device for the look.
+    /// Number of things made on the device for the look.
     pub fn counts(&self) -> Option<Counts> {
         self.stage.as_ref().map(Stage::counts)
     }
 
-    /// Whether nothing is left to be drawn, built, opened or uploaded.
+    /// True where nothing is left to be drawn, built, opened or uploaded.
     pub fn is_idle(&self) -> bool {
         let is_due = self.due.is_some_and(|due| due <= Instant::now());
         let is_at_work = self.stage.as_ref().is_none_or(|stage| stage.is_waiting() || stage.is_busy());
@@ -241,7 +241,7 @@ impl App {
         Ok(())
     }
 
-    /// What a window does that is not seen: what was dropped on it is opened, and its title says so.
+    /// Does the window's work that is not seen: opens what was dropped on it, and has its title say so.
     fn attend(&mut self) {
         self.background.collect(&mut self.session);
         // There is nothing to copy from what is not seen.

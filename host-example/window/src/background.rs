@@ -1,4 +1,4 @@
-//! What the window does beside drawing: opening files, asking for names, saving. Nothing of it holds the window up.
+//! Work of the window beside drawing: opening files, asking for names, saving. Nothing of it holds the window up.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -32,7 +32,7 @@ use isophote_render::background::Background as Surround;
 use isophote_scene::environment::Environment;
 use isophote_scene::{Scene, camera, floor};
 
-/// What is to be opened.
+/// Something to be opened.
 enum Job {
     Demo,
     /// A picture that comes with the program, whose file is in a folder.
@@ -45,7 +45,7 @@ enum Job {
     Surroundings(PathBuf),
 }
 
-/// What was opened.
+/// Something that was opened.
 enum Opened {
     Scene(Box<Scene>, Option<PathBuf>),
     Pictures(Box<Reel>),
@@ -56,7 +56,7 @@ enum Opened {
     Surroundings(Surround, PathBuf),
 }
 
-/// What a dialog is for.
+/// Purpose of a dialog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Dialog {
     File,
@@ -68,7 +68,7 @@ enum Dialog {
 }
 
 impl Dialog {
-    /// What to do where the system has no dialogs.
+    /// Advice where the system has no dialogs.
     const fn otherwise(self) -> &'static str {
         match self {
             Self::File | Self::Look => "drop the file on the window, or install zenity or xdg-desktop-portal",
@@ -88,12 +88,12 @@ pub struct Background {
     looks: LookWork,
     /// Makes the pictures of the start small.
     reducer: Worker<(), Vec<Arc<ColorImage>>>,
-    /// What the critic was asked last.
+    /// The last question to the critic.
     asked: Option<(Look, Option<IsophoteRequest>)>,
     chosen: Receiver<(Dialog, Result<Option<PathBuf>>)>,
     choose: Sender<(Dialog, Result<Option<PathBuf>>)>,
     export: Option<Export>,
-    /// Whether a dialog is open.
+    /// True while a dialog is open.
     choosing: bool,
     wake: Wake,
 }
@@ -131,7 +131,7 @@ impl Background {
         export.poll().state != State::Running
     }
 
-    /// What is being done.
+    /// The work that is being done, in words.
     pub fn busy(&self) -> Option<&'static str> {
         self.opener.is_busy().then_some("Opening").or(self.export.as_ref().map(|_| "Exporting"))
     }
@@ -421,7 +421,7 @@ fn file(library: &Library, path: PathBuf) -> Result<Opened> {
     })
 }
 
-/// What looks on the picture that is open are asked for.
+/// Request of looks on the picture that is open.
 fn asked(session: &Session) -> Option<IsophoteRequest> {
     let (frame, _) = session.reel.as_ref()?.frame(false)?;
     session.library.request((1, 1)).ok().map(|usual| pictures::request(frame, 1.0, usual))

@@ -127,7 +127,7 @@ pub fn staging(session: &Session, is_turntable: bool) -> Vec<String> {
     [scenery.reading.words(), staging.words()].concat()
 }
 
-/// What is behind the scene, as it is written.
+/// Background of the scene, as it is written.
 fn behind(scenery: &Scenery) -> Behind {
     match (&scenery.lighting.background, &scenery.lighting.surroundings) {
         (Background::Transparent, _) => Behind::Transparent,

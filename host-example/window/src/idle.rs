@@ -1,4 +1,4 @@
-//! Which controls have no effect at the moment: those whose other values leave every pass as it is.
+//! Search for controls that have no effect at the moment: those whose other values leave every pass as it is.
 
 use std::collections::HashSet;
 
@@ -19,15 +19,15 @@ pub struct Question {
     pub library: Library,
     /// The look.
     pub look: Look,
-    /// What looks on the picture are asked for; that of scenes without.
+    /// Request of looks on the picture; that of scenes without.
     pub asked: Option<IsophoteRequest>,
 }
 
-/// What is known.
+/// The controls that are known to have none.
 pub struct Answer {
     /// The look.
     pub look: Look,
-    /// What it was asked for.
+    /// Request that it was found for.
     pub asked: Option<IsophoteRequest>,
     /// Names of the parameters without effect.
     pub idle: HashSet<String>,

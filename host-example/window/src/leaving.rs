@@ -17,7 +17,7 @@ pub enum Leaving {
 }
 
 impl Leaving {
-    /// Whether a question, or what follows from its answer, stands in front of everything else.
+    /// True where a question, or what follows from its answer, stands in front of everything else.
     pub fn is_shown(self) -> bool {
         matches!(self, Self::Asks | Self::Waits | Self::Closes)
     }

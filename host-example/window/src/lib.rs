@@ -64,7 +64,7 @@ use app::{App, Event};
 use isophote_files::error::{Error, Result};
 use session::Session;
 
-/// What keys and mouse do, for the help of the program.
+/// Keys and the mouse and what they do, for the help of the program.
 pub fn keys() -> String {
     let mut text = "Keys and mouse:".to_owned();
     for (key, what) in ui::keys::KEYS {
@@ -93,7 +93,7 @@ pub fn show(mut session: Session, size: Option<(u32, u32)>, with_report: bool) -
     app.failure.map_or(Ok(()), Err)
 }
 
-/// Why the system refuses a window, without the line of winit's source that the text begins with.
+/// Reason why the system refuses a window, without the line of winit's source that the text begins with.
 fn reason(problem: &str) -> &str {
     problem
         .split_once(".rs:")

@@ -15,7 +15,7 @@ use isophote_loader::Library;
 use isophote_loader::abi::{IsophoteRequest, IsophoteSpace};
 use isophote_loader::catalogue::Kind;
 
-/// What is to be built.
+/// A look to be built.
 struct Job {
     library: Library,
     kernels: Arc<Kernels>,
@@ -26,7 +26,8 @@ struct Job {
 struct Recipe {
     look: Look,
     precision: Precision,
-    /// What pictures the look is for; the reference of lengths is the look's own affair, and frames come later.
+    /// Request of the pictures that the look is for; the reference of lengths is the look's own affair, and frames
+    /// come later.
     asked: IsophoteRequest,
 }
 
@@ -35,7 +36,7 @@ struct Ready {
     stylizer: Stylizer,
     recipe: Recipe,
     knobs: Vec<Knob>,
-    /// Whether it reads what there is to read.
+    /// True where it reads what there is to read.
     bound: bool,
     /// Number of the last frame that was recorded.
     number: Option<i64>,
@@ -46,7 +47,7 @@ struct Ready {
 /// The part of a picture that is recorded at once.
 #[derive(Clone, Copy, Debug)]
 pub struct Part {
-    /// Whether it is the first.
+    /// True for the first.
     pub begins: bool,
     /// Most passes.
     pub passes: usize,
@@ -61,9 +62,9 @@ pub struct LiveLook {
     ready: Option<Ready>,
     /// The look for pictures of another scale, which are shown while something moves.
     spare: Option<Ready>,
-    /// What was last asked of the worker, or refused.
+    /// Recipe that was last asked of the worker, or refused.
     asked: Option<Recipe>,
-    /// What was made for looks that are gone.
+    /// Counts of what was made for looks that are gone.
     gone: Counts,
     revision: u64,
     /// The last picture that was whole, its kind, and what its colours are.
@@ -88,7 +89,7 @@ impl LiveLook {
     /// Follows `look` for pictures as `asked`: at once where only values change, and behind the picture otherwise.
     ///
     /// # Errors
-    /// What the library or the device has against the look; the look before stays.
+    /// Errors of the library or the device about the look; the look before stays.
     pub fn follow(
         &mut self,
         library: &Library,
@@ -158,14 +159,14 @@ impl LiveLook {
         self.ready.as_ref().is_some_and(|ready| ready.recipe.asked == asked)
     }
 
-    /// What was made on the device for the look that is shown, and for all before it.
+    /// Number of things made on the device for the look that is shown, and for all before it.
     pub fn counts(&self) -> Counts {
         let mut counts = self.gone;
         self.ready.iter().chain(&self.spare).for_each(|ready| counts += ready.stylizer.counts());
         counts
     }
 
-    /// Whether the look that is wanted is being built.
+    /// True while the look that is wanted is being built.
     pub fn is_busy(&self) -> bool {
         self.worker.is_busy() && self.asked.is_some()
     }
@@ -180,7 +181,7 @@ impl LiveLook {
         self.shown.as_ref().map(|(view, kind, space)| (view, *kind, *space))
     }
 
-    /// Whether the look must see rest positions of pictures as `asked`.
+    /// True where the look must see rest positions of pictures as `asked`.
     ///
     /// # Errors
     /// As [`Stylizer::wants_rest_positions`].

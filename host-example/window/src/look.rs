@@ -22,15 +22,15 @@ pub const PLAIN: &str = "none";
 /// A style with the values of its parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Look {
-    /// What people call it.
+    /// Name for people.
     pub name: String,
-    /// What it was opened as: the id of a node, or the path of a graph file or preset.
+    /// Name that it was opened by: the id of a node, or the path of a graph file or preset.
     pub source: PathBuf,
     /// Style and parameters. The paths of graph files are relative to `source`.
     pub preset: Preset,
-    /// What `source` says by itself.
+    /// Preset that `source` gives by itself.
     opened: Preset,
-    /// What is in the graph file that it was opened with.
+    /// Content of the graph file that it was opened with.
     graph: Option<Arc<str>>,
 }
 
@@ -43,7 +43,7 @@ pub struct Knob {
     pub node: u32,
     /// The label of the node, for graphs of several.
     pub of: &'static str,
-    /// What the node says about it.
+    /// Declaration of the parameter by its node.
     pub param: Param,
     /// The value that it has where the look says nothing.
     pub default: Value,
@@ -86,7 +86,7 @@ impl Look {
         Ok(look)
     }
 
-    /// Whether pictures stay as they are.
+    /// True where pictures stay as they are.
     pub fn is_plain(&self) -> bool {
         self.preset.style.is_empty()
     }
@@ -151,7 +151,7 @@ impl Look {
         text.and_then(|text| Value::parse(&knob.param.kind, text)).unwrap_or_else(|| knob.default.clone())
     }
 
-    /// Whether a parameter changes from frame to frame.
+    /// True where a parameter changes from frame to frame.
     pub fn is_animated(&self, knob: &Knob) -> bool {
         self.preset
             .params
@@ -159,7 +159,7 @@ impl Look {
             .any(|(name, track)| *name == knob.name && matches!(track, Track::Keys { .. }))
     }
 
-    /// Whether a parameter is not what it is where nobody changes it.
+    /// True where a parameter is not what it is where nobody changes it.
     pub fn differs(&self, knob: &Knob) -> bool {
         self.is_animated(knob) || self.value(knob) != knob.default
     }
@@ -192,12 +192,12 @@ impl Look {
         }
     }
 
-    /// What it was opened or saved as.
+    /// Preset that it was opened or saved as.
     pub fn opened(&self) -> &Preset {
         &self.opened
     }
 
-    /// Whether it is not what it was opened or saved as.
+    /// True where it is not what it was opened or saved as.
     pub fn is_changed(&self) -> bool {
         self.preset != self.opened
     }
@@ -215,17 +215,17 @@ impl Look {
         files
     }
 
-    /// Whether it and another look were opened from files that say the same.
+    /// True where it and another look were opened from files that say the same.
     pub fn has_origin_of(&self, other: &Self) -> bool {
         self.opened == other.opened && self.has_graph_of(other)
     }
 
-    /// Whether it and another look were opened with the same graph file.
+    /// True where it and another look were opened with the same graph file.
     pub fn has_graph_of(&self, other: &Self) -> bool {
         self.graph == other.graph
     }
 
-    /// Whether its file is a graph, which has no name of its own.
+    /// True where its file is a graph, which has no name of its own.
     pub fn is_graph(&self) -> bool {
         is_json(&self.source) && self.source.file_name().is_some_and(|file| *file == *self.opened.style)
     }
@@ -237,13 +237,13 @@ impl Look {
         self.name = self.shown_name();
     }
 
-    /// What people call it: its own name, or that of the file.
+    /// Name for people: its own, or that of the file.
     fn shown_name(&self) -> String {
         let stem = || self.source.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         self.preset.title.name.clone().unwrap_or_else(stem)
     }
 
-    /// Whether its graph is a part of it and no file.
+    /// True where its graph is a part of it and no file.
     pub fn is_written_out(&self) -> bool {
         preset::is_written_out(&self.preset.style)
     }
@@ -317,12 +317,12 @@ impl Look {
         self.preset = self.opened.clone();
     }
 
-    /// Whether parameters change from frame to frame.
+    /// True where parameters change from frame to frame.
     pub fn has_keyframes(&self) -> bool {
         self.preset.params.iter().any(|(_, track)| matches!(track, Track::Keys { .. }))
     }
 
-    /// What names the style for `apply` and `render`: the id of a node, or the path of a graph file.
+    /// Name of the style for `apply` and `render`: the id of a node, or the path of a graph file.
     pub fn style_name(&self) -> PathBuf {
         self.preset.style_beside(&self.source).into()
     }

@@ -1,4 +1,5 @@
-//! How large pictures are rendered while something moves: where the processor draws, small ones keep up with the mouse, and
+//! Size at which pictures are rendered while something moves: where the processor draws, small ones keep up with the
+//! mouse, and
 //! the whole one follows when it rests.
 
 use std::time::{Duration, Instant};
@@ -10,14 +11,14 @@ use super::stage::Drawn;
 use isophote_render::look::Look as Light;
 use isophote_scene::camera::View;
 
-/// How long nothing must move before the whole picture is rendered.
+/// Time that nothing must move before the whole picture is rendered.
 const REST: Duration = Duration::from_millis(150);
-/// What a picture may take while something moves.
+/// Time that a picture may take while something moves.
 const GOAL: f32 = 0.08;
 /// Sizes over that of the whole picture.
 const SCALES: [f32; 4] = [1.0, 0.5, 1.0 / 3.0, 0.25];
 
-/// What a picture looks like, as far as an artist can change it.
+/// Appearance of a picture, as far as an artist can change it.
 #[derive(Clone, Debug, PartialEq)]
 struct Face {
     look: Look,
@@ -26,10 +27,10 @@ struct Face {
     shown: [Which; 2],
 }
 
-/// What is known of the device's speed.
+/// Measured speed of the device.
 #[derive(Debug, Default)]
 pub struct Pace {
-    /// Whether the processor draws.
+    /// True where the processor draws.
     pub is_software: bool,
     /// Seconds that a whole picture would take.
     whole: Option<f32>,

@@ -7,7 +7,7 @@ use super::browser::titling::Words;
 use super::look::Look;
 use isophote_files::error::{Error, Result};
 
-/// What is typed before a look is saved.
+/// Name and place that are typed before a look is saved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Saving {
     /// The look.
@@ -16,13 +16,13 @@ pub struct Saving {
     pub words: Words,
     /// The path of the file.
     pub path: String,
-    /// Whether it was asked if the file may be replaced.
+    /// True where it was asked if the file may be replaced.
     pub asks: bool,
-    /// Whether the look of the window is the one in the file afterwards.
+    /// True where the look of the window is the one in the file afterwards.
     pub is_present: bool,
-    /// What went wrong.
+    /// Message about what went wrong.
     pub problem: Option<String>,
-    /// Whether the name of the file follows that of the look.
+    /// True where the name of the file follows that of the look.
     follows: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What the window shows and what was done to it. All of it outlives a lost device.
+//! State of the window: what it shows and what was done to it. All of it outlives a lost device.
 
 mod browsing;
 mod leaving;
@@ -36,7 +36,7 @@ use isophote_loader::catalogue::Node;
 use isophote_loader::printable;
 use isophote_pictures::exr::{Guide, Layer};
 
-/// What only the window itself can do, asked for by its controls.
+/// Request of the controls for what only the window itself can do.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Wish {
     /// Open this file.
@@ -67,7 +67,7 @@ pub enum Wish {
     CopyCommand,
 }
 
-/// What undo brings back.
+/// State that undo brings back.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     current: usize,
@@ -77,16 +77,16 @@ pub struct State {
     files: usize,
 }
 
-/// What a picture is made of, as the canvas has it.
+/// Origin of a picture, as the canvas has it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Which {
     /// The picture as it was.
     Original,
     /// The look.
     Look,
-    /// What the look is compared with.
+    /// Picture that the look is compared with.
     Compared,
-    /// What is shown instead of the look.
+    /// Picture that is shown instead of the look.
     Overlay,
 }
 
@@ -94,7 +94,7 @@ pub enum Which {
 pub struct Session {
     /// The dynamic library.
     pub library: Library,
-    /// How precisely looks are computed.
+    /// Precision in which looks are computed.
     pub precision: Precision,
     /// Looks in the order of the keys 1, 2, ...
     pub looks: Vec<Arc<Look>>,
@@ -110,7 +110,7 @@ pub struct Session {
     pub fitting: Vec<Node>,
     /// Names of those that have no effect at the moment.
     pub idle: HashSet<String>,
-    /// What the look is compared with, if not with the original.
+    /// Look that the present one is compared with, if that is not the original.
     pub compared: Option<Look>,
     /// The scene that is open.
     pub scenery: Option<Scenery>,
@@ -118,9 +118,9 @@ pub struct Session {
     pub reel: Option<Reel>,
     /// The file that is open.
     pub file: Option<PathBuf>,
-    /// What is open, for the title.
+    /// Name of what is open, for the title.
     pub name: String,
-    /// Where pictures lie.
+    /// Placement of pictures.
     pub viewport: Viewport,
     /// The browser of looks.
     pub browser: Browser,
@@ -130,34 +130,35 @@ pub struct Session {
     pub saving: Option<Saving>,
     /// Pictures that come with the program, small.
     pub thumbnails: Thumbnails,
-    /// What looks make of the picture, small.
+    /// Small pictures in the looks.
     pub previews: Previews,
-    /// What there is to say.
+    /// Messages to be shown.
     pub notes: Notes,
     /// Frames and times.
     pub record: Record,
-    /// What is remembered from one time to the next.
+    /// Settings that are remembered from one time to the next.
     pub settings: Settings,
-    /// What the controls ask the window for.
+    /// Requests of the controls to the window.
     pub wishes: Vec<Wish>,
-    /// Whether the help is open.
+    /// True where the help is open.
     pub shows_help: bool,
-    /// What is being done beside the window.
+    /// Work that is being done beside the window, in words.
     pub busy: Option<&'static str>,
-    /// What is to be exported, while that is asked.
+    /// Plan of the export, while that is asked.
     pub plan: Option<Plan>,
-    /// Whether the window is to be closed.
+    /// State of closing the window.
     pub leaving: Leaving,
     /// The share of an export that is done, while there is one.
     pub exported: Option<f32>,
-    /// Where the pointer is on the picture, in pixels of the window.
+    /// Position of the pointer on the picture, in pixels of the window.
     pub pointer: Option<[f32; 2]>,
     /// Colours under the pointer, before and after.
     pub probed: Option<[[f32; 4]; 2]>,
-    /// Whether the scene was opened before its place in the window was known.
+    /// True where the scene was opened before its place in the window was known.
     is_unframed: bool,
     current: usize,
-    /// What looks are in their files, or as the command line has made them: that much is not lost with the window. Others are as
+    /// Looks as their files have them, or as the command line has made them: that much is not lost with the window.
+    /// Others are as
     /// they were opened.
     kept: HashMap<PathBuf, Preset>,
     edits: History<State>,
@@ -231,12 +232,12 @@ impl Session {
         self.current
     }
 
-    /// Whether there is anything to look at.
+    /// True where there is anything to look at.
     pub fn has_picture(&self) -> bool {
         self.scenery.is_some() || self.reel.is_some()
     }
 
-    /// Whether there is such a thing to show of the picture.
+    /// True where there is such a thing to show of the picture.
     pub fn has_overlay(&self, overlay: Overlay) -> bool {
         let guide = match overlay {
             Overlay::None | Overlay::Orientation | Overlay::Lines => return true,
@@ -249,7 +250,7 @@ impl Session {
         self.scenery.is_some() || frame.is_some_and(|(frame, _)| frame.guide(guide).is_some())
     }
 
-    /// Whether time passes.
+    /// True while time passes.
     pub fn is_playing(&self) -> bool {
         self.scenery.as_ref().is_some_and(|scenery| scenery.playing)
             || self.reel.as_ref().is_some_and(|reel| reel.playing)

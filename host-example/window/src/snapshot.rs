@@ -17,7 +17,7 @@ use isophote_render::targets::Target;
 /// Copies frames and turns them into numbers on a thread of its own.
 pub struct Snapshots<F> {
     worker: Worker<Copied, Result<Frame>>,
-    /// What the last one shows.
+    /// State that the last one shows.
     taken: Option<F>,
 }
 
@@ -48,7 +48,7 @@ impl<F: PartialEq> Snapshots<F> {
         Ok(Self { worker, taken: None })
     }
 
-    /// Whether the last one shows this.
+    /// True where the last one shows this.
     pub fn shows(&self, face: &F) -> bool {
         self.taken.as_ref() == Some(face)
     }

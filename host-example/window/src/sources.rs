@@ -1,4 +1,4 @@
-//! What is open, on its way to the device: large pictures and scenes are uploaded beside the window.
+//! Way of what is open to the device: large pictures and scenes are uploaded beside the window.
 
 use std::sync::Arc;
 
@@ -12,30 +12,30 @@ use isophote_loader::abi::IsophoteRequest;
 use isophote_render::gpu::Gpu;
 use isophote_scene::Scene;
 
-/// What is to be uploaded.
+/// An upload to be made.
 enum Job {
     Scene { stand: Box<Stand>, size: (u32, u32), usual: IsophoteRequest },
     Picture { frame: Arc<Frame>, scale: f32, usual: IsophoteRequest },
 }
 
-/// Which it is.
+/// Name of what is uploaded.
 #[derive(Clone)]
 enum Thing {
     Scene(Arc<Scene>),
     Picture(Arc<Frame>),
 }
 
-/// What was uploaded, or why it could not be.
+/// Result of an upload: the source, or why it could not be uploaded.
 type Uploaded = (Thing, Result<Source>);
 
-/// What looks are put on, as far as it is on the device.
+/// Inputs of looks, as far as they are on the device.
 pub struct Sources {
     gpu: Gpu,
     worker: Worker<Job, Uploaded>,
     present: Option<Source>,
     /// The picture at its other size: whole, or its small copy.
     spare: Option<Source>,
-    /// What is being uploaded, or cannot be.
+    /// Thing that is being uploaded, or cannot be.
     asked: Option<Thing>,
     number: u64,
 }
@@ -51,12 +51,12 @@ impl Sources {
         Ok(Self { gpu: gpu.clone(), worker, present: None, spare: None, asked: None, number: 0 })
     }
 
-    /// What looks are put on.
+    /// The present input of looks.
     pub fn present(&self) -> Option<&Source> {
         self.present.as_ref()
     }
 
-    /// What looks are put on, to be rendered.
+    /// The present input of looks, to be rendered.
     pub fn present_mut(&mut self) -> Option<&mut Source> {
         self.present.as_mut()
     }
@@ -66,7 +66,7 @@ impl Sources {
         self.number
     }
 
-    /// Whether something is being uploaded.
+    /// True while something is being uploaded.
     pub fn is_busy(&self) -> bool {
         self.worker.is_busy()
     }
@@ -74,7 +74,7 @@ impl Sources {
     /// Takes over the scene or picture that is open, its frame and its size, and says whether looks must be bound to it anew.
     ///
     /// # Errors
-    /// Why it cannot be shown. It is not tried again.
+    /// The reason why it cannot be shown. It is not tried again.
     pub fn follow(&mut self, session: &Session, scale: f32) -> Result<bool> {
         let usual = session.library.request((1, 1)).map_err(|e| e.at("the library", "install it again"))?;
         let is_new = self.take(session)?;

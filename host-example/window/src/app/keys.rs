@@ -12,7 +12,7 @@ use crate::session::Wish;
 use crate::ui;
 
 impl App {
-    /// What a key does.
+    /// Does what a key stands for.
     pub(super) fn key(&mut self, event: &KeyEvent) {
         let key = event.logical_key.as_ref();
         if !self.is_for_window(&event.logical_key) {
@@ -61,7 +61,8 @@ impl App {
         self.modifiers.control_key() || self.modifiers.super_key()
     }
 
-    /// Whether a key is not for the field that is being typed in, or for the menu that is open. Those that close the window
+    /// True for a key that is not for the field that is being typed in, or for the menu that is open. Those that
+    /// close the window
     /// or a dialog are for the window in fields, too.
     fn is_for_window(&self, key: &Key) -> bool {
         let Some(context) = self.input.as_ref().map(State::egui_ctx) else { return true };

@@ -17,7 +17,7 @@ const DEEPEST: usize = 4;
 /// Most files of all folders together.
 const MOST_FILES: usize = 2000;
 
-/// What is to be read.
+/// Request for a listing.
 #[derive(Debug)]
 pub struct Question {
     /// The library.
@@ -26,25 +26,25 @@ pub struct Question {
     pub folders: Vec<PathBuf>,
 }
 
-/// What was found.
+/// Looks that were found.
 #[derive(Debug, Default)]
 pub struct Listing {
     /// The looks, those of one group together.
     pub found: Vec<Found>,
     /// Files and folders that may change.
     pub watched: Vec<PathBuf>,
-    /// What is wrong with folders.
+    /// Problems of folders.
     pub problems: Vec<Error>,
 }
 
 /// One look.
 #[derive(Debug)]
 pub struct Found {
-    /// Where it belongs.
+    /// Group that it belongs to.
     pub group: Group,
-    /// What it is opened as.
+    /// Name that it is opened by.
     pub source: PathBuf,
-    /// What people call its style.
+    /// Name of its style for people.
     pub style: String,
     /// The look, or why it cannot be used.
     pub content: Content,
@@ -113,7 +113,7 @@ fn found(library: &Library, group: Group, source: PathBuf) -> Found {
     Found { group, source, style, content }
 }
 
-/// What people call the style of a look.
+/// Name of a look's style for people.
 fn style_of(library: &Library, look: &Look) -> String {
     match library.find_node(&look.preset.style) {
         Ok(node) => node.label.to_owned(),
@@ -123,7 +123,7 @@ fn style_of(library: &Library, look: &Look) -> String {
 }
 
 impl Found {
-    /// What people call it.
+    /// Name for people.
     pub fn name(&self) -> String {
         match &self.content {
             Content::Look(look) => look.name.clone(),
@@ -131,7 +131,7 @@ impl Found {
         }
     }
 
-    /// What it says about itself; a style by itself says what its node does.
+    /// Description and tags that it gives of itself; a style by itself says what its node does.
     pub fn title(&self, library: &Library) -> Title {
         let Content::Look(look) = &self.content else { return Title::default() };
         let about = match self.group {

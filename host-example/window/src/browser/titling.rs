@@ -8,12 +8,12 @@ use isophote_finishing::stylize::preset::{self, Preset};
 use isophote_finishing::stylize::source;
 use isophote_finishing::stylize::title::{Title, is_line};
 
-/// What is typed.
+/// Words that are typed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Words {
     /// The name.
     pub name: String,
-    /// What it looks like.
+    /// Description of the look.
     pub about: String,
     /// Tags with commas between them.
     pub tags: String,
@@ -24,7 +24,7 @@ pub struct Words {
 pub struct Titling {
     /// The file.
     pub file: PathBuf,
-    /// What is typed.
+    /// Words that are typed.
     pub words: Words,
 }
 

@@ -18,7 +18,7 @@ use isophote_files::error::Error;
 use isophote_finishing::stylize::title::Title;
 
 impl Session {
-    /// Whether something else is shown instead of the picture.
+    /// True where something else is shown instead of the picture.
     pub fn is_covered(&self) -> bool {
         self.browser.is_open || self.comparison.is_some()
     }

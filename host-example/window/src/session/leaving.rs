@@ -57,7 +57,7 @@ impl Session {
         }
     }
 
-    /// Whether a dialog of the window is open, which keys belong to then.
+    /// True where a dialog of the window is open, which keys belong to then.
     pub fn has_dialog(&self) -> bool {
         self.saving.is_some()
             || self.plan.is_some()
@@ -88,7 +88,7 @@ impl Session {
     }
 }
 
-/// Whether two looks give the same pictures by the same words. Names and tags are written when they are typed.
+/// True where two looks give the same pictures by the same words. Names and tags are written when they are typed.
 fn says_the_same(a: &Preset, b: &Preset) -> bool {
     let sorted = |preset: &Preset| {
         let mut params = preset.params.clone();

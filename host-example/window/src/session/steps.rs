@@ -9,7 +9,7 @@ use crate::scenery::Lighting;
 use isophote_files::error::Result;
 
 impl Session {
-    /// What undo would bring back.
+    /// State that undo would bring back.
     pub(super) fn state(&self) -> State {
         State {
             current: self.current,
@@ -110,7 +110,7 @@ impl Session {
         }
     }
 
-    /// Whether there are steps to take back, and to take again.
+    /// True where there are steps to take back, and to take again.
     pub fn can(&self) -> [bool; 2] {
         [self.edits.can_undo(), self.edits.can_redo()]
     }

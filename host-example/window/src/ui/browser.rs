@@ -27,7 +27,7 @@ const HEADING: f32 = 40.0;
 const MARGIN: f32 = 18.0;
 /// Points from one tag to the next, on average.
 const CHIP: f32 = 62.0;
-/// What is narrower has the controls on two lines.
+/// Width below which the controls stand on two lines.
 const NARROW: f32 = 720.0;
 /// Most bytes of previews that are made before they are seen.
 const AHEAD: usize = 48 << 20;
@@ -132,7 +132,7 @@ fn chips(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-/// What lies where in the grid, from its upper left corner.
+/// Item of the grid, at its upper left corner.
 enum Item {
     Heading(Group, usize),
     Card(Arc<Entry>),

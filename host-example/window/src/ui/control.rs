@@ -150,7 +150,7 @@ fn field_of(ui: &mut Ui, field: DragValue<'_>, label: &Response) -> bool {
     ui.add_sized([VALUE, ROW - 2.0], field).labelled_by(label.id).changed()
 }
 
-/// What was slid, or typed.
+/// Value that was slid, or typed.
 fn chosen<N>(slid: bool, value: N, written: bool, typed: N) -> Option<N> {
     match (slid, written) {
         (true, _) => Some(value),

@@ -1,4 +1,4 @@
-//! What is known of the selected look, at the side of the browser, and what can be done with it.
+//! Details of the selected look, at the side of the browser, and what can be done with it.
 
 use std::sync::Arc;
 

@@ -133,7 +133,7 @@ fn deleting(context: &Context, session: &mut Session) {
     }
 }
 
-/// Where a file is.
+/// Path of a file.
 fn file(ui: &mut Ui, path: &std::path::Path) {
     ui.add_space(6.0);
     ui.add(egui::Label::new(RichText::new(path.display().to_string()).small().color(theme::FAINT)).wrap());

@@ -1,4 +1,4 @@
-//! What is to be exported, asked for in a window of its own.
+//! Dialog of exports, in a window of its own.
 
 use egui::{Align2, Button, ComboBox, DragValue, Grid, RichText, TextEdit, Ui};
 
@@ -34,7 +34,7 @@ pub fn show(context: &egui::Context, session: &mut Session) {
     session.wishes.extend(wish);
 }
 
-/// What is made, and of which format.
+/// Kind of the export, and its format.
 fn kind(ui: &mut Ui, plan: &mut Plan) {
     if plan.choices().len() > 1 {
         ui.label("What");
@@ -63,7 +63,7 @@ fn kind(ui: &mut Ui, plan: &mut Plan) {
     ui.end_row();
 }
 
-/// What people call a format.
+/// Name of a format for people.
 fn format(extension: &str) -> String {
     match extension {
         "jpg" => "JPEG".into(),
@@ -73,7 +73,7 @@ fn format(extension: &str) -> String {
     }
 }
 
-/// How much is made: size and frames.
+/// Amount that is made: size and frames.
 fn amount(ui: &mut Ui, plan: &mut Plan, now: Option<i64>) {
     if let [What::Picture, ..] = plan.choices()
         && plan.counts[0] > 0
@@ -118,7 +118,7 @@ fn amount(ui: &mut Ui, plan: &mut Plan, now: Option<i64>) {
     }
 }
 
-/// Where it goes; says whether that is to be chosen in a dialog.
+/// Place that it goes to; says whether that is to be chosen in a dialog.
 fn place(ui: &mut Ui, plan: &mut Plan) -> bool {
     let label = ui.label("File");
     let clicked = ui.horizontal(|ui| {
@@ -129,7 +129,7 @@ fn place(ui: &mut Ui, plan: &mut Plan) -> bool {
     clicked.inner
 }
 
-/// What there is to say about it, and the buttons.
+/// Remarks on it, and the buttons.
 fn end(ui: &mut Ui, plan: &Plan, is_busy: bool) -> Option<Wish> {
     let problem = plan.problem().or(is_busy.then_some("Another export is running."));
     if let Some(problem) = problem {

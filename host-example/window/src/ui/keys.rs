@@ -1,4 +1,4 @@
-//! What single keys do. The help of the program and of the window say so too.
+//! Keys and what they do. The help of the program and of the window say so too.
 
 use winit::keyboard::{Key, NamedKey};
 
@@ -80,7 +80,7 @@ pub fn press(session: &mut Session, key: &Key) {
     }
 }
 
-/// What a key does where looks are shown instead of the picture; says whether it does anything there.
+/// Handles a key where looks are shown instead of the picture; says whether it does anything there.
 fn cover(session: &mut Session, key: &Key) -> bool {
     if session.shows_help {
         return false;

@@ -1,4 +1,4 @@
-//! What of an EXR file is shown: its layer, its view, and the guides that were found in it.
+//! Parts of an EXR file that are shown: its layer, its view, and the guides that were found in it.
 
 use egui::{ComboBox, RichText, Ui};
 
@@ -6,7 +6,7 @@ use super::theme;
 use crate::session::{Session, Wish};
 use isophote_pictures::exr::{Guide, Layer};
 
-/// Whether there is anything to choose or to tell.
+/// True where there is anything to choose or to tell.
 pub fn has_any(session: &Session) -> bool {
     session.reel.as_ref().is_some_and(|reel| {
         let offers = reel.document.offers();
@@ -74,12 +74,12 @@ fn row(ui: &mut Ui, label: &str, id: &str, shown: &str, list: impl FnOnce(&mut U
     });
 }
 
-/// What people call a layer.
+/// Name of a layer for people.
 fn name(layer: &str) -> &str {
     if layer.is_empty() { "The main layer" } else { layer }
 }
 
-/// What people call a guide.
+/// Name of a guide for people.
 fn title(guide: Guide) -> &'static str {
     match guide {
         Guide::Normal => "Normals",

@@ -1,4 +1,4 @@
-//! What is shown while nothing is open: where to begin.
+//! Start screen, while nothing is open.
 
 use egui::{Align2, Button, FontId, Id, Rect, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
 

@@ -116,7 +116,7 @@ fn magnification(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// How large the picture is shown.
+/// Size at which the picture is shown.
 fn size(ui: &mut Ui, session: &mut Session) {
     let scale = session.viewport.scale(session.nominal_size());
     if ui

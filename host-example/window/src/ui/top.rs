@@ -108,7 +108,7 @@ fn looks(ui: &mut Ui, session: &mut Session) {
     ui.add_space(10.0);
 }
 
-/// How pictures are compared, and with what.
+/// The way in which pictures are compared, and with what.
 fn compare(ui: &mut Ui, session: &mut Session) {
     ui.spacing_mut().item_spacing.x = 3.0;
     for (compare, text, hint) in [
