@@ -11,16 +11,16 @@ use isophote_scene::Scene;
 use isophote_scene::camera::View;
 use isophote_scene::model::Projection;
 
-/// How much of the light that the sun's shadow takes away is taken: a full shadow is heavier than any model needs.
+/// Share of the light that the sun's shadow takes away which is taken: a full shadow is heavier than any model needs.
 const STRENGTH: f32 = 0.75;
 
 /// Lowest sun whose shadow falls on the ground, as the sine of its height.
 const LOWEST: f32 = 0.03;
 
-/// How far shadows reach, in radii of the scene.
+/// Reach of shadows, in radii of the scene.
 const REACH: f32 = 8.0;
 
-/// How far the ground lies below the lowest point, in radii of the scene, so that a floor that is there hides it.
+/// Depth of the ground below the lowest point, in radii of the scene, so that a floor that is there hides it.
 const BELOW: f32 = 1e-3;
 
 /// The ground of a frame: its least corner with the darkness of full shadow, its greatest with how far shadows reach.

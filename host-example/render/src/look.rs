@@ -7,7 +7,7 @@ use isophote_scene::environment::Environment;
 use isophote_scene::pose::Pose;
 use isophote_scene::{LightKind, Scene};
 
-/// How a scene is lit and exposed. Light is given by what a white surface that faces it reflects.
+/// Light and exposure of a scene. Light is given by what a white surface that faces it reflects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
     /// Factor on the radiance before tone mapping.

@@ -33,7 +33,7 @@ pub struct Renderer {
     backdrop: Backdrop,
     /// Draws the shadow on the ground, where there is to be one.
     ground: Option<wgpu::RenderPipeline>,
-    /// Whether this frame has one.
+    /// True where this frame has one.
     shows_ground: bool,
     targets: Targets,
     primitives: Vec<Vec<GpuPrimitive>>,
@@ -134,7 +134,7 @@ impl Renderer {
         })
     }
 
-    /// What the last frame was rendered into.
+    /// Targets that the last frame was rendered into.
     pub fn targets(&self) -> &Targets {
         &self.targets
     }
@@ -372,7 +372,7 @@ impl Renderer {
     }
 }
 
-/// Where the joints of each skinned node begin, and how many there are in all.
+/// Index at which the joints of each skinned node begin, and the number of all.
 fn joint_offsets(scene: &Scene) -> (Vec<Option<u32>>, usize) {
     let mut total = 0;
     let offsets = scene
@@ -388,7 +388,7 @@ fn joint_offsets(scene: &Scene) -> (Vec<Option<u32>>, usize) {
     (offsets, total)
 }
 
-/// Where the morph weights of each node begin, and how many there are in all.
+/// Index at which the morph weights of each node begin, and the number of all.
 fn weight_offsets(scene: &Scene) -> (Vec<u32>, usize) {
     let mut total = 0;
     let offsets = scene

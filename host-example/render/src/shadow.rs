@@ -21,7 +21,7 @@ const RESOLUTION: u32 = 2048;
 /// Share of a cascade's depth over which it fades into the next.
 const FADE: f32 = 0.1;
 
-/// Where the maps of one frame lie.
+/// Places of the maps of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cascades {
     /// World to the clip space of each map.
@@ -30,7 +30,7 @@ pub struct Cascades {
     pub texels: [f32; CASCADES],
     /// Depth in the view at which each map ends; the last one in use holds the whole scene.
     pub ends: [f32; CASCADES],
-    /// How many maps are in use.
+    /// Number of maps in use.
     pub count: usize,
 }
 
@@ -71,7 +71,7 @@ impl Cascades {
         self.count += 1;
     }
 
-    /// Whether a sphere can cast a shadow into a map.
+    /// True where a sphere can cast a shadow into a map.
     pub fn reaches(&self, cascade: usize, center: Vec3, radius: f32) -> bool {
         let matrix = self.matrices[cascade];
         let place = matrix.transform_point3(center).truncate().abs();

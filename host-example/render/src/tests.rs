@@ -154,7 +154,7 @@ fn the_geometry_buffer_says_what_is_where() {
     assert_eq!(covered, 24);
 }
 
-/// Where the surface at every covered pixel of a frame at time 0.5 was at rest must be what `at_rest` says of
+/// The position at rest of the surface at every covered pixel of a frame at time 0.5 must be what `at_rest` says of
 /// where it is.
 fn assert_rest(gpu: &Gpu, scene: &Scene, what: &str, at_rest: impl Fn(Vec2) -> Vec2) {
     let mut read = render(gpu, scene, &[0.5]);
