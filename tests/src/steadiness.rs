@@ -1,4 +1,4 @@
-//! How steady a filter is over time, in numbers: shots whose motion is known, and what a filter makes of them.
+//! Steadiness of a filter over time, in numbers: shots whose motion is known, and what a filter makes of them.
 //!
 //! Three shots: [`footage::demo`] and [`footage::fox`] come from the sample host, with the renderer's motion;
 //! [`Shot::noisy`] repeats a frame with fresh noise. Pictures are gamma-encoded sRGB in 0..=1, and all measures

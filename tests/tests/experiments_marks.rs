@@ -13,7 +13,7 @@ use isophote_tests::sequences::Player;
 use isophote_tests::steadiness::{Frame, Shot, footage};
 use isophote_tests::table::Table;
 
-/// What is drawn: a name for tables, the node with its parameters, the grey that shows most of its marks, and the
+/// Drawing of a node: a name for tables, the node with its parameters, the grey that shows most of its marks, and the
 /// direction across them.
 type Drawing = (&'static str, &'static str, &'static [(&'static str, &'static str)], f32, [f64; 2]);
 

@@ -14,10 +14,11 @@ const STYLES: [&str; 7] =
 /// The most that the steady ones may have of the warping error of the same style without, and of its answer to noise.
 const MOST: [f64; 2] = [0.98, 0.65];
 
-/// What presets for sequences set.
+/// Setting of presets for sequences.
 const STEADINESS: (&str, &str) = ("steadiness", "0.5");
 
-/// What real time knows of other frames: those before, of which two count and more have motion that carries marks.
+/// Frames that real time knows beside the present one: those before, of which two count and more have motion that
+/// carries marks.
 const AROUND: [u32; 2] = [8, 0];
 
 /// A style's frames for themselves, and steady ones.

@@ -42,7 +42,7 @@ fn floats(width: u32, height: u32, channels: u32, data: Vec<f32>) -> Pixels {
     Pixels::new(width, height, channels, Samples::F32(data)).expect("as many numbers as pixels")
 }
 
-/// What the style makes of a frame, handed over as the window does, with these guides.
+/// Result of the style on a frame, handed over as the window does, with these guides.
 fn stylized(frame: &Frame, name: &str, (channels, precision): (u32, Precision)) -> Pixels {
     let library = library();
     let mut style = Style::load(&library, name, &[]).expect("a style");
@@ -61,7 +61,7 @@ fn stylized(frame: &Frame, name: &str, (channels, precision): (u32, Precision)) 
     target
 }
 
-/// What `apply` makes of a file, before it is put back into the primaries of the file.
+/// Result of `apply` on a file, before it is put back into the primaries of the file.
 fn applied(path: &Path, name: &str, space: Option<Space>, backend: Backend) -> Pixels {
     let library = library();
     let style = Style::load(&library, name, &[]).expect("a style");
@@ -105,7 +105,7 @@ fn uploaded(gpu: &Gpu, (width, height): (u32, u32), channels: u32, data: &[f32])
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// What the style makes of a frame on a device of the host's own, as the window does it.
+/// Result of the style on a frame, on a device of the host's own, as the window does it.
 fn on_the_device(frame: &Frame, name: &str) -> Vec<f32> {
     let (library, gpu) = (library(), Gpu::open().expect("a graphics adapter"));
     let style = Style::load(&library, name, &[]).expect("a style");

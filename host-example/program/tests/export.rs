@@ -1,4 +1,4 @@
-//! What the window writes: by another process, the same as on the command line, and nothing that is not whole.
+//! Files that the window writes: by another process, the same as on the command line, and nothing that is not whole.
 
 mod support;
 

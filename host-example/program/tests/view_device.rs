@@ -146,7 +146,7 @@ fn lose(app: &App) -> usize {
     app.devices()
 }
 
-/// What was so when a device was lost: how many devices there had been, what was to be seen, pictures shown.
+/// State in which a device was lost: how many devices there had been, what was to be seen, pictures shown.
 type Loss = Rc<RefCell<(usize, Vec<u8>, usize)>>;
 
 /// A picture whose look is edited, loses its device, and has it again.
@@ -257,7 +257,7 @@ fn a_device_that_is_lost_at_once_again_and_again_ends_the_window_with_the_reason
     });
 }
 
-/// What there is on the device, kind by kind.
+/// Number of objects on the device, kind by kind.
 fn objects(gpu: &Gpu) -> Vec<(&'static str, usize)> {
     let report = gpu.instance.generate_report().unwrap();
     let hub = report.hub_report();
@@ -284,7 +284,7 @@ fn resident() -> u64 {
     line.split_whitespace().nth(1).unwrap().parse::<u64>().unwrap() << 10
 }
 
-/// What the process and the device hold at a moment.
+/// Memory and objects that the process and the device hold at a moment.
 struct Held {
     memory: u64,
     objects: Vec<(&'static str, usize)>,
@@ -348,10 +348,12 @@ fn repeat(
     })
 }
 
-/// What a move may leave behind in the mean. Software drivers keep some kilobytes of every pass that they have recorded, also
+/// Bytes that a move may leave behind in the mean. Software drivers keep some kilobytes of every pass that they have
+/// recorded, also
 /// where the same picture is drawn again and again; a picture of this size has 96 KiB, and its plan a texture or more.
 const OF_A_MOVE: u64 = 40 << 10;
-/// What a switch may leave behind in the mean, of styles with ten times as many passes and textures of 96 KiB each.
+/// Bytes that a switch may leave behind in the mean, of styles with ten times as many passes and textures of 96 KiB
+/// each.
 const OF_A_SWITCH: u64 = 400 << 10;
 
 #[test]

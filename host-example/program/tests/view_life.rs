@@ -1,4 +1,4 @@
-//! What a window lives through: being hidden, of any size, closed at work, and pictures as large as they come.
+//! Life of a window: being hidden, of any size, closed at work, and pictures as large as they come.
 #![cfg(target_os = "linux")]
 
 mod support;

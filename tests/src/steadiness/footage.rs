@@ -15,7 +15,7 @@ pub const FRAMES: usize = 10;
 /// Size of the frames in pixels.
 pub const SIZE: [u32; 2] = [640, 360];
 
-/// What is rendered.
+/// Scene and options that are rendered.
 #[derive(Clone, Debug, Hash)]
 pub struct Take {
     /// Of the shot.
@@ -49,7 +49,7 @@ pub fn fox() -> Option<Result<Shot, String>> {
 /// Renders [`FRAMES`] frames, or reads those that the same program rendered before.
 ///
 /// # Errors
-/// What the program says, or what is wrong with its files.
+/// The error of the program, or the problem with its files.
 pub fn shoot(take: &Take) -> Result<Shot, String> {
     // Builds the programs too.
     library::path();

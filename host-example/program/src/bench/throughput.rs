@@ -1,4 +1,4 @@
-//! How well reading and writing of a sequence hide behind filtering, for `isophote bench`.
+//! Measures, for `isophote bench`, how well reading and writing of a sequence hide behind filtering.
 
 use std::fs;
 use std::path::Path;
@@ -26,7 +26,7 @@ use isophote_pictures::pixels::Pixels;
 use isophote_pictures::read;
 use isophote_pictures::write::Format;
 
-/// What was measured.
+/// Throughput that was measured.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Throughput {
     /// Frames of the sequence.

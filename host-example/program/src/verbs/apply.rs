@@ -54,7 +54,7 @@ pub struct ApplyArgs {
     /// Frames of the sequence, such as 1001-1100x2,1200 [default: all that are on disk].
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub frames: Option<FrameList>,
-    /// What to do when frames of the sequence have no file.
+    /// Treatment of frames of the sequence that have no file.
     #[arg(long, value_enum, default_value_t = OnMissing::Fail)]
     pub on_missing: OnMissing,
     /// Limit of memory, such as 8GiB, which decides how many frames are worked on at once; frames that need more are
@@ -79,13 +79,13 @@ pub struct ApplyArgs {
     /// Sets a parameter; node.id=value for one node of a graph. May be repeated.
     #[arg(long, value_name = "ID=VALUE")]
     pub set: Vec<Setting>,
-    /// What lengths of parameters are.
+    /// Meaning of lengths of parameters.
     #[command(flatten)]
     pub lengths: LengthArgs,
-    /// How precisely it does on graphics devices.
+    /// Precision on graphics devices.
     #[command(flatten)]
     pub precision: PrecisionArgs,
-    /// Where the filter runs.
+    /// Place where the filter runs.
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub backend: Backend,
     /// Colour space of the picture and of the result; without it sRGB for integers, linear for floats, and what
@@ -113,7 +113,8 @@ pub struct ApplyArgs {
     /// stands for it, which is object_id=cryptomatte, or `object_id=cryptomatte[LAYER]` for another. May be repeated.
     #[arg(long, value_name = "GUIDE=LAYER")]
     pub guide: Vec<GuideChoice>,
-    /// How much of the result is used where: a file such as mask.png, one for each frame (mask.####.exr), a layer or channel of
+    /// Share of the result that is used where: a file such as mask.png, one for each frame (mask.####.exr), a layer
+    /// or channel of
     /// the EXR file, or things of its Cryptomatte: `cryptomatte:hero,props/*` or `cryptomatte[crypto_material]:skin`. A star in
     /// a name stands for any letters, ? for one, and a backslash makes either ordinary. Files of colours count by luminance;
     /// alpha never counts.
@@ -125,17 +126,19 @@ pub struct ApplyArgs {
     /// Uses the result where the mask is not.
     #[arg(long, requires = "mask")]
     pub invert: bool,
-    /// What to do in frames that do not know a name of the mask's.
+    /// Treatment of frames that do not know a name of the mask's.
     #[arg(long, value_enum, default_value_t = OnUnknown::Fail)]
     pub on_unknown: OnUnknown,
-    /// How steady frames of a sequence are, from 0 to 1: neighbouring frames are carried along motion and averaged before
+    /// Steadiness of frames of a sequence, from 0 to 1: neighbouring frames are carried along motion and averaged
+    /// before
     /// the style decides anything. Needs motion vectors in the EXR files, or --motion [default: what the style says].
     #[arg(long, value_name = "S")]
     pub steadiness: Option<f32>,
     /// EXR files with motion vectors, one for each frame: mv.####.exr; or estimate, for optical flow of the pictures.
     #[arg(long, value_name = "FILES", value_hint = ValueHint::FilePath)]
     pub motion: Option<PathBuf>,
-    /// What motion vectors mean: isophote, arnold, blender, renderman, vray or unreal, and after commas what differs, of
+    /// Meaning of motion vectors: isophote, arnold, blender, renderman, vray or unreal, and after commas what
+    /// differs, of
     /// units=pixels|normalised|ndc, y=up|down, direction=backward|forward, sign=1|-1, centre=NUMBER and scale=NUMBER
     /// [default: what the name of their layer says].
     #[arg(long, value_name = "NAME")]
@@ -143,7 +146,7 @@ pub struct ApplyArgs {
     /// Options of ffmpeg's encoder for a video, such as "-c:v libx265 -crf 20".
     #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
     pub encode: Option<String>,
-    /// What to do where a video is damaged or cut short: fail, or write what can be read of it and warn.
+    /// Treatment of a video that is damaged or cut short: fail, or write what can be read of it and warn.
     #[arg(long, value_enum, default_value_t = OnError::Fail)]
     pub on_error: OnError,
     /// Threads on the CPU; 0 for one per core.
@@ -225,16 +228,16 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
 
 /// The files that the command line names.
 pub struct Files<'a> {
-    /// What is done; a file or the name of a node or look.
+    /// Style: a file or the name of a node or look.
     pub style: &'a Path,
-    /// What is read.
+    /// Path that is read.
     pub input: &'a Path,
-    /// What is written.
+    /// Path that is written.
     pub output: &'a Path,
 }
 
 impl ApplyArgs {
-    /// What the first picture needs of memory, where that can be known: no more than there is.
+    /// Memory that the first picture needs, where that can be known: no more than there is.
     fn needs(
         &self,
         planner: &mut Planner,
@@ -341,7 +344,7 @@ impl ApplyArgs {
         self.layered.as_deref().map_or_else(|| Ok(Vec::new()), looks::read)
     }
 
-    /// What is done to every picture: the looks of a file, or else the style.
+    /// Looks that every picture gets: those of a file, or else the style.
     fn looks(&self, library: &Library, name: &Path, entries: &[Entry]) -> Result<Vec<Look>> {
         let mut masks = 0..;
         let looks = if entries.is_empty() {
@@ -357,7 +360,7 @@ impl ApplyArgs {
         self.timed(looks)
     }
 
-    /// Where it is done.
+    /// Masks of where it is done.
     fn masks(&self, entries: &[Entry]) -> Vec<MaskChoice> {
         let choice = |source: &MaskSource| MaskChoice { source: source.clone(), invert: self.invert };
         let own = self.mask.iter().map(choice);
@@ -460,7 +463,7 @@ impl ApplyArgs {
         Ok(wanted)
     }
 
-    /// What is read of EXR files.
+    /// Selection of what is read of EXR files.
     fn selection(
         &self,
         library: &Library,

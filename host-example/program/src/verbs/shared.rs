@@ -19,7 +19,7 @@ use isophote_scene::Scene;
 pub struct SceneArgs {
     /// The scene: .gltf, .glb or .obj.
     pub scene: PathBuf,
-    /// How it is read.
+    /// Options of reading it.
     #[command(flatten)]
     pub reading: ReadingArgs,
 }
@@ -34,10 +34,11 @@ impl SceneArgs {
     }
 }
 
-/// What lengths of a style mean.
+/// Meaning of a style's lengths.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct LengthArgs {
-    /// What lengths of parameters are: pixels of a picture 1080 lines high, so that pictures of all sizes get the same look,
+    /// Meaning of lengths of parameters: pixels of a picture 1080 lines high, so that pictures of all sizes get the
+    /// same look,
     /// or pixels of the picture itself [default: what the preset says, else relative].
     #[arg(long, value_enum)]
     pub lengths: Option<Lengths>,
@@ -50,10 +51,10 @@ impl LengthArgs {
     }
 }
 
-/// How precisely graphics devices compute a style.
+/// Precision in which graphics devices compute a style.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct PrecisionArgs {
-    /// How precisely graphics devices compute; the CPU always computes exactly.
+    /// Precision in which graphics devices compute; the CPU always computes exactly.
     #[arg(long, value_enum, default_value_t)]
     pub precision: Precision,
 }
@@ -81,7 +82,7 @@ impl ForceArgs {
 /// Width and height in pixels, such as `1280x720`.
 ///
 /// # Errors
-/// What to write instead.
+/// Advice what to write instead.
 pub fn parse_size(text: &str) -> std::result::Result<(u32, u32), String> {
     let parse = || {
         let (width, height) = text.split_once(['x', 'X'])?;

@@ -31,9 +31,9 @@ const MEASURED: [Precision; 2] = [Precision::Exact, Precision::Fast];
 /// Size of the pictures that twins are compared on, at most.
 const TWINS: (u32, u32) = (320, 200);
 
-/// What is measured.
+/// Options of the measurement.
 pub struct Options<'a> {
-    /// Where the reports go.
+    /// Folder that the reports go to.
     pub folder: &'a Path,
     /// Treatment of reports that are there.
     pub existing: Existing,
