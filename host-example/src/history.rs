@@ -35,8 +35,7 @@ impl Past {
     }
 
     /// Number of textures of a name that take turns, where there are so many turns: one for each frame that it is
-    /// read of and
-    /// one for the frame at hand, and no number that does not go into the turns.
+    /// read of and one for the frame at hand, and no number that does not go into the turns.
     fn textures(&self, name: &str, turns: usize) -> usize {
         let depth = self.depths.iter().find(|(known, _)| known == name).map_or(0, |(_, depth)| *depth);
         (depth + 1..turns).find(|count| turns.is_multiple_of(*count)).unwrap_or(turns)

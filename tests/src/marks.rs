@@ -35,9 +35,8 @@ const SQUARE: i32 = 32;
 pub const FARTHEST: i32 = 4;
 
 /// Distance that the marks of a frame slide against the surface that they lie on, pixels to the right and down: for
-/// every square of the picture that
-/// shows one surface, the place of the greatest correlation of the marks with those of the frame before, carried along the
-/// motion. [`FARTHEST`] or more where they do not move with it at all.
+/// every square of the picture that shows one surface, the place of the greatest correlation of the marks with those of
+/// the frame before, carried along the motion. [`FARTHEST`] or more where they do not move with it at all.
 ///
 /// # Panics
 /// As [`carried`].

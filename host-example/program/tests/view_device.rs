@@ -349,8 +349,8 @@ fn repeat(
 }
 
 /// Bytes that a move may leave behind in the mean. Software drivers keep some kilobytes of every pass that they have
-/// recorded, also
-/// where the same picture is drawn again and again; a picture of this size has 96 KiB, and its plan a texture or more.
+/// recorded, also where the same picture is drawn again and again; a picture of this size has 96 KiB, and its plan a
+/// texture or more.
 const OF_A_MOVE: u64 = 40 << 10;
 /// Bytes that a switch may leave behind in the mean, of styles with ten times as many passes and textures of 96 KiB
 /// each.

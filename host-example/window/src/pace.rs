@@ -1,6 +1,5 @@
 //! Size at which pictures are rendered while something moves: where the processor draws, small ones keep up with the
-//! mouse, and
-//! the whole one follows when it rests.
+//! mouse, and the whole one follows when it rests.
 
 use std::time::{Duration, Instant};
 

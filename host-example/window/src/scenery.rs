@@ -257,8 +257,7 @@ impl Scenery {
     }
 
     /// Direction of the sun, seen from the camera as it stands now, where a picture taken from there would have it
-    /// elsewhere by
-    /// itself.
+    /// elsewhere by itself.
     pub fn sun_from_here(&self) -> Option<Direction> {
         let rest = Pose::at_rest(&self.scene);
         let through = self.through.and_then(|node| View::from_node(&self.scene, &rest, node));

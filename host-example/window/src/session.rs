@@ -158,8 +158,7 @@ pub struct Session {
     is_unframed: bool,
     current: usize,
     /// Looks as their files have them, or as the command line has made them: that much is not lost with the window.
-    /// Others are as
-    /// they were opened.
+    /// Others are as they were opened.
     kept: HashMap<PathBuf, Preset>,
     edits: History<State>,
     files: FileSteps,

@@ -250,8 +250,7 @@ impl Stage {
     }
 
     /// True while the device is doing what it was given. Nothing else is given to it meanwhile: a viewer that runs
-    /// ahead of its
-    /// device answers the mouse late.
+    /// ahead of its device answers the mouse late.
     pub fn is_waiting(&self) -> bool {
         self.pending.is_some()
     }
@@ -343,8 +342,7 @@ impl Stage {
     }
 
     /// Work that the device has done since the last call, and how long that took: of a picture all of its parts.
-    /// Nothing as long
-    /// as it is at work.
+    /// Nothing as long as it is at work.
     ///
     /// # Errors
     /// As [`Stage::draw`].

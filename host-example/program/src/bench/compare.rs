@@ -54,8 +54,7 @@ impl Saved {
     }
 
     /// Ratio of the time that `entry` takes now to that before, and those of its passes; none where it was not
-    /// measured, and no
-    /// passes where they are others now.
+    /// measured, and no passes where they are others now.
     pub fn ratios(&self, entry: &Entry) -> Option<(f64, Vec<f64>)> {
         let before = self.entries.iter().find(|e| {
             e.node == entry.node

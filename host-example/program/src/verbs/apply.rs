@@ -114,10 +114,9 @@ pub struct ApplyArgs {
     #[arg(long, value_name = "GUIDE=LAYER")]
     pub guide: Vec<GuideChoice>,
     /// Share of the result that is used where: a file such as mask.png, one for each frame (mask.####.exr), a layer
-    /// or channel of
-    /// the EXR file, or things of its Cryptomatte: `cryptomatte:hero,props/*` or `cryptomatte[crypto_material]:skin`. A star in
-    /// a name stands for any letters, ? for one, and a backslash makes either ordinary. Files of colours count by luminance;
-    /// alpha never counts.
+    /// or channel of the EXR file, or things of its Cryptomatte: `cryptomatte:hero,props/*` or
+    /// `cryptomatte[crypto_material]:skin`. A star in a name stands for any letters, ? for one, and a backslash makes
+    /// either ordinary. Files of colours count by luminance; alpha never counts.
     #[arg(long, value_name = "MASK", value_hint = ValueHint::FilePath)]
     pub mask: Option<MaskSource>,
     /// EXR files that have the mask's layer or Cryptomatte, such as ids.####.exr [default: the input].
@@ -130,17 +129,16 @@ pub struct ApplyArgs {
     #[arg(long, value_enum, default_value_t = OnUnknown::Fail)]
     pub on_unknown: OnUnknown,
     /// Steadiness of frames of a sequence, from 0 to 1: neighbouring frames are carried along motion and averaged
-    /// before
-    /// the style decides anything. Needs motion vectors in the EXR files, or --motion [default: what the style says].
+    /// before the style decides anything. Needs motion vectors in the EXR files, or --motion [default: what the style
+    /// says].
     #[arg(long, value_name = "S")]
     pub steadiness: Option<f32>,
     /// EXR files with motion vectors, one for each frame: mv.####.exr; or estimate, for optical flow of the pictures.
     #[arg(long, value_name = "FILES", value_hint = ValueHint::FilePath)]
     pub motion: Option<PathBuf>,
     /// Meaning of motion vectors: isophote, arnold, blender, renderman, vray or unreal, and after commas what
-    /// differs, of
-    /// units=pixels|normalised|ndc, y=up|down, direction=backward|forward, sign=1|-1, centre=NUMBER and scale=NUMBER
-    /// [default: what the name of their layer says].
+    /// differs, of units=pixels|normalised|ndc, y=up|down, direction=backward|forward, sign=1|-1, centre=NUMBER and
+    /// scale=NUMBER [default: what the name of their layer says].
     #[arg(long, value_name = "NAME")]
     pub motion_convention: Option<Convention>,
     /// Options of ffmpeg's encoder for a video, such as "-c:v libx265 -crf 20".

@@ -39,8 +39,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
     size: (u32, u32),
     /// Number of frames, from 1; or a list of them, such as 1001-1100x2,1200. Of an animation, frame 1 is at --start:
-    /// with 24 frames
-    /// per second, 49-72 is its third second.
+    /// with 24 frames per second, 49-72 is its third second.
     #[arg(long, value_name = "N|LIST", default_value = "1", value_parser = FrameList::or_count, allow_hyphen_values = true)]
     frames: FrameList,
     /// Leaves pictures alone that are there already and whole, and a video that is there; makes the others.

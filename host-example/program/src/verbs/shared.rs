@@ -38,8 +38,7 @@ impl SceneArgs {
 #[derive(Args, Clone, Copy, Debug)]
 pub struct LengthArgs {
     /// Meaning of lengths of parameters: pixels of a picture 1080 lines high, so that pictures of all sizes get the
-    /// same look,
-    /// or pixels of the picture itself [default: what the preset says, else relative].
+    /// same look, or pixels of the picture itself [default: what the preset says, else relative].
     #[arg(long, value_enum)]
     pub lengths: Option<Lengths>,
 }

@@ -1,6 +1,5 @@
 //! Acts of other programs on a window: files dropped on it, by the source's side of XDND, version 5, windows that
-//! cover it,
-//! and being asked to close.
+//! cover it, and being asked to close.
 
 use std::path::Path;
 use std::time::{Duration, Instant};

@@ -62,8 +62,7 @@ impl App {
     }
 
     /// True for a key that is not for the field that is being typed in, or for the menu that is open. Those that
-    /// close the window
-    /// or a dialog are for the window in fields, too.
+    /// close the window or a dialog are for the window in fields, too.
     fn is_for_window(&self, key: &Key) -> bool {
         let Some(context) = self.input.as_ref().map(State::egui_ctx) else { return true };
         let closes = self.is_command() && matches!(key.as_ref(), Key::Character("q" | "Q"));

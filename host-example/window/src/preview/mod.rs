@@ -116,8 +116,7 @@ impl Previews {
     }
 
     /// Preview to be drawn at a place, which may be of another picture or look than is asked for now. `crisp`: its
-    /// pixels are to
-    /// be seen where it is magnified.
+    /// pixels are to be seen where it is magnified.
     pub fn get(&mut self, context: &Context, place: Place, crisp: bool) -> Option<Preview> {
         let picture = self.picture.as_ref()?;
         let slot = self.slots.get_mut(&place)?;

@@ -24,8 +24,7 @@ use isophote_pictures::space::Space;
 const WORKING: u64 = 300;
 
 /// Factor by which small previews are computed finer than they are seen: enough for fine hatching to be as grey as it
-/// is in the
-/// whole picture made small.
+/// is in the whole picture made small.
 pub const FINENESS: u32 = 3;
 
 /// A preview to be made.
@@ -38,8 +37,7 @@ pub struct Order {
     /// The pixels of it that are seen.
     pub part: Part,
     /// Factor by which it is computed finer than it is seen, so that thin lines are as pale as those of the whole
-    /// picture
-    /// made small; no finer than the frame is.
+    /// picture made small; no finer than the frame is.
     pub fineness: u32,
 }
 
