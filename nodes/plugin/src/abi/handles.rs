@@ -35,7 +35,7 @@ macro_rules! handles {
 
 handles!(IsophoteGraph, IsophotePlan, IsophoteDevice, IsophoteSequence, IsophoteVulkan, IsophoteVulkanEffect);
 
-/// What hosts hold handles of.
+/// Object that hosts hold handles of.
 pub trait Object: Send + Sync + Sized + 'static {
     /// Its handles.
     type Handle: Handle;

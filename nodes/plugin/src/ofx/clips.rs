@@ -10,7 +10,7 @@ use std::ffi::CStr;
 pub const SOURCE: &CStr = c"Source";
 /// The result.
 pub const OUTPUT: &CStr = c"Output";
-/// Where the effect shows.
+/// Name of the clip that says where the effect shows.
 pub const MASK: &CStr = c"Mask";
 /// Vectors to the frame before.
 pub const MOTION: &CStr = c"Motion";
@@ -38,7 +38,7 @@ pub fn guide_clip(guide: GraphInput) -> Option<&'static CStr> {
     }
 }
 
-/// What people read of the clip that gives a guide, where it is not its name.
+/// Label for people of the clip that gives a guide, where it is not its name.
 pub fn guide_label(guide: GraphInput) -> Option<&'static CStr> {
     match guide {
         GraphInput::MotionForward => Some(c"Motion forward"),
@@ -47,7 +47,7 @@ pub fn guide_label(guide: GraphInput) -> Option<&'static CStr> {
     }
 }
 
-/// Whether the instance has a clip of this name, and the host does not say that it is open.
+/// True where the instance has a clip of this name, and the host does not say that it is open.
 pub fn is_connected(host: &Host, instance: Handle, name: &CStr) -> bool {
     Clip::of(host, instance, name).is_some_and(|clip| !clip.is_open())
 }
