@@ -94,7 +94,7 @@ pub struct Import {
     /// The same functions with the sampler at [`SAMPLER_BINDING`](crate::kernel::SAMPLER_BINDING) in place of loads and
     /// arithmetic, for textures that a device filters; none where nothing is interpolated.
     pub filtered: Option<&'static [Piece]>,
-    /// What takes its place where windows hold 16-bit floats, for workgroups of
+    /// Pieces that take its place where windows hold 16-bit floats, for workgroups of
     /// [`PACKED_WORKGROUP`](crate::kernel::PACKED_WORKGROUP).
     pub packed: Option<&'static [Piece]>,
 }

@@ -1,4 +1,4 @@
-//! What is done to every frame: the graph on each of its pictures.
+//! Work on every frame: the graph on each of its pictures.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ use isophote_pictures::space::Space;
 use isophote_pictures::working::WorkingSpace;
 use isophote_pictures::write::Format;
 
-/// What is done to a picture: a style, maybe where a mask is.
+/// Look of a picture: a style, maybe where a mask is.
 #[derive(Debug)]
 pub struct Look {
     /// The style.
@@ -57,11 +57,11 @@ struct Layer {
     look: Look,
     /// The mask that its graph takes as an input; that of other looks is applied to their results.
     input: Option<usize>,
-    /// What is kept of the frames of each picture.
+    /// State that is kept of the frames of each picture.
     sequences: Vec<Kept>,
 }
 
-/// What is kept of the frames of one picture, whose size it is made for.
+/// State that is kept of the frames of one picture, whose size it is made for.
 #[derive(Debug)]
 struct Kept {
     size: (u32, u32),
@@ -86,7 +86,7 @@ pub struct Planner {
     library: Library,
     layers: Vec<Layer>,
     guides: Vec<Guide>,
-    /// What filtering a picture of this size takes, as was found last.
+    /// Memory that filtering a picture of this size takes, as was found last.
     last: Option<((u32, u32), u64)>,
 }
 
@@ -128,7 +128,7 @@ impl Layer {
         self.input.map_or(0, |_| guide_bit("mask"))
     }
 
-    /// Whether its result is mixed with what is below it.
+    /// True where its result is mixed with what is below it.
     fn is_mixed(&self) -> bool {
         self.look.mask.is_some() && self.input.is_none()
     }
@@ -200,8 +200,8 @@ impl Filter {
         Ok(Self { library, layers: layers(looks)?, device, space: self.space, threads: self.threads })
     }
 
-    /// How many of them should work on the frames of a sequence. Two on a graphics device: while it computes one frame,
-    /// another one is uploaded or read back. Frames that depend on others are done by one, which knows them.
+    /// Number of them that should work on the frames of a sequence. Two on a graphics device: while it computes one
+    /// frame, another one is uploaded or read back. Frames that depend on others are done by one, which knows them.
     ///
     /// # Errors
     /// [`Error::Failure`] when the library fails.
@@ -378,7 +378,7 @@ impl Planner {
         frames(&self.library, &self.layers)
     }
 
-    /// How many frames are held while `frame` is done: it and all that it depends on.
+    /// Number of frames that are held while `frame` is done: it and all that it depends on.
     ///
     /// # Errors
     /// As [`Planner::frames`].
@@ -387,7 +387,7 @@ impl Planner {
         Ok((past + future + 1) as u64)
     }
 
-    /// What the frame `file` needs; nothing when it will be refused, which is reported when its turn comes.
+    /// Needs of the frame `file`; nothing when it will be refused, which is reported when its turn comes.
     ///
     /// # Errors
     /// As [`Planner::filter_memory`].

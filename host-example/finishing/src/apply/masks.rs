@@ -15,12 +15,12 @@ use isophote_pictures::exr::{self, MaskSource, OnUnknown, Picture};
 use isophote_pictures::pixels::{Pixels, Samples};
 use isophote_pictures::read::{self, Source, Unread};
 
-/// Where a mask comes from, and whether what it leaves out is meant.
+/// Source of a mask, and the choice of what it covers or of what it leaves out.
 #[derive(Clone, Debug)]
 pub struct MaskChoice {
-    /// Where it comes from.
+    /// Source of the mask.
     pub source: MaskSource,
-    /// Whether it is turned round.
+    /// True where it is turned round.
     pub invert: bool,
 }
 
@@ -31,7 +31,7 @@ pub struct Masks(Vec<Mask>);
 #[derive(Debug)]
 struct Mask {
     place: Place,
-    /// What of the file is the mask, where that is not all of it.
+    /// Part of the file that is the mask, where that is not all of it.
     source: Option<MaskSource>,
     invert: bool,
     on_unknown: OnUnknown,
@@ -155,7 +155,7 @@ impl Mask {
         Ok(pixels)
     }
 
-    /// What is in a file, in the size of a picture.
+    /// Mask in a file, in the size of a picture.
     fn read(&self, path: &Path, frame: Frame) -> Result<Pixels> {
         let unread = Unread::open(path)?;
         let opened = match unread.any(path)? {
@@ -200,7 +200,7 @@ impl Mask {
 }
 
 impl Frame {
-    /// Which window of a mask belongs to the picture: the same part of the display, or else all of it.
+    /// Window of a mask that belongs to the picture: the same part of the display, or else all of it.
     fn place(self, data: Window, display: Option<Window>) -> std::result::Result<Window, String> {
         let display = display.unwrap_or(data);
         let size = |window: Window| (window.width, window.height);

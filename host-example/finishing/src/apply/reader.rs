@@ -18,14 +18,14 @@ use isophote_files::limits;
 use isophote_pictures::exr::{self, Selection};
 use isophote_pictures::read::{Opened, Source, Unread};
 
-/// Where the frames of a run come from.
+/// Source of the frames of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Footage<'a> {
     /// The sequence, whose frames beyond the run's are read where others depend on them.
     pub frames: Option<&'a Pattern>,
     /// Motion vectors in files of their own.
     pub motion: Option<&'a Pattern>,
-    /// What is read of EXR files.
+    /// Selection of what is read of EXR files.
     pub selection: &'a Selection,
     /// Masks of the run.
     pub masks: &'a Masks,
@@ -63,7 +63,7 @@ impl<'a> Reader<'a> {
     /// Reads a frame and the neighbours that it depends on and that there are. Waits for room.
     ///
     /// # Errors
-    /// What is wrong with the frame's own file, and [`Error::Failure`] where memory is short.
+    /// The problem with the frame's own file, and [`Error::Failure`] where memory is short.
     pub fn window(&mut self, task: &Task) -> Result<Window<'a>> {
         let Some(frame) = task.frame else {
             let own = Arc::new(self.read(&task.input, None, 1)?);

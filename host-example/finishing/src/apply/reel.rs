@@ -16,9 +16,9 @@ use isophote_pictures::read::Source;
 pub struct Held<'a> {
     /// Its number in a sequence.
     pub number: Option<i64>,
-    /// What was read, without what is only written.
+    /// Source that was read, without what is only written.
     pub source: Source,
-    /// What else is in an EXR file, until the frame is written.
+    /// The other content of an EXR file, until the frame is written.
     exr: Mutex<Option<ExrFile>>,
     /// The pictures in their working space, where that is another.
     changed: Vec<OnceLock<(Pixels, u64)>>,
@@ -59,7 +59,8 @@ pub struct Window<'a> {
 }
 
 impl Window<'_> {
-    /// What an input of picture `at` shows in a frame, if that is like the frame itself; `change` leads to the working space.
+    /// Image for an input of picture `at` in a frame, if that is like the frame itself; `change` leads to the working
+    /// space.
     pub fn image(&self, at: usize, input: &str, frame: i64, change: Option<&Change>) -> Option<&Pixels> {
         let (held, picture) = self.alike(at, frame)?;
         match input {

@@ -1,8 +1,8 @@
-//! What a pixel of a parameter is.
+//! Unit of parameters that are given in pixels.
 
 use clap::ValueEnum;
 
-/// What lengths of parameters, which are given in pixels, mean.
+/// Unit of the lengths of parameters, which are given in pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Lengths {
     /// Pixels of a picture 1080 lines high: pictures of all sizes get the same look.
@@ -27,7 +27,7 @@ impl Lengths {
         }
     }
 
-    /// What the word stands for.
+    /// Unit that the word stands for.
     pub fn of(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|lengths| lengths.id() == id)
     }

@@ -1,4 +1,4 @@
-//! What `--style` and `--set` say, as a graph of the library.
+//! Style that `--style` and `--set` name, as a graph of the library.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -60,11 +60,11 @@ pub struct Style {
     pub name: String,
     /// The graph.
     pub graph: Graph,
-    /// What it yields.
+    /// Kind of image that it yields.
     pub kind: Kind,
-    /// What its lengths mean.
+    /// Unit of its lengths.
     pub lengths: Lengths,
-    /// Whether it is one node, index 0, with what feeds it.
+    /// True where it is one node, index 0, with what feeds it.
     single: bool,
     /// Parameters that change from frame to frame.
     animated: Vec<Animated>,
@@ -143,7 +143,7 @@ impl Style {
         Ok(Self { name, graph, kind, lengths: Lengths::default(), single, animated: Vec::new() })
     }
 
-    /// What is asked of the library for pictures of a size, with lengths as the style means them.
+    /// Request to the library for pictures of a size, with lengths as the style means them.
     ///
     /// # Errors
     /// As [`Library::request`].
@@ -185,7 +185,7 @@ impl Style {
         Ok(!self.animated.is_empty())
     }
 
-    /// Whether parameters change from frame to frame.
+    /// True where parameters change from frame to frame.
     pub fn is_animated(&self) -> bool {
         !self.animated.is_empty()
     }
@@ -273,7 +273,7 @@ impl Style {
         Ok(())
     }
 
-    /// Whether a node of the graph can use pictures of a kind.
+    /// True where a node of the graph can use pictures of a kind.
     ///
     /// # Errors
     /// [`Error::Failure`] when the library fails.
@@ -287,7 +287,7 @@ impl Style {
         Ok(false)
     }
 
-    /// Whether a node of the graph reads the mask that enters it.
+    /// True where a node of the graph reads the mask that enters it.
     ///
     /// # Errors
     /// [`Error::Failure`] when the library fails.
@@ -378,12 +378,12 @@ impl Style {
     }
 }
 
-/// What the name of a style stands for.
+/// Style that a name stands for.
 struct Opened {
     graph: Graph,
-    /// Whether it is a single node with what feeds it.
+    /// True where it is a single node with what feeds it.
     single: bool,
-    /// What sets its parameters.
+    /// Preset that sets its parameters.
     preset: Option<Preset>,
 }
 
@@ -422,13 +422,13 @@ fn open(library: &Library, style: &OsStr) -> Result<Opened> {
     Ok(Opened { preset: Some(preset), ..opened })
 }
 
-/// Whether the name of a style can be that of a file alone, since no node has such a name.
+/// True where the name of a style can be that of a file alone, since no node has such a name.
 fn looks_like_file(style: &Path) -> bool {
     style.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) || style.components().count() > 1
 }
 
-/// Whether a style is a file, and neither a node nor a look nor a graph written out. Of a node and a file of one name the
-/// node counts.
+/// True where a style is a file, and neither a node nor a look nor a graph written out. Of a node and a file of one
+/// name the node counts.
 pub fn is_file(style: &Path) -> bool {
     if looks::id(style).is_some() || style.to_str().is_some_and(preset::is_written_out) {
         return false;
@@ -473,7 +473,7 @@ fn fed(library: &Library, mut graph: Graph) -> isophote_loader::Result<Graph> {
     Ok(graph)
 }
 
-/// Whether an input takes a picture that enters the graph, by its name.
+/// True where an input takes a picture that enters the graph, by its name.
 fn is_picture(port: &Port) -> bool {
     ["color", "normal", "depth", "object_id", "motion", "motion_forward", "rest_position"].contains(&port.id)
 }

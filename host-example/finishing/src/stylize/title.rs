@@ -1,4 +1,4 @@
-//! What a preset says about itself to people who look for one.
+//! Title of a preset, for people who look for one.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ pub const KEYS: [&str; 3] = ["name", "about", "tags"];
 pub struct Title {
     /// The name, one line.
     pub name: Option<String>,
-    /// What it looks like, one line.
+    /// Description of the look, one line.
     pub about: Option<String>,
     /// Words by which it is found.
     pub tags: Vec<String>,
@@ -76,7 +76,7 @@ fn line(value: Value) -> Option<String> {
     }
 }
 
-/// Whether a text can be a name, a description or a tag.
+/// True where a text can be a name, a description or a tag.
 pub fn is_line(text: &str) -> bool {
     !text.trim().is_empty() && !text.chars().any(char::is_control)
 }

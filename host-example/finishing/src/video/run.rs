@@ -26,7 +26,7 @@ use isophote_pictures::pixels::{Pixels, Precision};
 use isophote_pictures::read::{ImageState, Source};
 use isophote_pictures::write::Format;
 
-/// What to do about a video that is damaged.
+/// Advice about a video that is damaged.
 const DAMAGED: &str = "use an intact file, or give --on-error skip to write what can be read";
 /// Frames between a process and the filter.
 const AHEAD: usize = 2;
@@ -34,17 +34,17 @@ const AHEAD: usize = 2;
 /// A video that is to be filtered.
 #[derive(Debug)]
 pub struct Job<'a> {
-    /// What is read: a file, or `-`.
+    /// Input: a file, or `-`.
     pub input: &'a Path,
-    /// What is written: a file, or `-`.
+    /// Output: a file, or `-`.
     pub output: &'a Path,
     /// Treatment of a file that is there.
     pub existing: Existing,
     /// Options of the encoder instead of the usual ones.
     pub encode: Option<&'a str>,
-    /// What to do where the input is damaged.
+    /// Treatment of a damaged input.
     pub on_error: OnError,
-    /// Whether lines of JSON are wanted.
+    /// True where lines of JSON are wanted.
     pub json: bool,
     /// Masks of the frames, which count from 1.
     pub masks: &'a Masks,
@@ -81,7 +81,7 @@ pub fn run(job: &Job<'_>, filter: &mut Filter) -> Result<()> {
 /// Frames that went through the filter.
 struct Filtered {
     count: u64,
-    /// Where they went; nothing where there were none.
+    /// Encoder that they went to; nothing where there were none.
     encoder: Option<Encoder>,
 }
 
@@ -130,7 +130,7 @@ impl Job<'_> {
         encoder.ok_or_else(none)?.end()
     }
 
-    /// Whether all frames of the input were decoded well; where what is damaged is skipped, says what it was.
+    /// Checks that all frames of the input were decoded well; where what is damaged is skipped, says what it was.
     fn check(
         &self,
         input: &Input<'_>,

@@ -22,7 +22,7 @@ macro_rules! pieces {
     ($($case:ident $text:literal)*) => { &[$(pieces!(@ $case $text)),*] };
 }
 
-/// Where a texture lies in the picture.
+/// Import of the grid: the place of a texture in the picture.
 pub static GRID: Import = Import {
     name: "gpu/grid",
     text: &[Piece::Text(include_str!("../../../../shaders/gpu/grid.wgsl"))],
