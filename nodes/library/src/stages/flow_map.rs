@@ -19,14 +19,14 @@ pub(crate) const INVERT_Y: Param = Param::bool("invert_y", "Invert y", false)
 pub(crate) struct Flow(pub ImageId);
 
 impl Flow {
-    /// What is connected to the port `flow` of a node, with the defaults of this one.
+    /// Map that is connected to the port `flow` of a node, with the defaults of this one.
     pub(crate) fn of(scope: &mut Scope<'_>) -> Option<Self> {
         let softness = SOFTNESS.default_float() * scope.scale();
         let map = scope.input("flow")?;
         Some(Self::new(scope.plan, map, STRENGTH.default_float(), softness, INVERT_Y.default_bool()))
     }
 
-    /// What an artist painted, as strong and as soft as asked for.
+    /// Map that an artist painted, as strong and as soft as asked for.
     pub(crate) fn new(
         plan: &mut PlanBuilder,
         map: ImageId,

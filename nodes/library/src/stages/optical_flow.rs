@@ -13,7 +13,7 @@ use inverse_search::Start;
 use isophote_engine::{ImageId, PlanBuilder};
 
 crate::choice::choice! {
-    /// How much is done for precision.
+    /// Amount of work that is done for precision.
     pub enum Quality {
         /// At half the resolution, with few steps.
         Fast ("fast", "Fast"),
@@ -24,7 +24,7 @@ crate::choice::choice! {
     }
 }
 
-/// What a quality stands for.
+/// Effort that a quality stands for.
 struct Effort {
     /// Level of the pyramid at which the search ends.
     finest: i8,

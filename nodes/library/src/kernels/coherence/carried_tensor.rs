@@ -63,7 +63,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 #[derive(Default)]
 struct Strip {
     colors: LineBuffer,
-    /// Whether the rows in `colors` are opaque.
+    /// True for rows in `colors` that are opaque.
     opaque: [bool; 3],
     /// The next row that `colors` takes in.
     next: i32,

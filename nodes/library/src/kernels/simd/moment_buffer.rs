@@ -36,7 +36,7 @@ impl MomentBuffer {
         self.opaque.resize(self.count as usize, true);
     }
 
-    /// Where column `x` lies in a row.
+    /// Index of column `x` in a row.
     #[inline(always)]
     pub fn column(&self, x: i32) -> usize {
         (x - self.first) as usize

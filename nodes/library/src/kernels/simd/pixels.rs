@@ -257,7 +257,7 @@ pub fn unpremultiply<S: Simd>([r, g, b, a]: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
     [seen.select(r / a, zero), seen.select(g / a, zero), seen.select(b / a, zero), a]
 }
 
-/// Where eight pixels begin in the data of `view`; positions are clamped to the picture and must then
+/// Indices at which eight pixels begin in the data of `view`; positions are clamped to the picture and must then
 /// lie in the window.
 #[inline(always)]
 pub fn offsets<S: Simd>(view: &View<'_>, x: i32x8<S>, y: i32x8<S>) -> i32x8<S> {

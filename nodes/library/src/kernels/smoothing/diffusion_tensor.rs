@@ -29,7 +29,7 @@ crate::kernel!(diffusion_tensor {
 });
 
 crate::choice::numbered! {
-    /// Which diffusion.
+    /// Scheme of the diffusion.
     pub enum Scheme {
         /// 1 - exp(-3.31488 / (lambda1 / lambda^2)^4) across edges, 1 along them.
         EdgeEnhancing = 0,

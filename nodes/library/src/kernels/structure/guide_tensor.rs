@@ -30,7 +30,7 @@ crate::kernel!(guide_tensor {
 });
 
 crate::choice::numbered! {
-    /// What a guide image holds.
+    /// Content of a guide image.
     pub enum Guide {
         /// View-space normal and validity.
         Normal = 0,
@@ -41,10 +41,10 @@ crate::choice::numbered! {
     }
 }
 
-/// How a guide counts.
+/// Options by which a guide counts.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// What it holds.
+    /// Content of the image.
     pub kind: Guide,
     /// Factor on its tensor.
     pub weight: f32,

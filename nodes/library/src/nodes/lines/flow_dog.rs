@@ -61,7 +61,7 @@ const KERNEL: Param = Param::choice("kernel", "Kernel", Kernel::Separable.select
 );
 
 choice! {
-    /// How stream lines are stepped.
+    /// Method by which stream lines are stepped.
     enum Tracing {
         /// Euler's method (2.176).
         Euler ("euler", "Euler"),

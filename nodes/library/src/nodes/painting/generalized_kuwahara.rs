@@ -36,7 +36,7 @@ pub static NODE: NodeSpec = NodeSpec {
 };
 
 choice! {
-    /// How the CPU sums up the sectors.
+    /// Method by which the CPU sums up the sectors.
     enum Method {
         /// Pixel by pixel.
         Spatial ("spatial", "Spatial"),

@@ -52,7 +52,7 @@ pub static NODE: NodeSpec = NodeSpec {
 };
 
 choice! {
-    /// What stops or guides the diffusion.
+    /// Measure that stops or guides the diffusion.
     enum Diffusion {
         /// A diffusivity that falls with the difference between neighbours (3.2, 3.3).
         PeronaMalik ("perona_malik", "Perona-Malik"),

@@ -45,7 +45,7 @@ pub static NODE: NodeSpec = NodeSpec {
 };
 
 choice! {
-    /// Where differences of colour are measured.
+    /// Space in which differences of colour are measured.
     enum Space {
         /// CIELAB, L in 0..100.
         Lab ("lab", "CIELAB"),

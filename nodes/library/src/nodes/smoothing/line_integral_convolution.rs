@@ -39,7 +39,7 @@ const SAMPLING: Param = Param::choice("sampling", "Sampling", Sampling::Linear.s
 );
 
 choice! {
-    /// What a line follows between pixels.
+    /// Tensor that a line follows between pixels.
     enum Sampling {
         /// The interpolated tensor.
         Linear ("linear", "Linear"),
@@ -49,7 +49,7 @@ choice! {
 }
 
 choice! {
-    /// How stream lines are stepped.
+    /// Method by which stream lines are stepped.
     enum Stepping {
         /// Euler's method (2.177).
         Euler ("euler", "Euler"),

@@ -103,7 +103,7 @@ const WARP: Param = Param::float("warp", "Warp", 0.0, [0.0, 20.0])
     .doc("How far the colours beside sharp edges are pulled towards them before lines are drawn, which narrows blurred edges (phi_w of `warp_sharpen`); 0 for not at all.");
 
 choice! {
-    /// How lines are found.
+    /// Filter by which lines are found.
     enum LineFilter {
         /// Across and along the local orientation (4.5).
         Flow ("flow", "Flow-based"),

@@ -102,7 +102,8 @@ const fn shift(id: &'static str, label: &'static str, most: f32, doc: &'static s
     Param::float(id, label, 0.0, [-most, most]).group(ADVANCED).doc(doc)
 }
 
-/// How much more guides count than where lightness is inhibited: here it counts in full, and light grounds are far from ink.
+/// Factor by which guides count more than where lightness is inhibited: here it counts in full, and light grounds are
+/// far from ink.
 const GUIDES: f32 = 1.7;
 
 /// Anisotropy that noise exceeds in one of ten thousand places, in windows of standard deviation `rho` pixels (2.154, 2.158).

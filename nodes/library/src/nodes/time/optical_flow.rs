@@ -34,7 +34,7 @@ pub static NODE: NodeSpec = NodeSpec {
 };
 
 choice! {
-    /// Which frame the motion leads to.
+    /// Frame that the motion leads to.
     enum Direction {
         /// The frame before.
         Backward ("backward", "Backward"),
