@@ -312,16 +312,6 @@ impl Look {
         knobs.iter().filter(is_changed).map(text).collect()
     }
 
-    /// Forgets all changes since it was opened.
-    pub fn revert(&mut self) {
-        self.preset = self.opened.clone();
-    }
-
-    /// True where parameters change from frame to frame.
-    pub fn has_keyframes(&self) -> bool {
-        self.preset.params.iter().any(|(_, track)| matches!(track, Track::Keys { .. }))
-    }
-
     /// Name of the style for `apply` and `render`: the id of a node, or the path of a graph file.
     pub fn style_name(&self) -> PathBuf {
         self.preset.style_beside(&self.source).into()
