@@ -171,7 +171,7 @@ struct Ellipses<S: Simd> {
     shift: f32x8<S>,
     /// 1 / a, and (a c - b^2) / a^2.
     width: [f32x8<S>; 2],
-    /// LineBuffer below the centre that hold a pixel of any.
+    /// Rows below the centre that hold a pixel of any.
     rows: i32,
 }
 

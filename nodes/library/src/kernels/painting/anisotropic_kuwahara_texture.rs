@@ -159,7 +159,7 @@ struct Ellipse {
     b: f32,
     /// a c - b^2.
     area: f32,
-    /// LineBuffer below the centre that hold a pixel.
+    /// Rows below the centre that hold a pixel.
     rows: i32,
 }
 

@@ -10,7 +10,7 @@ use isophote_engine::{Band, View, memory};
 /// Channels of a row: a r, a g, a b, a (r^2 + g^2 + b^2), a.
 pub const CHANNELS: usize = 5;
 
-/// LineBuffer of a strip of columns, clamped to the picture's edge.
+/// Rows of a strip of columns, clamped to the picture's edge.
 #[derive(Debug, Default)]
 pub struct MomentBuffer {
     first: i32,
