@@ -7,8 +7,8 @@ use crate::kernels::smoothing::cabral_leedom;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options};
 use crate::ports;
 use crate::spec::{NodeSpec, Param, Scope};
-use crate::stages::line_integral_convolution::{ADAPT, MAX_ANGLE, SIGMA, STEP};
 pub use crate::stages::line_integral_convolution::options;
+use crate::stages::line_integral_convolution::{ADAPT, MAX_ANGLE, SIGMA, STEP};
 use crate::stages::structure_tensor;
 use isophote_engine::ImageId;
 
