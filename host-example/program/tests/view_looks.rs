@@ -17,7 +17,7 @@ use isophote_window::document::{Document, Options};
 use isophote_window::leaving::Leaving;
 use isophote_window::look::Look;
 use isophote_window::reel::Reel;
-use isophote_window::session::{Session, Wish};
+use isophote_window::session::{Request, Session};
 use isophote_window::settings::Settings;
 use isophote_window::ui;
 use isophote_window::value::Value;
@@ -435,7 +435,7 @@ fn folders_are_added_and_taken_off_the_list() {
     let folder = presets();
     let mut harness = harness(session(folder.path()));
     click(&mut harness, Role::Button, "Add a folder…");
-    assert_eq!(harness.state().wishes, [Wish::ChooseFolder]);
+    assert_eq!(harness.state().requests, [Request::ChooseFolder]);
     let shown: PathBuf = folder.path().components().collect();
     click(&mut harness, Role::Button, &format!("Remove {} from the list", shown.display()));
     assert!(harness.state().settings.look_folders.is_empty() && harness.state().browser.is_outdated);

@@ -15,7 +15,7 @@ use isophote_window::document::{Document, Options};
 use isophote_window::look::Look;
 use isophote_window::reel::Reel;
 use isophote_window::scenery::{Scenery, Staging};
-use isophote_window::session::{Session, Wish};
+use isophote_window::session::{Request, Session};
 use isophote_window::settings::Settings;
 use isophote_window::ui;
 use isophote_window::value::Value;
@@ -164,7 +164,7 @@ fn an_export_is_asked_for_in_a_window_of_its_own() {
     assert_eq!(plan.frames().as_deref(), Some("96"));
     harness.get_by_label("Start the export").click();
     harness.run_ok();
-    assert_eq!(harness.state().wishes, [Wish::Export]);
+    assert_eq!(harness.state().requests, [Request::Export]);
 }
 
 #[test]
@@ -180,8 +180,11 @@ fn layers_are_chosen_from_a_list() {
     harness.run_ok();
     harness.get_by_label("beauty").click();
     harness.run_ok();
-    let wishes = &harness.state().wishes;
-    assert!(matches!(&wishes[..], [Wish::ChooseLayer(layer, None)] if layer.name == "beauty"), "{wishes:?}");
+    let requests = &harness.state().requests;
+    assert!(
+        matches!(&requests[..], [Request::ChooseLayer(layer, None)] if layer.name == "beauty"),
+        "{requests:?}"
+    );
 }
 
 /// Writes a picture with a layer beside the main one.

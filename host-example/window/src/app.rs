@@ -20,7 +20,7 @@ use super::pace::Pace;
 use super::panel::Textures;
 use super::record::Hold;
 use super::reel::Reel;
-use super::session::{Session, Wish};
+use super::session::{Request, Session};
 use super::stage::{Drawn, Stage};
 use super::ui;
 use super::worker::Wake;
@@ -338,7 +338,7 @@ impl ApplicationHandler<Event> for App {
             }
             WindowEvent::DroppedFile(path) => {
                 if !self.session.leaving.is_shown() {
-                    self.session.wishes.push(Wish::Open(path));
+                    self.session.requests.push(Request::Open(path));
                 }
                 Ok(())
             }

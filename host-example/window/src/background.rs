@@ -21,7 +21,7 @@ use super::reel::Reel;
 use super::samples::{self, SAMPLES, Sample};
 use super::saving::Saving;
 use super::scenery::{Scenery, Staging};
-use super::session::{Session, Wish};
+use super::session::{Request, Session};
 use super::watch::Watch;
 use super::worker::{Wake, Worker};
 use isophote_files::error::{Error, Result};
@@ -208,10 +208,10 @@ impl Background {
     pub fn grant(&mut self, session: &mut Session) -> Option<String> {
         let mut copied = None;
         let mut files = Vec::new();
-        for wish in std::mem::take(&mut session.wishes) {
-            match wish {
-                Wish::Open(path) => files.push(path),
-                Wish::ChooseLayer(layer, view) => {
+        for request in std::mem::take(&mut session.requests) {
+            match request {
+                Request::Open(path) => files.push(path),
+                Request::ChooseLayer(layer, view) => {
                     if let Some(file) = &session.file {
                         let name = Some(layer.name).filter(|name| !name.is_empty());
                         let selection = Selection {
@@ -223,25 +223,25 @@ impl Background {
                         self.opener.ask(Job::Again(file.clone(), Box::new(selection)));
                     }
                 }
-                Wish::ChooseOutput => self.choose(Dialog::Export, session),
-                Wish::OpenDemo => self.opener.ask(Job::Demo),
-                Wish::OpenSample(index) => {
+                Request::ChooseOutput => self.choose(Dialog::Export, session),
+                Request::OpenDemo => self.opener.ask(Job::Demo),
+                Request::OpenSample(index) => {
                     if let Some(sample) = SAMPLES.get(index) {
                         self.opener.ask(Job::Sample(sample, session.settings.place_for_samples()));
                     }
                 }
-                Wish::ChooseFile => self.choose(Dialog::File, session),
-                Wish::ChooseLook => self.choose(Dialog::Look, session),
-                Wish::ChooseSurroundings => self.choose(Dialog::Surroundings, session),
-                Wish::ChooseFolder => self.choose(Dialog::LookFolder, session),
-                Wish::ChooseLookFile => self.choose(Dialog::Save, session),
-                Wish::Export => self.export(session),
-                Wish::CancelExport => {
+                Request::ChooseFile => self.choose(Dialog::File, session),
+                Request::ChooseLook => self.choose(Dialog::Look, session),
+                Request::ChooseSurroundings => self.choose(Dialog::Surroundings, session),
+                Request::ChooseFolder => self.choose(Dialog::LookFolder, session),
+                Request::ChooseLookFile => self.choose(Dialog::Save, session),
+                Request::Export => self.export(session),
+                Request::CancelExport => {
                     if let Some(export) = &mut self.export {
                         export.cancel();
                     }
                 }
-                Wish::CopyCommand => {
+                Request::CopyCommand => {
                     copied = Some(command::line(session));
                     session.notes.say("Copied the command line of this picture");
                 }

@@ -1,6 +1,6 @@
 //! The window's end: asked for, put off while something would be lost, and certain.
 
-/// State of the wish to close the window.
+/// State of the request to close the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Leaving {
     /// Nobody wants to close it.

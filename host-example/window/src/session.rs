@@ -38,7 +38,7 @@ use isophote_pictures::exr::{Guide, Layer};
 
 /// Request of the controls for what only the window itself can do.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Wish {
+pub enum Request {
     /// Open this file.
     Open(PathBuf),
     /// Show a dialog and open what is chosen.
@@ -139,7 +139,7 @@ pub struct Session {
     /// Settings that are remembered from one time to the next.
     pub settings: Settings,
     /// Requests of the controls to the window.
-    pub wishes: Vec<Wish>,
+    pub requests: Vec<Request>,
     /// True where the help is open.
     pub shows_help: bool,
     /// Work that is being done beside the window, in words.
@@ -196,7 +196,7 @@ impl Session {
             notes: Notes::default(),
             record: Record::default(),
             settings,
-            wishes: Vec::new(),
+            requests: Vec::new(),
             shows_help: false,
             busy: None,
             plan: None,

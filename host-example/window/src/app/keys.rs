@@ -8,7 +8,7 @@ use winit::keyboard::{Key, NamedKey};
 
 use super::App;
 use crate::leaving::Leaving;
-use crate::session::Wish;
+use crate::session::Request;
 use crate::ui;
 
 impl App {
@@ -38,7 +38,7 @@ impl App {
             Key::Character("z") if !self.modifiers.shift_key() => session.undo(),
             Key::Character("z" | "Z" | "y") => session.redo(),
             Key::Character("e") => session.plan_export(),
-            Key::Character("o") => session.wishes.push(Wish::ChooseFile),
+            Key::Character("o") => session.requests.push(Request::ChooseFile),
             Key::Character("s") => session.save_look(self.modifiers.shift_key()),
             Key::Character("S") => session.save_look(true),
             _ => {}

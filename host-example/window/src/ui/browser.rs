@@ -15,7 +15,7 @@ use crate::browser::filter::{Filter, tags};
 use crate::look::PLAIN;
 use crate::preview::Place;
 use crate::preview::render::{FINENESS, Order};
-use crate::session::{Session, Wish};
+use crate::session::{Request, Session};
 
 /// Least width of a card in points.
 const LEAST: f32 = 200.0;
@@ -90,7 +90,7 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
     }
     let hint = "Offer the looks of a folder and of those within it";
     if ui.button("Add a folder…").on_hover_text(hint).clicked() {
-        session.wishes.push(Wish::ChooseFolder);
+        session.requests.push(Request::ChooseFolder);
     }
     let marked = session.browser.marked.len();
     let text = if marked > 0 { format!("Compare {marked}") } else { "Compare".to_owned() };

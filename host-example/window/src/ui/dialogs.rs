@@ -4,7 +4,7 @@ use egui::{Align2, Button, Context, Grid, RichText, TextEdit, Ui};
 
 use super::theme;
 use crate::browser::titling::Words;
-use crate::session::{Session, Wish};
+use crate::session::{Request, Session};
 
 /// Width of text fields in points.
 const FIELD: f32 = 340.0;
@@ -82,7 +82,7 @@ fn saving(context: &Context, session: &mut Session) {
         session.saving = Some(saving);
     }
     if chooses {
-        session.wishes.push(Wish::ChooseLookFile);
+        session.requests.push(Request::ChooseLookFile);
     }
     if done {
         session.finish_saving();

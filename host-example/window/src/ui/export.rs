@@ -4,13 +4,13 @@ use egui::{Align2, Button, ComboBox, DragValue, Grid, RichText, TextEdit, Ui};
 
 use super::theme;
 use crate::plan::{Plan, What};
-use crate::session::{Session, Wish};
+use crate::session::{Request, Session};
 
 /// Shows the window while something is to be exported.
 pub fn show(context: &egui::Context, session: &mut Session) {
     let Some(mut plan) = session.plan.take() else { return };
     let mut open = true;
-    let mut wish = None;
+    let mut request = None;
     egui::Window::new("Export")
         .open(&mut open)
         .collapsible(false)
@@ -22,16 +22,16 @@ pub fn show(context: &egui::Context, session: &mut Session) {
                 kind(ui, &mut plan);
                 amount(ui, &mut plan, session.reel.as_ref().map(|reel| reel.number()));
                 if place(ui, &mut plan) {
-                    wish = Some(Wish::ChooseOutput);
+                    request = Some(Request::ChooseOutput);
                 }
             });
             ui.add_space(10.0);
-            wish = end(ui, &plan, session.exported.is_some()).or(wish.take());
+            request = end(ui, &plan, session.exported.is_some()).or(request.take());
         });
     if open {
         session.plan = Some(plan);
     }
-    session.wishes.extend(wish);
+    session.requests.extend(request);
 }
 
 /// Kind of the export, and its format.
@@ -130,7 +130,7 @@ fn place(ui: &mut Ui, plan: &mut Plan) -> bool {
 }
 
 /// Remarks on it, and the buttons.
-fn end(ui: &mut Ui, plan: &Plan, is_busy: bool) -> Option<Wish> {
+fn end(ui: &mut Ui, plan: &Plan, is_busy: bool) -> Option<Request> {
     let problem = plan.problem().or(is_busy.then_some("Another export is running."));
     if let Some(problem) = problem {
         ui.label(RichText::new(problem).color(theme::BAD));
@@ -141,5 +141,5 @@ fn end(ui: &mut Ui, plan: &Plan, is_busy: bool) -> Option<Wish> {
     }
     ui.add_space(4.0);
     let start = ui.add_enabled(problem.is_none(), Button::new("Start the export"));
-    start.clicked().then_some(Wish::Export)
+    start.clicked().then_some(Request::Export)
 }

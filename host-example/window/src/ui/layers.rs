@@ -3,7 +3,7 @@
 use egui::{ComboBox, RichText, Ui};
 
 use super::theme;
-use crate::session::{Session, Wish};
+use crate::session::{Request, Session};
 use isophote_pictures::exr::{Guide, Layer};
 
 /// True where there is anything to choose or to tell.
@@ -21,7 +21,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     let Some(reel) = &session.reel else { return };
     let offers = reel.document.offers();
     let selection = reel.document.selection();
-    let mut wish = None;
+    let mut request = None;
     if offers.layers.len() > 1 {
         row(ui, "Layer", "layer", name(&offers.layer), |ui| {
             for layer in &offers.layers {
@@ -29,7 +29,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
                 let text = format!("{}{mark}", name(&layer.name));
                 if ui.selectable_label(layer.name == offers.layer, text).clicked() {
                     let view = selection.view.clone().filter(|view| layer.views.contains(view));
-                    wish = Some(Wish::ChooseLayer(layer.clone(), view));
+                    request = Some(Request::ChooseLayer(layer.clone(), view));
                 }
             }
         });
@@ -41,7 +41,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         row(ui, "View", "view", offers.view.as_deref().unwrap_or("The first"), |ui| {
             for view in views {
                 if ui.selectable_label(offers.view.as_ref() == Some(view), view).clicked() {
-                    wish = Some(Wish::ChooseLayer(layer.clone(), Some(view.clone())));
+                    request = Some(Request::ChooseLayer(layer.clone(), Some(view.clone())));
                 }
             }
         });
@@ -55,7 +55,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         .response
         .on_hover_text("Looks follow it. It was found by its name");
     }
-    session.wishes.extend(wish);
+    session.requests.extend(request);
 }
 
 /// The views of a layer, if there are several.

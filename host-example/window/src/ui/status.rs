@@ -3,7 +3,7 @@
 use egui::{Button, DragValue, Label, RichText, Slider, Ui};
 
 use super::theme;
-use crate::session::{Session, Wish};
+use crate::session::{Request, Session};
 
 /// Shows the bar.
 pub fn show(ui: &mut Ui, session: &mut Session) {
@@ -12,7 +12,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         if let Some(share) = session.exported {
             ui.add(egui::ProgressBar::new(share).desired_width(160.0).text("Exporting"));
             if ui.button("Cancel").clicked() {
-                session.wishes.push(Wish::CancelExport);
+                session.requests.push(Request::CancelExport);
             }
         }
         if session.has_picture() {
@@ -61,7 +61,7 @@ fn frames(ui: &mut Ui, session: &mut Session) {
         if let Some(pattern) = reel.document.sequence() {
             let name = pattern.file_name().unwrap_or_default().to_string_lossy().into_owned();
             if ui.button(format!("Open all of {name}")).clicked() {
-                session.wishes.push(Wish::Open(pattern));
+                session.requests.push(Request::Open(pattern));
             }
         }
         return;
