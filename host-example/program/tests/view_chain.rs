@@ -69,14 +69,20 @@ fn every_node_that_fits_can_follow_every_look() {
 #[test]
 fn nodes_are_added_moved_passed_by_and_removed_step_by_step() {
     let mut session = session("cartoon");
-    let knob = session.knobs.iter().find(|knob| matches!(knob.default, Value::Float(_))).unwrap().clone();
-    let value = knob.default.others(&knob.param.kind).swap_remove(0);
-    session.set(&knob, &value);
+    let parameter = session
+        .parameters
+        .iter()
+        .find(|parameter| matches!(parameter.default, Value::Float(_)))
+        .unwrap()
+        .clone();
+    let value = parameter.default.others(&parameter.param.kind).swap_remove(0);
+    session.set(&parameter, &value);
     session.let_go();
     add(&mut session, "bilateral");
     add(&mut session, "bilateral");
     assert_eq!(names(&session), ["cartoon", "bilateral", "bilateral_2"]);
-    let kept = session.knobs.iter().find(|own| own.name == format!("cartoon.{}", knob.name)).unwrap();
+    let kept =
+        session.parameters.iter().find(|own| own.name == format!("cartoon.{}", parameter.name)).unwrap();
     assert_eq!(session.look().value(kept), value);
 
     session.relink(|chain, _| {
@@ -108,7 +114,7 @@ fn nodes_are_added_moved_passed_by_and_removed_step_by_step() {
         session.undo();
     }
     assert_eq!(session.look().preset.style, "cartoon");
-    assert_eq!(session.look().value(&knob), value);
+    assert_eq!(session.look().value(&parameter), value);
 }
 
 #[test]
@@ -119,9 +125,10 @@ fn what_the_window_saves_and_copies_is_what_apply_reads() {
     let mut session = session("cartoon");
     add(&mut session, "bilateral");
     session.relink(|chain, library| chain.add(library, "kuwahara", 0).map(drop));
-    let knob = session.knobs.iter().find(|knob| knob.name.starts_with("kuwahara.")).unwrap().clone();
-    let value = knob.default.others(&knob.param.kind).swap_remove(0);
-    session.set(&knob, &value);
+    let parameter =
+        session.parameters.iter().find(|parameter| parameter.name.starts_with("kuwahara.")).unwrap().clone();
+    let value = parameter.default.others(&parameter.param.kind).swap_remove(0);
+    session.set(&parameter, &value);
     let line = command::line(&session);
     assert!(line.contains("isophote-graph") && line.contains("kuwahara."), "{line}");
 
@@ -146,7 +153,7 @@ fn what_the_window_saves_and_copies_is_what_apply_reads() {
     };
     let saved = apply(file.as_os_str(), &[], "saved.png");
     let live = session.look();
-    let written = apply(live.preset.style.as_ref(), &live.settings(&session.knobs), "written.png");
+    let written = apply(live.preset.style.as_ref(), &live.settings(&session.parameters), "written.png");
     assert!(saved == written);
     assert!(saved != apply("cartoon".as_ref(), &[], "plain.png"));
 }
@@ -195,8 +202,9 @@ fn files_that_change_are_read_again_and_broken_ones_leave_the_look() {
     session.reload(&file, read(&session));
     assert_eq!((session.look(), session.can()), (&look, steps), "nothing has changed");
 
-    let knob = session.knobs.iter().find(|knob| knob.name == "posterize").unwrap().clone();
-    session.set(&knob, &Value::parse(&knob.param.kind, "7").unwrap());
+    let parameter =
+        session.parameters.iter().find(|parameter| parameter.name == "posterize").unwrap().clone();
+    session.set(&parameter, &Value::parse(&parameter.param.kind, "7").unwrap());
     session.let_go();
     let edited = session.look().clone();
     std::fs::write(&file, r#"{"style": "cartoon", "parameters": {"posterize": "#).unwrap();
@@ -204,7 +212,7 @@ fn files_that_change_are_read_again_and_broken_ones_leave_the_look() {
     assert_eq!(session.look(), &edited);
     std::fs::write(&file, r#"{"style": "cartoon", "parameters": {"posterize": 9}}"#).unwrap();
     session.reload(&file, read(&session));
-    assert_eq!(session.look().value(&knob).text(), "9");
+    assert_eq!(session.look().value(&parameter).text(), "9");
     assert!(!session.look().is_changed());
     session.undo();
     assert_eq!(session.look(), &edited, "what was not saved comes back");
@@ -222,6 +230,6 @@ fn a_graph_file_that_changes_beside_its_preset_is_another_look() {
     std::fs::write(&graph, ink.replace("2.5", "4.5")).unwrap();
     let read = Look::open(&session.library, &file);
     session.reload(&file, read);
-    let knob = session.knobs.iter().find(|knob| knob.name == "tensor.rho").unwrap();
-    assert_eq!(session.look().value(knob).text(), "4.5");
+    let parameter = session.parameters.iter().find(|parameter| parameter.name == "tensor.rho").unwrap();
+    assert_eq!(session.look().value(parameter).text(), "4.5");
 }

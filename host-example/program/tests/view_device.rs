@@ -136,8 +136,8 @@ fn is_at_rest(app: &mut App) -> bool {
 /// Gives a parameter a value, as a slider does.
 fn set(app: &mut App, name: &str, value: f32) {
     let session = app.session_mut();
-    let knob = session.knobs.iter().find(|knob| knob.name == name).unwrap().clone();
-    session.set(&knob, &Value::Float(value));
+    let parameter = session.parameters.iter().find(|parameter| parameter.name == name).unwrap().clone();
+    session.set(&parameter, &Value::Float(value));
 }
 
 /// Destroys the device; returns how many there were so far.
@@ -172,8 +172,8 @@ fn lost_at_rest(folder: &Path, loss: &Loss) -> Vec<(&'static str, Step)> {
             return false;
         }
         let session = app.session();
-        let knob = session.knobs.iter().find(|knob| knob.name == "line_amount").unwrap();
-        assert_eq!(session.look().value(knob), Value::Float(0.9));
+        let parameter = session.parameters.iter().find(|parameter| parameter.name == "line_amount").unwrap();
+        assert_eq!(session.look().value(parameter), Value::Float(0.9));
         assert_eq!((session.name.as_str(), session.can()), ("photo.png", [true, true]));
         see_after() == *picture
     };

@@ -239,8 +239,8 @@ fn a_window_closes_when_its_export_is_done_if_that_was_answered() {
 /// Gives the first parameter of a look another value.
 fn change(session: &mut Session) {
     let number = |value: &Value| matches!(value, Value::Float(_));
-    let knob = session.knobs.iter().find(|knob| number(&knob.default)).unwrap().clone();
-    session.set(&knob, &knob.default.others(&knob.param.kind)[0]);
+    let parameter = session.parameters.iter().find(|parameter| number(&parameter.default)).unwrap().clone();
+    session.set(&parameter, &parameter.default.others(&parameter.param.kind)[0]);
     session.let_go();
 }
 

@@ -176,9 +176,13 @@ fn a_click_shows_a_look_and_undo_brings_back_what_it_replaced() {
     let folder = presets();
     let mut session = session(folder.path());
     session.choose(1);
-    let knob =
-        session.knobs.iter().find(|knob| matches!(knob.default, Value::Float(_))).expect("a number").clone();
-    session.set(&knob, &knob.default.others(&knob.param.kind)[0]);
+    let parameter = session
+        .parameters
+        .iter()
+        .find(|parameter| matches!(parameter.default, Value::Float(_)))
+        .expect("a number")
+        .clone();
+    session.set(&parameter, &parameter.default.others(&parameter.param.kind)[0]);
     session.let_go();
     let edited = session.look().clone();
     session.choose(2);
@@ -339,9 +343,13 @@ fn a_look_is_saved_with_its_name_and_nothing_is_replaced_unasked() {
     );
     assert!(session.settings.look_folders.contains(&looks), "its folder is offered");
     // To its own file it is saved at once, under its name.
-    let knob =
-        session.knobs.iter().find(|knob| matches!(knob.default, Value::Float(_))).expect("a number").clone();
-    session.set(&knob, &knob.default.others(&knob.param.kind)[0]);
+    let parameter = session
+        .parameters
+        .iter()
+        .find(|parameter| matches!(parameter.default, Value::Float(_)))
+        .expect("a number")
+        .clone();
+    session.set(&parameter, &parameter.default.others(&parameter.param.kind)[0]);
     session.save_look(false);
     assert!(session.saving.is_none() && !session.look().is_changed());
     assert_eq!(preset(&file).title.name.as_deref(), Some("Late Evening"));

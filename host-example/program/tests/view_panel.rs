@@ -63,8 +63,8 @@ fn every_parameter_of_every_style_is_found_by_its_label() {
         open_headings(&mut harness, &mut closed);
         let session = harness.state();
         let mut labels: HashMap<&str, usize> = HashMap::new();
-        for knob in &session.knobs {
-            *labels.entry(knob.param.label).or_default() += 1;
+        for parameter in &session.parameters {
+            *labels.entry(parameter.param.label).or_default() += 1;
         }
         assert!(labels.len() > 10);
         let name = session.look().name.clone();
@@ -84,26 +84,31 @@ fn a_value_is_undone_redone_and_set_back() {
     harness.state_mut().choose(1);
     harness.run_ok();
     let session = harness.state_mut();
-    let knob = session.knobs.iter().find(|knob| matches!(knob.default, Value::Float(_))).unwrap().clone();
-    let Value::Float(before) = session.look().value(&knob) else { unreachable!() };
+    let parameter = session
+        .parameters
+        .iter()
+        .find(|parameter| matches!(parameter.default, Value::Float(_)))
+        .unwrap()
+        .clone();
+    let Value::Float(before) = session.look().value(&parameter) else { unreachable!() };
     for step in 1..4 {
-        session.set(&knob, &Value::Float(before + 0.125 * step as f32));
+        session.set(&parameter, &Value::Float(before + 0.125 * step as f32));
     }
     session.let_go();
     let after = Value::Float(before + 0.375);
-    assert_eq!(session.look().value(&knob), after);
-    assert!(session.look().differs(&knob) && session.look().is_changed());
+    assert_eq!(session.look().value(&parameter), after);
+    assert!(session.look().differs(&parameter) && session.look().is_changed());
     session.undo();
-    assert_eq!(session.look().value(&knob), Value::Float(before), "a drag is one step");
+    assert_eq!(session.look().value(&parameter), Value::Float(before), "a drag is one step");
     session.redo();
-    assert_eq!(session.look().value(&knob), after);
+    assert_eq!(session.look().value(&parameter), after);
     harness.run_ok();
     harness.get_by_label("Reset all").click();
     harness.run_ok();
-    assert!(!harness.state().look().differs(&knob));
+    assert!(!harness.state().look().differs(&parameter));
     harness.get_by_label("Undo").click();
     harness.run_ok();
-    assert_eq!(harness.state().look().value(&knob), after);
+    assert_eq!(harness.state().look().value(&parameter), after);
 }
 
 #[test]
@@ -112,13 +117,19 @@ fn controls_can_be_used_by_programs_that_read_windows_aloud() {
     let index = harness.state().looks.iter().position(|look| look.name == "Cartoon").unwrap();
     harness.state_mut().choose(index);
     harness.run_ok();
-    let knob = harness.state().knobs.iter().find(|knob| knob.param.label == "Posterize").unwrap().clone();
+    let parameter = harness
+        .state()
+        .parameters
+        .iter()
+        .find(|parameter| parameter.param.label == "Posterize")
+        .unwrap()
+        .clone();
     let slider = harness
         .query_all_by_label("Posterize")
         .find(|node| node.accesskit_node().role() == egui::accesskit::Role::Slider);
     slider.unwrap().click();
     harness.run_ok();
-    assert!(harness.state().look().differs(&knob), "a click in the middle of a slider sets it");
+    assert!(harness.state().look().differs(&parameter), "a click in the middle of a slider sets it");
     harness.get_by_label("Wipe").click();
     harness.run_ok();
     assert_eq!(harness.query_all_by_label("Wipe").count(), 2, "the line of the wipe has a name, too");
@@ -133,16 +144,16 @@ fn a_saved_look_is_the_same_look_and_its_command_is_short() {
     let file = folder.path().join("mine.json");
     let mut session = session();
     session.choose(1);
-    let knobs = session.knobs.clone();
-    let changed = knobs.iter().filter(|knob| !matches!(knob.default, Value::Choice(_)));
-    for knob in changed.take(4) {
-        let other = knob.default.others(&knob.param.kind).swap_remove(0);
-        session.set(knob, &other);
+    let parameters = session.parameters.clone();
+    let changed = parameters.iter().filter(|parameter| !matches!(parameter.default, Value::Choice(_)));
+    for parameter in changed.take(4) {
+        let other = parameter.default.others(&parameter.param.kind).swap_remove(0);
+        session.set(parameter, &other);
     }
     let mut look = session.look().clone();
-    assert_eq!(look.settings(&knobs).len(), 4);
+    assert_eq!(look.settings(&parameters).len(), 4);
     look.save(&file, look.preset.title.clone()).unwrap();
-    assert!(!look.is_changed() && look.settings(&knobs).is_empty());
+    assert!(!look.is_changed() && look.settings(&parameters).is_empty());
     let opened = Look::open(&session.library, &file).unwrap();
     assert_eq!(opened, look);
     std::fs::write(&file, r#"{"style": "cartoon", "parameters": {"later": 1}}"#).unwrap();

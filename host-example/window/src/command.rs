@@ -33,8 +33,8 @@ pub fn line(session: &Session) -> String {
             }
         }
     }
-    let knobs = look.knobs(&session.library).unwrap_or_default();
-    words.extend(look.settings(&knobs).iter().map(|setting| format!("--set {}", quoted(setting))));
+    let parameters = look.parameters(&session.library).unwrap_or_default();
+    words.extend(look.settings(&parameters).iter().map(|setting| format!("--set {}", quoted(setting))));
     if look.preset.lengths == Some(Lengths::Pixels) {
         words.push("--lengths pixels".into());
     }

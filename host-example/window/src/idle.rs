@@ -55,10 +55,10 @@ fn find(Question { library, look, asked }: &Question) -> Result<HashSet<String>>
     // One frame before shows what all show.
     let known = style.past(library, &request)?.frames.min(1);
     let now = Work::of(&style.plan(library, &request, known)?);
-    for knob in look.knobs(library)? {
-        let present = look.value(&knob);
-        let set = |value: &Value| style.graph.set(knob.node, knob.param.id, &value.text());
-        let has_effect = present.others(&knob.param.kind).iter().any(|other| {
+    for parameter in look.parameters(library)? {
+        let present = look.value(&parameter);
+        let set = |value: &Value| style.graph.set(parameter.node, parameter.param.id, &value.text());
+        let has_effect = present.others(&parameter.param.kind).iter().any(|other| {
             set(other).is_ok() && {
                 let known = style.past(library, &request).map_or(0, |past| past.frames.min(1));
                 // What cannot be planned is at least not the same.
@@ -67,7 +67,7 @@ fn find(Question { library, look, asked }: &Question) -> Result<HashSet<String>>
         });
         let is_back = set(&present).is_ok();
         if !has_effect && is_back {
-            idle.insert(knob.name);
+            idle.insert(parameter.name);
         }
     }
     Ok(idle)

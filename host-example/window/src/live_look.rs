@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::look::{Knob, Look};
+use super::look::{Look, Parameter};
 use super::worker::{Wake, Worker};
 use isophote_example::kernels::Kernels;
 use isophote_example::plan_runner::Counts;
@@ -35,7 +35,7 @@ struct Recipe {
 struct Ready {
     stylizer: Stylizer,
     recipe: Recipe,
-    knobs: Vec<Knob>,
+    parameters: Vec<Parameter>,
     /// True where it reads what there is to read.
     bound: bool,
     /// Number of the last frame that was recorded.
@@ -245,29 +245,29 @@ impl Ready {
         if !is_same || (self.recipe.asked, self.recipe.precision) != (wanted.asked, wanted.precision) {
             return Ok(false);
         }
-        let track = |look: &Look, knob: &Knob| {
+        let track = |look: &Look, parameter: &Parameter| {
             look.preset
                 .params
                 .iter()
                 .rev()
-                .find(|(name, _)| *name == knob.name)
+                .find(|(name, _)| *name == parameter.name)
                 .map(|(_, track)| track.clone())
         };
         let mut settings = Vec::new();
-        for knob in &self.knobs {
-            let (before, after) = (track(old, knob), track(new, knob));
+        for parameter in &self.parameters {
+            let (before, after) = (track(old, parameter), track(new, parameter));
             if before == after {
                 continue;
             }
             let is_still = |track: &Option<Track>| !matches!(track, Some(Track::Keys { .. }));
-            if knob.param.structural || !is_still(&before) || !is_still(&after) {
+            if parameter.param.structural || !is_still(&before) || !is_still(&after) {
                 return Ok(false);
             }
-            let (node, param) = match knob.name.rsplit_once('.') {
+            let (node, param) = match parameter.name.rsplit_once('.') {
                 Some((node, param)) => (Some(node.to_owned()), param),
-                None => (None, knob.name.as_str()),
+                None => (None, parameter.name.as_str()),
             };
-            let value = new.value(knob).text();
+            let value = new.value(parameter).text();
             settings.push(Setting { node, param: param.to_owned(), value });
         }
         for setting in &settings {
@@ -290,7 +290,7 @@ fn build(job: &Job) -> Result<Ready> {
     Ok(Ready {
         stylizer,
         recipe: recipe.clone(),
-        knobs: look.knobs(library)?,
+        parameters: look.parameters(library)?,
         bound: false,
         number: None,
         done: 0,

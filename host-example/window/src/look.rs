@@ -36,7 +36,7 @@ pub struct Look {
 
 /// One parameter of a look that can be changed.
 #[derive(Clone, Debug)]
-pub struct Knob {
+pub struct Parameter {
     /// Its name in presets and for `--set`.
     pub name: String,
     /// Index of the node within the graph.
@@ -79,8 +79,8 @@ impl Look {
         };
         let mut look = Self { name, source: path.to_owned(), opened: preset.clone(), preset, graph: None };
         look.style(library)?;
-        let knobs = look.knobs(library)?;
-        look.use_names_of(&knobs);
+        let parameters = look.parameters(library)?;
+        look.use_names_of(&parameters);
         look.opened = look.preset.clone();
         look.graph = look.graph_file().map(|file| source::read(&file)).transpose()?.map(Into::into);
         Ok(look)
@@ -106,14 +106,14 @@ impl Look {
     ///
     /// # Errors
     /// As [`Style::of_preset`].
-    pub fn knobs(&self, library: &Library) -> Result<Vec<Knob>> {
+    pub fn parameters(&self, library: &Library) -> Result<Vec<Parameter>> {
         let bare = Self { preset: Preset { params: Vec::new(), ..self.preset.clone() }, ..self.clone() };
         let Some(style) = bare.style(library)? else { return Ok(Vec::new()) };
         let failed = |e: isophote_loader::Error| e.at(&self.name, "choose another look");
         let is_single = library.find_node(&self.preset.style).is_ok();
         let own = style.graph.to_json().map_err(failed)?;
         let own: Json = serde_json::from_str(&own).unwrap_or_default();
-        let mut knobs = Vec::new();
+        let mut parameters = Vec::new();
         for node in 0..style.graph.count() {
             let name = style.graph.name(node).map_err(failed)?;
             let spec = style.graph.spec(node).map_err(failed)?;
@@ -124,71 +124,72 @@ impl Look {
                 let Some(default) = given.or_else(|| Value::default(&param.kind)) else { continue };
                 let name =
                     if is_single && node == 0 { param.id.into() } else { format!("{name}.{}", param.id) };
-                knobs.push(Knob { name, node, of: spec.label, param, default });
+                parameters.push(Parameter { name, node, of: spec.label, param, default });
             }
         }
-        Ok(knobs)
+        Ok(parameters)
     }
 
-    /// Calls all parameters by the names of their knobs; presets may leave out the node where only one has a parameter.
-    fn use_names_of(&mut self, knobs: &[Knob]) {
+    /// Writes all values under the names of these parameters; presets may leave out the node where only one has it.
+    fn use_names_of(&mut self, parameters: &[Parameter]) {
         for (name, _) in &mut self.preset.params {
-            if knobs.iter().all(|knob| knob.name != *name)
-                && let Some(knob) = knobs.iter().find(|knob| knob.param.id == *name)
+            if parameters.iter().all(|parameter| parameter.name != *name)
+                && let Some(parameter) = parameters.iter().find(|parameter| parameter.param.id == *name)
             {
-                name.clone_from(&knob.name);
+                name.clone_from(&parameter.name);
             }
         }
     }
 
     /// The value of a parameter at the first keyframe, or everywhere.
-    pub fn value(&self, knob: &Knob) -> Value {
-        let track = self.preset.params.iter().rev().find(|(name, _)| *name == knob.name);
+    pub fn value(&self, parameter: &Parameter) -> Value {
+        let track = self.preset.params.iter().rev().find(|(name, _)| *name == parameter.name);
         let text = track.and_then(|(_, track)| match track {
             Track::Still(text) => Some(text),
             Track::Keys { keys, .. } => keys.first().map(|(_, text)| text),
         });
-        text.and_then(|text| Value::parse(&knob.param.kind, text)).unwrap_or_else(|| knob.default.clone())
+        text.and_then(|text| Value::parse(&parameter.param.kind, text))
+            .unwrap_or_else(|| parameter.default.clone())
     }
 
     /// True where a parameter changes from frame to frame.
-    pub fn is_animated(&self, knob: &Knob) -> bool {
+    pub fn is_animated(&self, parameter: &Parameter) -> bool {
         self.preset
             .params
             .iter()
-            .any(|(name, track)| *name == knob.name && matches!(track, Track::Keys { .. }))
+            .any(|(name, track)| *name == parameter.name && matches!(track, Track::Keys { .. }))
     }
 
     /// True where a parameter is not what it is where nobody changes it.
-    pub fn differs(&self, knob: &Knob) -> bool {
-        self.is_animated(knob) || self.value(knob) != knob.default
+    pub fn differs(&self, parameter: &Parameter) -> bool {
+        self.is_animated(parameter) || self.value(parameter) != parameter.default
     }
 
     /// Gives a parameter one value for all frames.
-    pub fn set(&mut self, knob: &Knob, value: &Value) {
+    pub fn set(&mut self, parameter: &Parameter, value: &Value) {
         let track = Track::Still(value.text());
-        let place = self.preset.params.iter_mut().find(|(name, _)| *name == knob.name);
+        let place = self.preset.params.iter_mut().find(|(name, _)| *name == parameter.name);
         match place {
-            _ if *value == knob.default => self.reset(knob),
+            _ if *value == parameter.default => self.reset(parameter),
             Some((_, old)) => *old = track,
-            None => self.preset.params.push((knob.name.clone(), track)),
+            None => self.preset.params.push((parameter.name.clone(), track)),
         }
     }
 
     /// Gives a parameter its default.
-    pub fn reset(&mut self, knob: &Knob) {
-        self.preset.params.retain(|(name, _)| *name != knob.name);
+    pub fn reset(&mut self, parameter: &Parameter) {
+        self.preset.params.retain(|(name, _)| *name != parameter.name);
     }
 
     /// Takes a setting of the command line over, if there is such a parameter.
-    pub fn take(&mut self, knobs: &[Knob], setting: &Setting) {
-        let is_meant = |knob: &&Knob| match &setting.node {
-            Some(node) => knob.name == format!("{node}.{}", setting.param),
-            None => knob.param.id == setting.param,
+    pub fn take(&mut self, parameters: &[Parameter], setting: &Setting) {
+        let is_meant = |parameter: &&Parameter| match &setting.node {
+            Some(node) => parameter.name == format!("{node}.{}", setting.param),
+            None => parameter.param.id == setting.param,
         };
-        let Some(knob) = knobs.iter().find(is_meant) else { return };
-        if let Some(value) = Value::parse(&knob.param.kind, &setting.value) {
-            self.set(knob, &value);
+        let Some(parameter) = parameters.iter().find(is_meant) else { return };
+        if let Some(value) = Value::parse(&parameter.param.kind, &setting.value) {
+            self.set(parameter, &value);
         }
     }
 
@@ -299,7 +300,7 @@ impl Look {
     }
 
     /// Settings that turn what it was opened as into it.
-    pub fn settings(&self, knobs: &[Knob]) -> Vec<String> {
+    pub fn settings(&self, parameters: &[Parameter]) -> Vec<String> {
         let mut opened = Self { preset: self.opened.clone(), ..self.clone() };
         if self.rebuilt().is_some() {
             opened.preset.params.clear();
@@ -307,9 +308,10 @@ impl Look {
         let track = |look: &Self, name: &str| {
             look.preset.params.iter().rev().find(|(own, _)| own == name).map(|(_, track)| track.clone())
         };
-        let is_changed = |knob: &&Knob| track(&opened, &knob.name) != track(self, &knob.name);
-        let text = |knob: &Knob| format!("{}={}", knob.name, self.value(knob).text());
-        knobs.iter().filter(is_changed).map(text).collect()
+        let is_changed =
+            |parameter: &&Parameter| track(&opened, &parameter.name) != track(self, &parameter.name);
+        let text = |parameter: &Parameter| format!("{}={}", parameter.name, self.value(parameter).text());
+        parameters.iter().filter(is_changed).map(text).collect()
     }
 
     /// Name of the style for `apply` and `render`: the id of a node, or the path of a graph file.

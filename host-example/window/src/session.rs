@@ -17,7 +17,7 @@ use super::document::kind::Kind;
 use super::file_steps::FileSteps;
 use super::history::History;
 use super::leaving::Leaving;
-use super::look::{Knob, Look};
+use super::look::{Look, Parameter};
 use super::notes::Notes;
 use super::plan::Plan;
 use super::preview::Previews;
@@ -99,7 +99,7 @@ pub struct Session {
     /// Looks in the order of the keys 1, 2, ...
     pub looks: Vec<Arc<Look>>,
     /// Parameters of the present look.
-    pub knobs: Vec<Knob>,
+    pub parameters: Vec<Parameter>,
     /// The list of nodes that the present look is, if it is one.
     pub chain: Option<Chain>,
     /// The part of it that is looked at, if not the whole.
@@ -168,16 +168,16 @@ impl Session {
     /// A window of these looks, at least one, with nothing open.
     ///
     /// # Errors
-    /// As [`Look::knobs`].
+    /// As [`Look::parameters`].
     pub fn new(library: Library, looks: Vec<Look>, settings: Settings) -> Result<Self> {
-        let knobs = looks.first().map_or_else(|| Ok(Vec::new()), |look| look.knobs(&library))?;
+        let parameters = looks.first().map_or_else(|| Ok(Vec::new()), |look| look.parameters(&library))?;
         let chain = looks.first().map_or(Ok(None), |look| look.chain(&library))?;
         Ok(Self {
             fitting: chain::fitting(&library),
             library,
             precision: Precision::default(),
             looks: looks.into_iter().map(Arc::new).collect(),
-            knobs,
+            parameters,
             chain,
             watched: None,
             selected: None,

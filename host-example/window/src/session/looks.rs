@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::Session;
 use crate::chain::Chain;
-use crate::look::{Knob, Look};
+use crate::look::{Look, Parameter};
 use crate::value::Value;
 use isophote_files::error::Result;
 use isophote_finishing::stylize::lengths::Lengths;
@@ -35,8 +35,8 @@ impl Session {
         let is_there = |name: &str| self.chain.as_ref().is_some_and(|chain| chain.has(name));
         self.selected = self.selected.take().filter(|name| is_there(name));
         self.watched = self.watched.take().filter(|watched| is_there(watched.node()));
-        match self.look().knobs(&self.library) {
-            Ok(knobs) => self.knobs = knobs,
+        match self.look().parameters(&self.library) {
+            Ok(parameters) => self.parameters = parameters,
             Err(error) => self.notes.complain(&error),
         }
         self.idle.clear();
@@ -58,14 +58,14 @@ impl Session {
     }
 
     /// Gives a parameter a value.
-    pub fn set(&mut self, knob: &Knob, value: &Value) {
-        self.edit(&knob.name, |look| look.set(knob, value));
+    pub fn set(&mut self, parameter: &Parameter, value: &Value) {
+        self.edit(&parameter.name, |look| look.set(parameter, value));
     }
 
     /// Gives a parameter its default.
-    pub fn reset(&mut self, knob: &Knob) {
+    pub fn reset(&mut self, parameter: &Parameter) {
         self.let_go();
-        self.edit(&knob.name, |look| look.reset(knob));
+        self.edit(&parameter.name, |look| look.reset(parameter));
         self.let_go();
     }
 
@@ -139,8 +139,8 @@ impl Session {
             if lengths.is_some() {
                 look.preset.lengths = lengths;
             }
-            let knobs = look.knobs(&self.library).unwrap_or_default();
-            settings.iter().for_each(|setting| look.take(&knobs, setting));
+            let parameters = look.parameters(&self.library).unwrap_or_default();
+            settings.iter().for_each(|setting| look.take(&parameters, setting));
             self.kept.insert(look.source.clone(), look.preset.clone());
         }
     }
