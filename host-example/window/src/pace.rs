@@ -19,7 +19,7 @@ const SCALES: [f32; 4] = [1.0, 0.5, 1.0 / 3.0, 0.25];
 
 /// Appearance of a picture, as far as an artist can change it.
 #[derive(Clone, Debug, PartialEq)]
-struct Face {
+struct Appearance {
     look: Look,
     view: Option<View>,
     light: Option<Light>,
@@ -34,7 +34,7 @@ pub struct Pace {
     /// Seconds that a whole picture would take.
     whole: Option<f32>,
     scale: f32,
-    face: Option<Face>,
+    appearance: Option<Appearance>,
     moved: Option<Instant>,
 }
 
@@ -45,16 +45,16 @@ impl Pace {
             return 1.0;
         }
         let scenery = session.scenery.as_ref();
-        let face = Some(Face {
+        let appearance = Some(Appearance {
             look: session.seen().into_owned(),
             view: scenery.map(Scenery::view),
             light: scenery.map(|scenery| *scenery.light()),
             shown: session.shown(),
         });
-        if self.face.is_some() && self.face != face {
+        if self.appearance.is_some() && self.appearance != appearance {
             self.moved = Some(Instant::now());
         }
-        self.face = face;
+        self.appearance = appearance;
         let rests = self.moved.is_none_or(|at| at.elapsed() >= REST) && !session.is_playing();
         let whole = self.whole.unwrap_or(GOAL * 2.0);
         let fits = |scale: &&f32| whole * **scale * **scale <= GOAL;

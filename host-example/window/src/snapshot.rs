@@ -49,12 +49,12 @@ impl<F: PartialEq> Snapshots<F> {
     }
 
     /// True where the last one shows this.
-    pub fn shows(&self, face: &F) -> bool {
-        self.taken.as_ref() == Some(face)
+    pub fn shows(&self, state: &F) -> bool {
+        self.taken.as_ref() == Some(state)
     }
 
     /// Copies what was rendered last, which shows this.
-    pub fn take(&mut self, gpu: &Gpu, source: &SceneSource, face: F) {
+    pub fn take(&mut self, gpu: &Gpu, source: &SceneSource, state: F) {
         let targets = source.targets();
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut copied = |target: &Target| Buffer::copied(gpu, &mut encoder, &target.texture);
@@ -72,7 +72,7 @@ impl<F: PartialEq> Snapshots<F> {
         }
         let size = (targets.width, targets.height);
         self.worker.ask(Copied { gpu: gpu.clone(), size, color, guides });
-        self.taken = Some(face);
+        self.taken = Some(state);
     }
 
     /// The frame, when it is there.

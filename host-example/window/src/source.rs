@@ -21,7 +21,7 @@ use isophote_scene::camera::View;
 use isophote_scene::pose::Pose;
 
 /// A scene at a standstill, to be uploaded.
-pub struct Stand {
+pub struct SceneState {
     /// The scene.
     pub scene: Arc<Scene>,
     pose: Pose,
@@ -31,7 +31,7 @@ pub struct Stand {
     ground: bool,
 }
 
-impl Stand {
+impl SceneState {
     /// The scene as it is now.
     pub fn of(scenery: &Scenery) -> Self {
         Self {
@@ -59,8 +59,8 @@ impl SceneSource {
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Input`] when the scene is beyond the limits of the device.
-    pub fn new(gpu: &Gpu, stand: &Stand, size: (u32, u32), usual: IsophoteRequest) -> Result<Self> {
-        let Stand { scene, pose, view, light, background, ground } = stand;
+    pub fn new(gpu: &Gpu, state: &SceneState, size: (u32, u32), usual: IsophoteRequest) -> Result<Self> {
+        let SceneState { scene, pose, view, light, background, ground } = state;
         let mut renderer = Renderer::new(&gpu.device, &gpu.queue, scene, size)?;
         renderer.set_background(background, false)?;
         if *ground {

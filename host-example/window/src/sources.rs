@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::document::frame::Frame;
 use super::pictures::PictureSource;
 use super::session::Session;
-use super::source::{SceneSource, Source, Stand};
+use super::source::{SceneSource, SceneState, Source};
 use super::worker::{Wake, Worker};
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::IsophoteRequest;
@@ -14,7 +14,7 @@ use isophote_scene::Scene;
 
 /// An upload to be made.
 enum Job {
-    Scene { stand: Box<Stand>, size: (u32, u32), usual: IsophoteRequest },
+    Scene { state: Box<SceneState>, size: (u32, u32), usual: IsophoteRequest },
     Picture { frame: Arc<Frame>, scale: f32, usual: IsophoteRequest },
 }
 
@@ -90,7 +90,7 @@ impl Sources {
                     _ => {
                         let usual = IsophoteRequest { scale, ..usual };
                         self.replace(Thing::Scene(Arc::clone(&scenery.scene)), || Job::Scene {
-                            stand: Box::new(Stand::of(scenery)),
+                            state: Box::new(SceneState::of(scenery)),
                             size,
                             usual,
                         });
@@ -193,9 +193,9 @@ fn shows(source: Option<&Source>, frame: &Arc<Frame>) -> bool {
 
 fn upload(gpu: &Gpu, job: Job) -> Uploaded {
     match job {
-        Job::Scene { stand, size, usual } => {
-            let source = SceneSource::new(gpu, &stand, size, usual);
-            (Thing::Scene(stand.scene), source.map(|source| Source::Scene(Box::new(source))))
+        Job::Scene { state, size, usual } => {
+            let source = SceneSource::new(gpu, &state, size, usual);
+            (Thing::Scene(state.scene), source.map(|source| Source::Scene(Box::new(source))))
         }
         Job::Picture { frame, scale, usual } => {
             let source = PictureSource::new(gpu, &frame, scale, usual);

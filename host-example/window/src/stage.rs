@@ -43,7 +43,7 @@ pub struct Stage {
     pending: Option<Pending>,
     canvas: Canvas,
     probe: Probe,
-    snapshots: Snapshots<Face>,
+    snapshots: Snapshots<FrameState>,
     /// Colours under the pointer, before and after, as of the last frame.
     pub probed: Option<[[f32; 4]; 2]>,
     /// Draws the controls.
@@ -114,7 +114,7 @@ struct Made {
 }
 
 /// State that a frame of a scene shows, looks apart.
-type Face = (IsophoteRequest, u64, Option<(View, Light, f32)>);
+type FrameState = (IsophoteRequest, u64, Option<(View, Light, f32)>);
 
 /// Time that recording a part of a picture may take.
 const GOAL: [Duration; 2] = [Duration::from_millis(15), Duration::from_millis(40)];
@@ -228,10 +228,10 @@ impl Stage {
         let is_wanted =
             session.is_covered() && !session.is_playing() && self.progress == Progress::Done && !waits;
         let made = self.made.as_ref().filter(|made| is_wanted && made.asked.scale == 1.0);
-        let face = made.map(|made| (made.asked, made.source, made.scene));
-        if let (Some(Source::Scene(source)), Some(scenery), Some(face)) =
-            (self.sources.present_mut(), &session.scenery, face)
-            && !self.snapshots.shows(&face)
+        let state = made.map(|made| (made.asked, made.source, made.scene));
+        if let (Some(Source::Scene(source)), Some(scenery), Some(state)) =
+            (self.sources.present_mut(), &session.scenery, state)
+            && !self.snapshots.shows(&state)
         {
             if source.add_rest_positions() {
                 self.looks.iter_mut().for_each(LiveLook::unbind);
@@ -239,7 +239,7 @@ impl Stage {
                 source.encode(&mut encoder, scenery);
                 self.gpu.queue.submit([encoder.finish()]);
             }
-            self.snapshots.take(&self.gpu, source, face);
+            self.snapshots.take(&self.gpu, source, state);
         }
         taken.transpose()
     }
