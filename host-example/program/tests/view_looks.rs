@@ -12,7 +12,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use isophote_finishing::stylize::preset::Preset;
 use isophote_loader::Library;
 use isophote_window::browser::entry::{Content, Group};
-use isophote_window::browser::listing::{self, Listing, Question};
+use isophote_window::browser::listing::{self, Listing, ListingRequest};
 use isophote_window::document::{Document, Options};
 use isophote_window::leaving::Leaving;
 use isophote_window::look::Look;
@@ -46,7 +46,7 @@ fn presets() -> TempDir {
 }
 
 fn read(folder: &Path) -> Listing {
-    listing::read(Question { library: library(), folders: vec![folder.to_owned()] })
+    listing::read(ListingRequest { library: library(), folders: vec![folder.to_owned()] })
 }
 
 /// A window with a picture and the looks of a folder, in which two looks are at hand.

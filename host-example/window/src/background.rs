@@ -12,7 +12,7 @@ use super::dialogs;
 use super::document::kind::Kind;
 use super::document::{Document, Options};
 use super::export::{self, Export, Progress, State};
-use super::idle::{self, Question};
+use super::idle::{self, IdleControls, IdleRequest};
 use super::look::Look;
 use super::look_work::LookWork;
 use super::pictures;
@@ -81,14 +81,14 @@ impl Dialog {
 /// The work beside the window.
 pub struct Background {
     opener: Worker<Job, Result<Opened>>,
-    critic: Worker<Question, idle::Answer>,
+    idle_search: Worker<IdleRequest, IdleControls>,
     /// Reads looks again whose files have changed.
     reader: Worker<(Library, PathBuf), (PathBuf, Result<Look>)>,
     watch: Watch,
     looks: LookWork,
     /// Makes the pictures of the start small.
     reducer: Worker<(), Vec<Arc<ColorImage>>>,
-    /// The last question to the critic.
+    /// The last request to the search for idle controls.
     asked: Option<(Look, Option<IsophoteRequest>)>,
     chosen: Receiver<(Dialog, Result<Option<PathBuf>>)>,
     choose: Sender<(Dialog, Result<Option<PathBuf>>)>,
@@ -107,7 +107,7 @@ impl Background {
         let (choose, chosen) = channel();
         Ok(Self {
             opener: Worker::new("open", Arc::clone(wake), open)?,
-            critic: Worker::new("controls", Arc::clone(wake), idle::answer)?,
+            idle_search: Worker::new("controls", Arc::clone(wake), idle::idle_controls)?,
             reader: Worker::new("look again", Arc::clone(wake), |(library, path): (Library, PathBuf)| {
                 let read = Look::open(&library, &path);
                 (path, read)
@@ -189,18 +189,18 @@ impl Background {
         if let Some((source, read)) = self.reader.answer() {
             session.reload(&source, read);
         }
-        if let Some(answer) = self.critic.answer()
-            && answer.look == *session.look()
-            && answer.asked == asked(session)
+        if let Some(found) = self.idle_search.answer()
+            && found.look == *session.look()
+            && found.asked == asked(session)
         {
-            session.idle = answer.idle;
+            session.idle = found.idle;
         }
         let asked = asked(session);
         let is_known = self.asked.as_ref().is_some_and(|(look, of)| look == session.look() && *of == asked);
         if !is_known && session.has_picture() {
             self.asked = Some((session.look().clone(), asked));
             let (library, look) = (session.library.clone(), session.look().clone());
-            self.critic.ask(Question { library, look, asked });
+            self.idle_search.ask(IdleRequest { library, look, asked });
         }
     }
 

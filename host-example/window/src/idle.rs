@@ -14,7 +14,7 @@ use isophote_loader::abi::IsophoteRequest;
 const SIDE: u32 = 512;
 
 /// A look about whose controls something is to be known.
-pub struct Question {
+pub struct IdleRequest {
     /// The library.
     pub library: Library,
     /// The look.
@@ -24,7 +24,7 @@ pub struct Question {
 }
 
 /// The controls that are known to have none.
-pub struct Answer {
+pub struct IdleControls {
     /// The look.
     pub look: Look,
     /// Request that it was found for.
@@ -34,12 +34,12 @@ pub struct Answer {
 }
 
 /// Tries all controls. What cannot be tried has an effect.
-pub fn answer(question: Question) -> Answer {
-    let idle = find(&question).unwrap_or_default();
-    Answer { look: question.look, asked: question.asked, idle }
+pub fn idle_controls(request: IdleRequest) -> IdleControls {
+    let idle = find(&request).unwrap_or_default();
+    IdleControls { look: request.look, asked: request.asked, idle }
 }
 
-fn find(Question { library, look, asked }: &Question) -> Result<HashSet<String>> {
+fn find(IdleRequest { library, look, asked }: &IdleRequest) -> Result<HashSet<String>> {
     let mut idle = HashSet::new();
     let Some(style) = look.style(library)? else { return Ok(idle) };
     let usual = frame_request(library, &style, (SIDE, SIDE))?;

@@ -19,7 +19,7 @@ const MOST_FILES: usize = 2000;
 
 /// Request for a listing.
 #[derive(Debug)]
-pub struct Question {
+pub struct ListingRequest {
     /// The library.
     pub library: Library,
     /// The user's folders.
@@ -51,7 +51,7 @@ pub struct Found {
 }
 
 /// Reads everything anew.
-pub fn read(Question { library, folders }: Question) -> Listing {
+pub fn read(ListingRequest { library, folders }: ListingRequest) -> Listing {
     let mut listing = Listing::default();
     let mut seen = HashSet::new();
     for folder in folders {
