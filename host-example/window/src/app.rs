@@ -170,7 +170,7 @@ impl App {
         if !context.egui_is_using_pointer() && !context.text_edit_focused() {
             session.let_go();
         }
-        let copied = self.background.grant(session);
+        let copied = self.background.carry_out(session);
         copied.into_iter().for_each(|text| input.set_clipboard_text(text));
         session.advance();
         let scale = self.pace.scale(session);
@@ -186,7 +186,7 @@ impl App {
         let delay = delay.filter(|delay| *delay < Duration::from_secs(3600));
         self.due = delay.map(|delay| Instant::now() + delay);
         if drawn == Drawn::Skipped {
-            self.entitle();
+            self.update_title();
             self.want(Duration::from_millis(10));
         }
         if self.session.reel.as_ref().is_some_and(Reel::is_waiting) {
@@ -230,7 +230,7 @@ impl App {
             let size = window.inner_size();
             session.record.count(&look, (size.width, size.height), took);
         }
-        self.entitle();
+        self.update_title();
         self.revivals = 0;
         if let Some(delay) = self.pace.next(drawn, took) {
             self.want(delay);
@@ -245,8 +245,8 @@ impl App {
     fn attend(&mut self) {
         self.background.collect(&mut self.session);
         // There is nothing to copy from what is not seen.
-        let _ = self.background.grant(&mut self.session);
-        self.entitle();
+        let _ = self.background.carry_out(&mut self.session);
+        self.update_title();
     }
 
     /// Follows the export that the window waits for before it closes; says whether it closes now.
@@ -261,7 +261,7 @@ impl App {
     }
 
     /// Lets the title tell what is shown: at once, or with a later frame where it did so a moment ago.
-    fn entitle(&mut self) {
+    fn update_title(&mut self) {
         let (Some(window), title) = (&self.window, self.session.title()) else { return };
         let pause = self.titled.as_ref().map(|(at, _)| TITLE.saturating_sub(at.elapsed()));
         match pause {

@@ -205,7 +205,7 @@ impl Background {
     }
 
     /// Does what the controls have asked for, and returns what is to be put on the clipboard.
-    pub fn grant(&mut self, session: &mut Session) -> Option<String> {
+    pub fn carry_out(&mut self, session: &mut Session) -> Option<String> {
         let mut copied = None;
         let mut files = Vec::new();
         for request in std::mem::take(&mut session.requests) {
@@ -253,7 +253,7 @@ impl Background {
         if !session.has_picture() && !std::mem::replace(&mut session.thumbnails.are_asked, true) {
             self.reducer.ask(());
         }
-        if let Err(error) = self.looks.grant(session) {
+        if let Err(error) = self.looks.carry_out(session) {
             session.notes.complain(&error);
         }
         copied

@@ -46,7 +46,7 @@ impl LookWork {
     ///
     /// # Errors
     /// As [`Queue::new`].
-    pub fn grant(&mut self, session: &mut Session) -> Result<()> {
+    pub fn carry_out(&mut self, session: &mut Session) -> Result<()> {
         let is_open = session.browser.is_open;
         self.watch.follow(if is_open { session.browser.watched.clone() } else { Vec::new() });
         if is_open && (std::mem::take(&mut session.browser.is_outdated) | self.watch.has_changed()) {
