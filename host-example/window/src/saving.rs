@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::browser::titling::Words;
+use super::browser::title_edit::Words;
 use super::look::Look;
 use isophote_files::error::{Error, Result};
 

@@ -3,7 +3,7 @@
 pub mod entry;
 pub mod filter;
 pub mod listing;
-pub mod titling;
+pub mod title_edit;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 use self::entry::{Entry, Group};
 use self::filter::Filter;
 use self::listing::{Found, Listing};
-use self::titling::Titling;
+use self::title_edit::TitleEdit;
 use isophote_loader::Library;
 
 /// Most looks that are compared at once.
@@ -35,7 +35,7 @@ pub struct Browser {
     /// True where the looks are to be read anew.
     pub is_outdated: bool,
     /// A name and tags that are being changed.
-    pub titling: Option<Titling>,
+    pub title_edit: Option<TitleEdit>,
     /// The file that is to be deleted, if its owner agrees.
     pub deleting: Option<PathBuf>,
     /// Files and folders that may change.

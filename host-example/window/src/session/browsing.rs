@@ -7,7 +7,7 @@ use super::Session;
 use crate::browser::MOST_COMPARED;
 use crate::browser::entry::Content;
 use crate::browser::listing::Listing;
-use crate::browser::titling::{self, Titling, Words};
+use crate::browser::title_edit::{self, TitleEdit, Words};
 use crate::comparison::Comparison;
 use crate::document::frame::Frame;
 use crate::look::Look;
@@ -141,14 +141,14 @@ impl Session {
     pub fn ask_title(&mut self, id: u64) {
         let Some(entry) = self.browser.entry(id).filter(|entry| entry.has_title()) else { return };
         let words = Words::of(&entry.name, &entry.title);
-        self.browser.titling = Some(Titling { file: entry.source.clone(), words });
+        self.browser.title_edit = Some(TitleEdit { file: entry.source.clone(), words });
     }
 
     /// Writes the name and the tags that were typed.
     pub fn write_title(&mut self) {
-        let Some(Titling { file, words }) = self.browser.titling.take() else { return };
+        let Some(TitleEdit { file, words }) = self.browser.title_edit.take() else { return };
         let title = words.title(&file);
-        self.edit_file(&file, || titling::write(&file, &title), |session| session.retitle(&file, &title));
+        self.edit_file(&file, || title_edit::write(&file, &title), |session| session.retitle(&file, &title));
     }
 
     /// The window's own copies of a look whose file has a new title.

@@ -61,7 +61,7 @@ impl Session {
     pub fn has_dialog(&self) -> bool {
         self.saving.is_some()
             || self.plan.is_some()
-            || self.browser.titling.is_some()
+            || self.browser.title_edit.is_some()
             || self.browser.deleting.is_some()
     }
 
@@ -75,7 +75,7 @@ impl Session {
         if self.shows_help {
             self.shows_help = false;
         } else if self.browser.deleting.take().is_some()
-            || self.browser.titling.take().is_some()
+            || self.browser.title_edit.take().is_some()
             || self.saving.take().is_some()
             || self.plan.take().is_some()
         {

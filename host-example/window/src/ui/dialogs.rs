@@ -3,7 +3,7 @@
 use egui::{Align2, Button, Context, Grid, RichText, TextEdit, Ui};
 
 use super::theme;
-use crate::browser::titling::Words;
+use crate::browser::title_edit::Words;
 use crate::session::{Request, Session};
 
 /// Width of text fields in points.
@@ -12,7 +12,7 @@ const FIELD: f32 = 340.0;
 /// Shows those that are open.
 pub fn show(context: &Context, session: &mut Session) {
     saving(context, session);
-    titling(context, session);
+    title_edit(context, session);
     deleting(context, session);
 }
 
@@ -90,21 +90,21 @@ fn saving(context: &Context, session: &mut Session) {
     }
 }
 
-fn titling(context: &Context, session: &mut Session) {
-    let Some(mut titling) = session.browser.titling.take() else { return };
+fn title_edit(context: &Context, session: &mut Session) {
+    let Some(mut title_edit) = session.browser.title_edit.take() else { return };
     let (mut open, mut closes, mut done) = (true, false, false);
     window(context, "Name and tags", &mut open, |ui| {
-        Grid::new("titling").num_columns(2).spacing([18.0, 8.0]).show(ui, |ui| {
-            fields(ui, &mut titling.words);
+        Grid::new("title_edit").num_columns(2).spacing([18.0, 8.0]).show(ui, |ui| {
+            fields(ui, &mut title_edit.words);
         });
-        file(ui, &titling.file);
+        file(ui, &title_edit.file);
         ui.horizontal(|ui| {
             done = ui.add(Button::new("Save").fill(theme::CHOSEN)).clicked();
             closes = ui.button("Cancel").clicked();
         });
     });
     if open && !closes {
-        session.browser.titling = Some(titling);
+        session.browser.title_edit = Some(title_edit);
     }
     if done {
         session.write_title();

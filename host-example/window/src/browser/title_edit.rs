@@ -21,7 +21,7 @@ pub struct Words {
 
 /// A title that is being changed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Titling {
+pub struct TitleEdit {
     /// The file.
     pub file: PathBuf,
     /// Words that are typed.
