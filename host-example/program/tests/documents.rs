@@ -13,8 +13,8 @@ use isophote_example::kernels::Kernels;
 use isophote_example::plan_runner::PlanRunner;
 use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::apply::filter::{self, Filter, Look};
+use isophote_finishing::apply::frame_cache::{CachedFrame, Window, guide_bit};
 use isophote_finishing::apply::memory::Budget;
-use isophote_finishing::apply::reel::{Held, Window, guide_bit};
 use isophote_finishing::stylize::style::Style;
 use isophote_loader::abi::IsophoteRequest;
 use isophote_loader::{Control, Input, Library};
@@ -69,7 +69,7 @@ fn applied(path: &Path, name: &str, space: Option<Space>, backend: Backend) -> P
     let source = read::read(path, &Selection { wanted, ..Selection::default() }).expect("a picture");
     let budget = Budget::new(u64::MAX, 1);
     let format = if source.exr.is_some() { Format::Exr } else { Format::Tiff };
-    let own = Arc::new(Held::new(None, source, true, budget.share()));
+    let own = Arc::new(CachedFrame::new(None, source, true, budget.share()));
     let exr = own.take_exr();
     let window = Window { frames: vec![Arc::clone(&own)], own };
     let mut filter = Filter::new(library, vec![Look::whole(style)], backend, space, 0).expect("a filter");

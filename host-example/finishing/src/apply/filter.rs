@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use super::asked::Asked;
 use super::backend::Backend;
+use super::frame_cache::{Window, guide_bit};
 use super::memory::Needs;
-use super::reel::{Window, guide_bit};
 use crate::stylize::style::Style;
 use isophote_example::history::{is_stage, split};
 use isophote_files::error::{AtPlace, Error, Result};

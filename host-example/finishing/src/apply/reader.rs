@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::filter::Planner;
+use super::frame_cache::{CachedFrame, Window};
 use super::masks::Masks;
 use super::memory::{Budget, Needs, too_large};
-use super::reel::{Held, Window};
 use super::tasks::Task;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::Pattern;
@@ -44,7 +44,7 @@ pub struct Reader<'a> {
     /// The first frame, where it was opened before.
     first: Option<(PathBuf, Opened)>,
     /// Frames that the last one depended on; none where a file cannot be read.
-    held: Vec<(i64, Option<Arc<Held<'a>>>)>,
+    held: Vec<(i64, Option<Arc<CachedFrame<'a>>>)>,
 }
 
 impl<'a> Reader<'a> {
@@ -100,7 +100,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A frame, from memory or from its file.
-    fn frame(&mut self, number: i64, path: &Path, span: u64) -> Result<Arc<Held<'a>>> {
+    fn frame(&mut self, number: i64, path: &Path, span: u64) -> Result<Arc<CachedFrame<'a>>> {
         if let Some((_, held)) = self.held.iter().find(|(n, _)| *n == number)
             && let Some(held) = held
         {
@@ -114,7 +114,7 @@ impl<'a> Reader<'a> {
 
     /// Reads a frame when there is room for its file, and decodes it when there is room for all that it needs; `span` frames
     /// are held together.
-    fn read(&mut self, path: &Path, number: Option<i64>, span: u64) -> Result<Held<'a>> {
+    fn read(&mut self, path: &Path, number: Option<i64>, span: u64) -> Result<CachedFrame<'a>> {
         let Footage { selection, budget, .. } = self.footage;
         let share = budget.share();
         let grow = |needs: Needs| {
@@ -139,7 +139,7 @@ impl<'a> Reader<'a> {
         }
         let is_written = number.is_none_or(|number| self.tasks.contains(&number));
         self.footage.masks.add(&mut source, number)?;
-        Ok(Held::new(number, source, is_written, share))
+        Ok(CachedFrame::new(number, source, is_written, share))
     }
 }
 

@@ -8,8 +8,8 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{Builder, Scope, ScopedJoinHandle};
 
 use super::filter::{Filter, Filtered};
+use super::frame_cache::{CachedFrame, Window};
 use super::reader::Reader;
-use super::reel::{Held, Window};
 use super::report::{Outcome, Report};
 use super::tasks::Task;
 use isophote_files::error::{Error, Result};
@@ -50,7 +50,7 @@ struct Ready<'a> {
 /// A frame that was filtered.
 struct Done<'a> {
     task: &'a Task,
-    own: Arc<Held<'a>>,
+    own: Arc<CachedFrame<'a>>,
     exr: Option<ExrFile>,
     filtered: Filtered,
 }

@@ -13,9 +13,9 @@ use super::input::Input;
 use super::process::{End, Process, at};
 use super::stream::Stream;
 use crate::apply::filter::Filter;
+use crate::apply::frame_cache::{CachedFrame, Window};
 use crate::apply::masks::Masks;
 use crate::apply::memory::Budget;
-use crate::apply::reel::{Held, Window};
 use crate::apply::report::{Outcome, Report};
 use crate::apply::tasks::Task;
 use isophote_files::error::{Error, Result};
@@ -185,10 +185,10 @@ impl Job<'_> {
             let mut source = Source { pictures: vec![picture], state, profile: None, exr: None };
             self.masks.add(&mut source, Some(number))?;
             source.check()?;
-            Ok::<_, Error>(Arc::new(Held::new(Some(number), source, false, budget.share())))
+            Ok::<_, Error>(Arc::new(CachedFrame::new(Some(number), source, false, budget.share())))
         };
         let mut decoded = decoded.into_iter().zip(1..).map(hold);
-        let mut frames: VecDeque<Arc<Held<'_>>> = VecDeque::new();
+        let mut frames: VecDeque<Arc<CachedFrame<'_>>> = VecDeque::new();
         let (mut encoder, mut count) = (None::<Encoder>, 0);
         loop {
             if self.stop.is_requested() {

@@ -13,10 +13,10 @@ use isophote_files::limits::Threads;
 use isophote_files::replacing::Consent;
 use isophote_files::stop::Stop;
 use isophote_finishing::apply::filter::{Filter, Planner};
+use isophote_finishing::apply::frame_cache::{CachedFrame, Window};
 use isophote_finishing::apply::masks::Masks;
 use isophote_finishing::apply::memory::Budget;
 use isophote_finishing::apply::reader::{Footage, Reader};
-use isophote_finishing::apply::reel::{Held, Window};
 use isophote_finishing::apply::report::Report;
 use isophote_finishing::apply::sequence::Run;
 use isophote_finishing::apply::tasks::Task;
@@ -73,7 +73,7 @@ pub fn measure(
     // The first of these runs makes the plan and is not counted.
     for (at, task) in tasks.iter().take(1).chain(&tasks).enumerate() {
         let source = read::read(&task.input, &selection)?;
-        let own = Arc::new(Held::new(task.frame, source, true, budget.share()));
+        let own = Arc::new(CachedFrame::new(task.frame, source, true, budget.share()));
         let (exr, window) = (own.take_exr(), Window { own: Arc::clone(&own), frames: vec![own] });
         let started = Instant::now();
         filters[0].run("a frame", &window, exr.as_ref(), Format::Exr, &mut |_| {})?;

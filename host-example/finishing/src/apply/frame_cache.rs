@@ -13,7 +13,7 @@ use isophote_pictures::read::Source;
 
 /// A frame that was read.
 #[derive(Debug)]
-pub struct Held<'a> {
+pub struct CachedFrame<'a> {
     /// Its number in a sequence.
     pub number: Option<i64>,
     /// Source that was read, without what is only written.
@@ -26,7 +26,7 @@ pub struct Held<'a> {
     _share: Share<'a>,
 }
 
-impl<'a> Held<'a> {
+impl<'a> CachedFrame<'a> {
     /// A frame that was read; `is_written` says whether its file is needed for a result.
     pub fn new(number: Option<i64>, mut source: Source, is_written: bool, share: Share<'a>) -> Self {
         let exr = source.exr.take().filter(|_| is_written);
@@ -53,9 +53,9 @@ impl<'a> Held<'a> {
 #[derive(Clone, Debug)]
 pub struct Window<'a> {
     /// The frame itself.
-    pub own: Arc<Held<'a>>,
+    pub own: Arc<CachedFrame<'a>>,
     /// It and its neighbours, in any order.
-    pub frames: Vec<Arc<Held<'a>>>,
+    pub frames: Vec<Arc<CachedFrame<'a>>>,
 }
 
 impl Window<'_> {
@@ -75,7 +75,7 @@ impl Window<'_> {
     }
 
     /// Picture `at` in a frame, if that is like the frame itself.
-    fn alike(&self, at: usize, frame: i64) -> Option<(&Held<'_>, &Picture)> {
+    fn alike(&self, at: usize, frame: i64) -> Option<(&CachedFrame<'_>, &Picture)> {
         let held = self.frames.iter().find(|held| held.number.unwrap_or_default() == frame)?;
         let (own, other): (&Picture, &Picture) =
             (self.own.source.pictures.get(at)?, held.source.pictures.get(at)?);
