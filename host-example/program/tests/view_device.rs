@@ -15,7 +15,7 @@ use isophote_scene::Scene;
 use isophote_window::app::{App, Event};
 use isophote_window::document::{Document, Options};
 use isophote_window::look::Look;
-use isophote_window::reel::Reel;
+use isophote_window::playback::Playback;
 use isophote_window::scenery::{Scenery, Staging};
 use isophote_window::session::Session;
 use isophote_window::settings::Settings;
@@ -120,7 +120,7 @@ fn session(folder: &Path, styles: &[&str], size: (u32, u32)) -> Session {
     let file = folder.join("photo.png");
     support::picture(size.0, size.1).save(&file).unwrap();
     let document = Document::open(&file, &Options::default()).unwrap();
-    session.show_reel(Reel::new(document).unwrap());
+    session.show_playback(Playback::new(document).unwrap());
     session
 }
 

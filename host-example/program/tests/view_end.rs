@@ -16,7 +16,7 @@ use isophote_loader::Library;
 use isophote_window::document::{Document, Options};
 use isophote_window::leaving::Leaving;
 use isophote_window::look::Look;
-use isophote_window::reel::Reel;
+use isophote_window::playback::Playback;
 use isophote_window::session::Session;
 use isophote_window::settings::Settings;
 use isophote_window::ui;
@@ -48,7 +48,7 @@ fn session(styles: &[&Path], file: &Path) -> Session {
     let library = Library::from_file(support::library()).unwrap();
     let looks = styles.iter().map(|style| Look::open(&library, style).unwrap()).collect();
     let mut session = Session::new(library, looks, Settings::default()).unwrap();
-    session.show_reel(Reel::new(Document::open(file, &Options::default()).unwrap()).unwrap());
+    session.show_playback(Playback::new(Document::open(file, &Options::default()).unwrap()).unwrap());
     session
 }
 

@@ -11,7 +11,7 @@ use egui::accesskit::Role;
 use isophote_loader::Library;
 use isophote_window::document::{Document, Options};
 use isophote_window::look::Look;
-use isophote_window::reel::Reel;
+use isophote_window::playback::Playback;
 use isophote_window::session::Session;
 use isophote_window::settings::Settings;
 
@@ -36,7 +36,7 @@ fn session(style: &Path, file: &Path) -> Session {
     let library = Library::from_file(support::library()).unwrap();
     let look = Look::open(&library, style).unwrap();
     let mut session = Session::new(library, vec![look], Settings::default()).unwrap();
-    session.show_reel(Reel::new(Document::open(file, &Options::default()).unwrap()).unwrap());
+    session.show_playback(Playback::new(Document::open(file, &Options::default()).unwrap()).unwrap());
     session
 }
 

@@ -16,7 +16,7 @@ use isophote_window::browser::listing::{self, Listing, ListingRequest};
 use isophote_window::document::{Document, Options};
 use isophote_window::leaving::Leaving;
 use isophote_window::look::Look;
-use isophote_window::reel::Reel;
+use isophote_window::playback::Playback;
 use isophote_window::session::{Request, Session};
 use isophote_window::settings::Settings;
 use isophote_window::ui;
@@ -57,7 +57,7 @@ fn session(folder: &Path) -> Session {
     let picture = folder.join("picture.png");
     support::picture(90, 60).save(&picture).expect("the folder is writable");
     let document = Document::open(&picture, &Options::default()).expect("a picture");
-    session.show_reel(Reel::new(document).expect("a picture"));
+    session.show_playback(Playback::new(document).expect("a picture"));
     session.settings.add_look_folder(folder);
     session.toggle_browser();
     session.list(read(folder));
@@ -304,7 +304,7 @@ fn a_file_is_deleted_only_when_that_was_asked_and_undo_brings_it_back() {
     // It is kept until the window is closed, whatever is opened meanwhile.
     let session = harness.state_mut();
     let picture = Document::open(&folder.path().join("picture.png"), &Options::default()).expect("a picture");
-    session.show_reel(Reel::new(picture).expect("a picture"));
+    session.show_playback(Playback::new(picture).expect("a picture"));
     session.undo();
     assert_eq!(fs::read(&file).expect("it is back"), bytes);
     session.redo();
@@ -423,7 +423,7 @@ fn up_to_six_looks_are_compared_and_one_is_taken() {
     // Another picture is seen by the same looks.
     let other = folder.path().join("picture.png");
     let document = Document::open(&other, &Options::default()).expect("a picture");
-    harness.state_mut().show_reel(Reel::new(document).expect("a picture"));
+    harness.state_mut().show_playback(Playback::new(document).expect("a picture"));
     harness.run_ok();
     assert!(harness.query_by_role_and_label(Role::Button, "Take Linocut").is_some());
     // Escape goes back to where it came from.

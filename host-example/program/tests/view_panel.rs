@@ -13,7 +13,7 @@ use isophote_pictures::floats::{self, Layer, Picture, Precision};
 use isophote_scene::Scene;
 use isophote_window::document::{Document, Options};
 use isophote_window::look::Look;
-use isophote_window::reel::Reel;
+use isophote_window::playback::Playback;
 use isophote_window::scenery::{Scenery, Staging};
 use isophote_window::session::{Request, Session};
 use isophote_window::settings::Settings;
@@ -185,7 +185,7 @@ fn layers_are_chosen_from_a_list() {
     write_layers(&file);
     let mut session = session();
     let document = Document::open(&file, &Options::default()).unwrap();
-    session.show_reel(Reel::new(document).unwrap());
+    session.show_playback(Playback::new(document).unwrap());
     let mut harness = harness(session);
     harness.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Layer").click();
     harness.run_ok();

@@ -18,8 +18,8 @@ use super::clicks;
 use super::leaving::Leaving;
 use super::pace::Pace;
 use super::panel::Textures;
+use super::playback::Playback;
 use super::record::Hold;
-use super::reel::Reel;
 use super::session::{Request, Session};
 use super::stage::{Drawn, Stage};
 use super::ui;
@@ -189,7 +189,7 @@ impl App {
             self.update_title();
             self.want(Duration::from_millis(10));
         }
-        if self.session.reel.as_ref().is_some_and(Reel::is_waiting) {
+        if self.session.playback.as_ref().is_some_and(Playback::is_waiting) {
             self.want(Duration::from_millis(20));
         }
         if !problems.is_empty() || !self.late.is_empty() || self.session.busy != was_busy {

@@ -17,7 +17,7 @@ use super::look::Look;
 use super::look_work::LookWork;
 use super::pictures;
 use super::plan::What;
-use super::reel::Reel;
+use super::playback::Playback;
 use super::samples::{self, SAMPLES, Sample};
 use super::saving::Saving;
 use super::scenery::{Scenery, Staging};
@@ -48,8 +48,8 @@ enum Job {
 /// Something that was opened.
 enum Opened {
     Scene(Box<Scene>, Option<PathBuf>),
-    Pictures(Box<Reel>),
-    Again(Box<Reel>),
+    Pictures(Box<Playback>),
+    Again(Box<Playback>),
     /// One of several, with what is wrong with others and how many were left.
     Among(Box<Opened>, Vec<Error>, usize),
     Look(Box<Look>),
@@ -269,10 +269,10 @@ impl Background {
         let started = preset.and_then(|preset| {
             let mut job = export::Job::new(plan.kind, file, Path::new(&plan.path), preset);
             (job.frames, job.turntable) = (plan.frames(), plan.what == What::Turntable);
-            let mut words: Vec<String> = match &session.reel {
-                Some(reel) => {
-                    job.rate = reel.rate;
-                    command::selection(reel)
+            let mut words: Vec<String> = match &session.playback {
+                Some(playback) => {
+                    job.rate = playback.rate;
+                    command::selection(playback)
                 }
                 None => {
                     let [width, height] = plan.size;
@@ -283,7 +283,7 @@ impl Background {
             };
             match plan.what {
                 What::Animation => words.extend(command::animation(session)),
-                What::Picture if session.reel.is_none() => words.extend(command::moment(session)),
+                What::Picture if session.playback.is_none() => words.extend(command::moment(session)),
                 What::Picture | What::Turntable | What::Frames => {}
             }
             words.extend(command::precision(session));
@@ -380,12 +380,12 @@ fn open(job: Job) -> Result<Opened> {
         Job::Demo => Opened::Scene(Box::new(demo::scene()?), None),
         Job::Sample(sample, folder) => {
             let document = Document::open(&sample.file_in(&folder)?, &Options::default())?;
-            Opened::Pictures(Box::new(Reel::new(document)?))
+            Opened::Pictures(Box::new(Playback::new(document)?))
         }
         Job::Files(library, files) => first_of(&library, files)?,
         Job::Again(path, selection) => {
             let options = Options { selection: *selection, ..Options::default() };
-            Opened::Again(Box::new(Reel::new(Document::open(&path, &options)?)?))
+            Opened::Again(Box::new(Playback::new(Document::open(&path, &options)?)?))
         }
         Job::Look(library, path) => Opened::Look(Box::new(Look::open(&library, &path)?)),
         Job::Surroundings(path) => {
@@ -417,13 +417,13 @@ fn file(library: &Library, path: PathBuf) -> Result<Opened> {
     let document = Document::open(&path, &Options::default())?;
     Ok(match document.kind() {
         Kind::Scene => Opened::Scene(Box::new(Scene::load(&path, None)?), Some(path)),
-        _ => Opened::Pictures(Box::new(Reel::new(document)?)),
+        _ => Opened::Pictures(Box::new(Playback::new(document)?)),
     })
 }
 
 /// Request of looks on the picture that is open.
 fn asked(session: &Session) -> Option<IsophoteRequest> {
-    let (frame, _) = session.reel.as_ref()?.frame(false)?;
+    let (frame, _) = session.playback.as_ref()?.frame(false)?;
     session.library.request((1, 1)).ok().map(|usual| pictures::request(frame, 1.0, usual))
 }
 
@@ -439,9 +439,9 @@ fn take(session: &mut Session, opened: Opened) {
                     .say(format!("{files} dropped; the first that opens is shown, {}", session.name));
             }
         }
-        Opened::Again(reel) => {
-            if session.file.as_deref() == Some(reel.document.path()) {
-                session.show_again(*reel);
+        Opened::Again(playback) => {
+            if session.file.as_deref() == Some(playback.document.path()) {
+                session.show_again(*playback);
             }
         }
         Opened::Scene(scene, file) => {
@@ -459,7 +459,7 @@ fn take(session: &mut Session, opened: Opened) {
             let aspect = area.width.max(1.0) / area.height.max(1.0);
             session.show_scene(Scenery::new(*scene, staging, aspect), file, name);
         }
-        Opened::Pictures(reel) => session.show_reel(*reel),
+        Opened::Pictures(playback) => session.show_playback(*playback),
         Opened::Look(look) => session.take(Arc::from(look)),
         Opened::Surroundings(background, path) => {
             session.relight("surroundings", |lighting| {

@@ -20,9 +20,9 @@ use super::leaving::Leaving;
 use super::look::{Look, Parameter};
 use super::notes::Notes;
 use super::plan::Plan;
+use super::playback::Playback;
 use super::preview::Previews;
 use super::record::Record;
-use super::reel::Reel;
 use super::samples::Thumbnails;
 use super::saving::Saving;
 use super::scenery::{Lighting, Scenery};
@@ -115,7 +115,7 @@ pub struct Session {
     /// The scene that is open.
     pub scenery: Option<Scenery>,
     /// The picture, sequence or video that is open, where no scene is.
-    pub reel: Option<Reel>,
+    pub playback: Option<Playback>,
     /// The file that is open.
     pub file: Option<PathBuf>,
     /// Name of what is open, for the title.
@@ -184,7 +184,7 @@ impl Session {
             idle: HashSet::new(),
             compared: None,
             scenery: None,
-            reel: None,
+            playback: None,
             file: None,
             name: String::new(),
             viewport: Viewport::default(),
@@ -233,7 +233,7 @@ impl Session {
 
     /// True where there is anything to look at.
     pub fn has_picture(&self) -> bool {
-        self.scenery.is_some() || self.reel.is_some()
+        self.scenery.is_some() || self.playback.is_some()
     }
 
     /// True where there is such a thing to show of the picture.
@@ -245,22 +245,22 @@ impl Session {
             Overlay::ObjectId => Guide::ObjectId,
             Overlay::Motion => Guide::Motion,
         };
-        let frame = self.reel.as_ref().and_then(|reel| reel.frame(false));
+        let frame = self.playback.as_ref().and_then(|playback| playback.frame(false));
         self.scenery.is_some() || frame.is_some_and(|(frame, _)| frame.guide(guide).is_some())
     }
 
     /// True while time passes.
     pub fn is_playing(&self) -> bool {
         self.scenery.as_ref().is_some_and(|scenery| scenery.playing)
-            || self.reel.as_ref().is_some_and(|reel| reel.playing)
+            || self.playback.as_ref().is_some_and(|playback| playback.playing)
     }
 
     /// Starts or stops time.
     pub fn toggle_playing(&mut self) {
         if let Some(scenery) = &mut self.scenery {
             scenery.toggle_playing();
-        } else if let Some(reel) = &mut self.reel {
-            reel.toggle_playing();
+        } else if let Some(playback) = &mut self.playback {
+            playback.toggle_playing();
         }
     }
 
@@ -286,21 +286,21 @@ impl Session {
         if let Some(scenery) = &mut self.scenery {
             scenery.advance();
         }
-        if let Some(Err(error)) = self.reel.as_mut().map(Reel::advance) {
+        if let Some(Err(error)) = self.playback.as_mut().map(Playback::advance) {
             self.notes.complain(&error);
         }
     }
 
     /// Puts away what is open.
     pub fn close(&mut self) {
-        (self.scenery, self.reel) = (None, None);
+        (self.scenery, self.playback) = (None, None);
         self.begin(None, String::new());
     }
 
     /// Size of the picture as it is placed: what is rendered smaller for the moment is shown as large.
     pub fn nominal_size(&self) -> (u32, u32) {
         let [_, half] = self.viewport.halves();
-        self.reel.as_ref().map_or((half.width as u32, half.height as u32), Reel::size)
+        self.playback.as_ref().map_or((half.width as u32, half.height as u32), Playback::size)
     }
 
     /// The pictures on the left and on the right of the split.
@@ -317,25 +317,25 @@ impl Session {
     /// A scene is open from now on.
     pub fn show_scene(&mut self, scenery: Scenery, file: Option<PathBuf>, name: String) {
         self.is_unframed = scenery.camera().is_none();
-        (self.scenery, self.reel) = (Some(scenery), None);
+        (self.scenery, self.playback) = (Some(scenery), None);
         self.begin(file, name);
     }
 
     /// A picture, sequence or video is open from now on.
-    pub fn show_reel(&mut self, reel: Reel) {
-        let file = reel.path();
+    pub fn show_playback(&mut self, playback: Playback) {
+        let file = playback.path();
         let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        (self.scenery, self.reel) = (None, Some(reel));
+        (self.scenery, self.playback) = (None, Some(playback));
         self.begin(Some(file), name);
     }
 
     /// Shows the same file, read in another way.
-    pub fn show_again(&mut self, mut reel: Reel) {
-        if let Some(old) = &self.reel {
-            reel.rate = old.rate;
-            reel.seek(old.number());
+    pub fn show_again(&mut self, mut playback: Playback) {
+        if let Some(old) = &self.playback {
+            playback.rate = old.rate;
+            playback.seek(old.number());
         }
-        self.reel = Some(reel);
+        self.playback = Some(playback);
         if !self.has_overlay(self.viewport.overlay) {
             self.viewport.overlay = Overlay::None;
         }
@@ -343,13 +343,13 @@ impl Session {
 
     /// Asks what is to be exported, if anything can be.
     pub fn plan_export(&mut self) {
-        let Some(file) = self.file.as_deref().filter(|_| !self.look().is_plain() || self.reel.is_none())
+        let Some(file) = self.file.as_deref().filter(|_| !self.look().is_plain() || self.playback.is_none())
         else {
             return;
         };
-        let kind = self.reel.as_ref().map_or(Kind::Scene, |reel| reel.document.kind());
+        let kind = self.playback.as_ref().map_or(Kind::Scene, |playback| playback.document.kind());
         let length = self.scenery.as_ref().map_or(0.0, |scenery| scenery.time().1);
-        let frames = self.reel.as_ref().and_then(Reel::frames);
+        let frames = self.playback.as_ref().and_then(Playback::frames);
         let animated = (length * 24.0).ceil() as u32;
         self.plan = Some(Plan::new(kind, file, frames, self.nominal_size(), animated));
     }

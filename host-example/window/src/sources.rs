@@ -78,7 +78,7 @@ impl Sources {
     pub fn follow(&mut self, session: &Session, scale: f32) -> Result<bool> {
         let usual = session.library.request((1, 1)).map_err(|e| e.at("the library", "install it again"))?;
         let is_new = self.take(session)?;
-        let is_other = match (&session.scenery, &session.reel) {
+        let is_other = match (&session.scenery, &session.playback) {
             (Some(scenery), _) => {
                 let [_, half] = session.viewport.halves();
                 let pixels = |length: f32| ((length * scale).round() as u32).max(1);
@@ -98,9 +98,14 @@ impl Sources {
                     }
                 }
             }
-            (None, Some(reel)) => {
-                let Some((frame, share)) = reel.frame(scale < 1.0) else { return Ok(is_new) };
-                self.follow_picture(frame, reel.frame(scale >= 1.0).map(|(other, _)| other), share, usual);
+            (None, Some(playback)) => {
+                let Some((frame, share)) = playback.frame(scale < 1.0) else { return Ok(is_new) };
+                self.follow_picture(
+                    frame,
+                    playback.frame(scale >= 1.0).map(|(other, _)| other),
+                    share,
+                    usual,
+                );
                 false
             }
             (None, None) => {
@@ -155,7 +160,8 @@ impl Sources {
         self.asked = None;
         let old = self.present.replace(source);
         let is_of_same = |frame: &Arc<Frame>| shows(old.as_ref(), frame);
-        let frames = session.reel.iter().flat_map(|reel| [reel.frame(false), reel.frame(true)]);
+        let frames =
+            session.playback.iter().flat_map(|playback| [playback.frame(false), playback.frame(true)]);
         let is_same = frames.flatten().any(|(frame, _)| is_of_same(frame));
         self.spare = old.filter(|_| is_same);
         self.number += 1;

@@ -12,7 +12,7 @@ use isophote_loader::Library;
 use isophote_window::document::kind::Kind;
 use isophote_window::document::{self, Document};
 use isophote_window::look::{Look, PLAIN};
-use isophote_window::reel::Reel;
+use isophote_window::playback::Playback;
 use isophote_window::scenery::{Lighting, Scenery, Staging};
 use isophote_window::session::Session;
 use isophote_window::settings::Settings;
@@ -80,7 +80,7 @@ pub fn run(args: &ViewArgs) -> Result<()> {
 fn open(session: &mut Session, path: &Path, args: &ViewArgs) -> Result<()> {
     let document = Document::open(path, &document::Options::default())?;
     if document.kind() != Kind::Scene {
-        session.show_reel(Reel::new(document)?);
+        session.show_playback(Playback::new(document)?);
         return Ok(());
     }
     let scene = args.reading.load(path)?;

@@ -111,10 +111,10 @@ impl Session {
         }
         let exposure = self.viewport.exposure.exp2();
         let known = self.previews.picture();
-        let picture = match &self.reel {
-            Some(reel) => {
-                let Some((frame, _)) = reel.frame(false) else { return };
-                Picture { frame: Arc::clone(frame), size: reel.size(), exposure }
+        let picture = match &self.playback {
+            Some(playback) => {
+                let Some((frame, _)) = playback.frame(false) else { return };
+                Picture { frame: Arc::clone(frame), size: playback.size(), exposure }
             }
             // That of a scene comes from the device.
             None => match known {

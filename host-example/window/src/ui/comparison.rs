@@ -22,8 +22,8 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session) {
     let looks = comparison.panes.clone();
     let scale = ui.pixels_per_point();
     ui.painter().rect_filled(rect, 0.0, theme::SURROUND);
-    let aspect = match (&session.reel, session.previews.picture()) {
-        (Some(reel), _) => reel.size().0 as f32 / reel.size().1.max(1) as f32,
+    let aspect = match (&session.playback, session.previews.picture()) {
+        (Some(playback), _) => playback.size().0 as f32 / playback.size().1.max(1) as f32,
         _ => rect.width() / rect.height().max(1.0),
     };
     let areas = comparison::areas(looks.len(), session.viewport.area, aspect);

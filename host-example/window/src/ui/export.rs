@@ -20,7 +20,7 @@ pub fn show(context: &egui::Context, session: &mut Session) {
             ui.set_width(460.0);
             Grid::new("export").num_columns(2).spacing([18.0, 8.0]).show(ui, |ui| {
                 kind(ui, &mut plan);
-                amount(ui, &mut plan, session.reel.as_ref().map(|reel| reel.number()));
+                amount(ui, &mut plan, session.playback.as_ref().map(|playback| playback.number()));
                 if place(ui, &mut plan) {
                     request = Some(Request::ChooseOutput);
                 }

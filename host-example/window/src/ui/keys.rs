@@ -53,8 +53,8 @@ pub fn press(session: &mut Session, key: &Key) {
         // Before anything is open it goes from control to control.
         Key::Named(NamedKey::Tab) if session.has_picture() => session.choose_next(),
         Key::Named(key @ (NamedKey::ArrowLeft | NamedKey::ArrowRight)) => {
-            if let Some(reel) = &mut session.reel {
-                reel.step(if key == NamedKey::ArrowLeft { -1 } else { 1 });
+            if let Some(playback) = &mut session.playback {
+                playback.step(if key == NamedKey::ArrowLeft { -1 } else { 1 });
             }
         }
         Key::Named(NamedKey::F1) | Key::Character("?") => session.shows_help = !session.shows_help,

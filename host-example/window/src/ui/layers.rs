@@ -8,8 +8,8 @@ use isophote_pictures::exr::{Guide, Layer};
 
 /// True where there is anything to choose or to tell.
 pub fn has_any(session: &Session) -> bool {
-    session.reel.as_ref().is_some_and(|reel| {
-        let offers = reel.document.offers();
+    session.playback.as_ref().is_some_and(|playback| {
+        let offers = playback.document.offers();
         offers.layers.len() > 1
             || !views(&offers.layers, &offers.layer).is_empty()
             || !offers.guides.is_empty()
@@ -18,9 +18,9 @@ pub fn has_any(session: &Session) -> bool {
 
 /// Shows the controls.
 pub fn show(ui: &mut Ui, session: &mut Session) {
-    let Some(reel) = &session.reel else { return };
-    let offers = reel.document.offers();
-    let selection = reel.document.selection();
+    let Some(playback) = &session.playback else { return };
+    let offers = playback.document.offers();
+    let selection = playback.document.selection();
     let mut request = None;
     if offers.layers.len() > 1 {
         row(ui, "Layer", "layer", name(&offers.layer), |ui| {

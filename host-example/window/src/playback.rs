@@ -15,7 +15,7 @@ const MOST: u32 = 8192;
 
 /// Pictures that are shown.
 #[derive(Debug)]
-pub struct Reel {
+pub struct Playback {
     /// The document.
     pub document: Document,
     /// True while time passes.
@@ -30,7 +30,7 @@ pub struct Reel {
     ticked: Instant,
 }
 
-impl Reel {
+impl Playback {
     /// The frames of a document, at the first. Waits for it; not for the window's thread.
     ///
     /// # Errors
@@ -127,7 +127,7 @@ impl Reel {
     }
 }
 
-impl Reel {
+impl Playback {
     /// The file, or the pattern of the files.
     pub fn path(&self) -> PathBuf {
         self.document.path().to_owned()
