@@ -20,7 +20,7 @@ use isophote_pictures::read::{Opened, Source, Unread};
 
 /// Source of the frames of a run.
 #[derive(Clone, Copy, Debug)]
-pub struct Footage<'a> {
+pub struct FrameSource<'a> {
     /// The sequence, whose frames beyond the run's are read where others depend on them.
     pub frames: Option<&'a Pattern>,
     /// Motion vectors in files of their own.
@@ -36,7 +36,7 @@ pub struct Footage<'a> {
 /// Reads the frames of a run.
 #[derive(Debug)]
 pub struct Reader<'a> {
-    footage: Footage<'a>,
+    frame_source: FrameSource<'a>,
     /// Knows what frames depend on and need.
     planner: Planner,
     /// Frames whose result will be written.
@@ -49,10 +49,15 @@ pub struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     /// Of the frames `tasks`, of which `first` is the first, where it was opened before.
-    pub fn new(footage: Footage<'a>, planner: Planner, tasks: &[Task], first: Option<Opened>) -> Self {
+    pub fn new(
+        frame_source: FrameSource<'a>,
+        planner: Planner,
+        tasks: &[Task],
+        first: Option<Opened>,
+    ) -> Self {
         let first = tasks.first().map(|task| task.input.clone()).zip(first);
         let tasks = tasks.iter().filter_map(|task| task.frame).collect();
-        Self { footage, planner, tasks, first, held: Vec::new() }
+        Self { frame_source, planner, tasks, first, held: Vec::new() }
     }
 
     /// Forgets that the first frame was opened: it is not done.
@@ -79,7 +84,7 @@ impl<'a> Reader<'a> {
         for towards in [-1, 1] {
             let reach = if towards < 0 { past } else { future };
             for number in (1..=reach).map(|n| frame + towards * n) {
-                let Some(pattern) = self.footage.frames else { break };
+                let Some(pattern) = self.frame_source.frames else { break };
                 let path = pattern.file(number);
                 let is_bad = self.held.iter().any(|(n, held)| *n == number && held.is_none());
                 if is_bad || !path.is_file() {
@@ -115,7 +120,7 @@ impl<'a> Reader<'a> {
     /// Reads a frame when there is room for its file, and decodes it when there is room for all that it needs; `span` frames
     /// are held together.
     fn read(&mut self, path: &Path, number: Option<i64>, span: u64) -> Result<CachedFrame<'a>> {
-        let Footage { selection, budget, .. } = self.footage;
+        let FrameSource { selection, budget, .. } = self.frame_source;
         let share = budget.share();
         let grow = |needs: Needs| {
             let together = needs.of(span);
@@ -134,11 +139,11 @@ impl<'a> Reader<'a> {
             limits::must_have(needs.total(), &path.display().to_string())?;
         }
         let mut source = opened.decode(path)?;
-        if let (Some(pattern), Some(number)) = (self.footage.motion, number) {
+        if let (Some(pattern), Some(number)) = (self.frame_source.motion, number) {
             add_motion(&mut source, &pattern.file(number), selection)?;
         }
         let is_written = number.is_none_or(|number| self.tasks.contains(&number));
-        self.footage.masks.add(&mut source, number)?;
+        self.frame_source.masks.add(&mut source, number)?;
         Ok(CachedFrame::new(number, source, is_written, share))
     }
 }

@@ -16,7 +16,7 @@ use isophote_finishing::apply::filter::{Filter, Planner};
 use isophote_finishing::apply::frame_cache::{CachedFrame, Window};
 use isophote_finishing::apply::masks::Masks;
 use isophote_finishing::apply::memory::Budget;
-use isophote_finishing::apply::reader::{Footage, Reader};
+use isophote_finishing::apply::reader::{FrameSource, Reader};
 use isophote_finishing::apply::report::Report;
 use isophote_finishing::apply::sequence::Run;
 use isophote_finishing::apply::tasks::Task;
@@ -68,8 +68,8 @@ pub fn measure(
     let mut filter_seconds = 0.0;
     let (budget, report) = (Budget::new(bound, filters.len()), Report::new(tasks.len(), false, false));
     let masks = Masks::default();
-    let footage =
-        Footage { frames: None, motion: None, selection: &selection, masks: &masks, budget: &budget };
+    let frame_source =
+        FrameSource { frames: None, motion: None, selection: &selection, masks: &masks, budget: &budget };
     // The first of these runs makes the plan and is not counted.
     for (at, task) in tasks.iter().take(1).chain(&tasks).enumerate() {
         let source = read::read(&task.input, &selection)?;
@@ -92,7 +92,7 @@ pub fn measure(
     };
     forget_peak();
     let started = Instant::now();
-    let result = run.all(filters, Reader::new(footage, planner, &tasks, None));
+    let result = run.all(filters, Reader::new(frame_source, planner, &tasks, None));
     let seconds = started.elapsed().as_secs_f64();
     let counts = report.end(false);
     result?;

@@ -18,7 +18,7 @@ use isophote_finishing::apply::filter::{self, Filter, Look, Planner};
 use isophote_finishing::apply::looks::{self, Entry};
 use isophote_finishing::apply::masks::{MaskChoice, Masks};
 use isophote_finishing::apply::memory::{self, Budget, Bytes, Needs, too_large};
-use isophote_finishing::apply::reader::{Footage, Reader};
+use isophote_finishing::apply::reader::{FrameSource, Reader};
 use isophote_finishing::apply::report::{self, Outcome, Report};
 use isophote_finishing::apply::sequence::Run;
 use isophote_finishing::apply::tasks::{OnMissing, Task, Tasks};
@@ -209,7 +209,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         }
     }
     let budget = Budget::new(most.0, filters.len());
-    let footage = Footage {
+    let frame_source = FrameSource {
         frames: tasks.sequence.as_ref(),
         motion: motion.as_ref(),
         selection: &selection,
@@ -218,7 +218,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     };
     let run =
         Run { tasks: &tasks.ready, format, consent: args.consent(), threads, report: &report, stop: &stop };
-    let result = run.all(&mut filters, Reader::new(footage, planner, &tasks.ready, opened));
+    let result = run.all(&mut filters, Reader::new(frame_source, planner, &tasks.ready, opened));
     let counts = report.end(result.is_ok());
     result?;
     counts.check(files.input, tasks.ready.len(), args.consent())
