@@ -10,7 +10,7 @@ use isophote_loader::Library;
 use isophote_pictures::floats::Picture;
 use isophote_render::background::Background;
 use isophote_render::gpu::Gpu;
-use isophote_render::look::Look;
+use isophote_render::lighting::Lighting;
 use isophote_render::readback::Readback;
 use isophote_render::renderer::Renderer;
 use isophote_render::targets::{Target, Targets};
@@ -56,7 +56,7 @@ pub struct Shot {
     options: Options,
     scene: Scene,
     pose: Pose,
-    look: Look,
+    lighting: Lighting,
     camera: Camera,
     /// Number of the frame drawn last, and what it was seen by.
     drawn: Option<(i64, View)>,
@@ -92,10 +92,11 @@ impl Shot {
         let pose = Pose::at_rest(&scene);
         let camera = Camera::choose(&options, &scene);
         let view = camera.view(&scene, &pose, 0.0);
-        let mut look = Look::for_scene(&scene, &pose, &view, options.light, options.background.environment());
-        look.exposure *= options.exposure.exp2();
+        let mut lighting =
+            Lighting::for_scene(&scene, &pose, &view, options.light, options.background.environment());
+        lighting.exposure *= options.exposure.exp2();
         let mut shot = Self {
-            look,
+            lighting,
             camera,
             readback: Readback::default(),
             drawn: None,
@@ -160,7 +161,7 @@ impl Shot {
             self.renderer.forget_motion();
         } else {
             let view = self.go_to(number - 1);
-            self.renderer.pass_over(&self.scene, &self.pose, &view, &self.look);
+            self.renderer.pass_over(&self.scene, &self.pose, &view, &self.lighting);
         }
     }
 
@@ -177,7 +178,7 @@ impl Shot {
             self.bind()?;
         }
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        self.renderer.encode(&mut encoder, &self.scene, &self.pose, &view, &self.look);
+        self.renderer.encode(&mut encoder, &self.scene, &self.pose, &view, &self.lighting);
         if let Some(stylizer) = &mut self.stylizer {
             stylizer.encode(&mut encoder)?;
         }

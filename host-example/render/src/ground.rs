@@ -4,7 +4,7 @@
 use glam::{Vec3, Vec4};
 
 use crate::layouts::Layouts;
-use crate::look::Look;
+use crate::lighting::Lighting;
 use crate::pipelines::{SCENE, behind_everything, module};
 use crate::targets::{COLOR_FORMAT, SAMPLES};
 use isophote_scene::Scene;
@@ -27,9 +27,9 @@ const BELOW: f32 = 1e-3;
 pub type Plane = [Vec4; 2];
 
 /// The part of the ground that shadows may fall on; nothing where they cannot be seen.
-pub fn plane(scene: &Scene, look: &Look, view: &View) -> Option<Plane> {
-    let sun = look.sun_direction;
-    let sun_color = look.sun_color.filter(|_| sun.y > LOWEST)?;
+pub fn plane(scene: &Scene, lighting: &Lighting, view: &View) -> Option<Plane> {
+    let sun = lighting.sun_direction;
+    let sun_color = lighting.sun_color.filter(|_| sun.y > LOWEST)?;
     let (bounds, radius) = (&scene.bounds, scene.bounds.radius());
     let height = bounds.min.y - BELOW * radius;
     let is_above = match view.projection {
@@ -54,7 +54,7 @@ pub fn plane(scene: &Scene, look: &Look, view: &View) -> Option<Plane> {
     let (low, high) = (within(low), within(high));
     let weight = Vec3::new(0.2126, 0.7152, 0.0722);
     let key = weight.dot(sun_color) * sun.y;
-    let fill = weight.dot(look.zenith + look.horizon) * 0.5 * look.sky_scale;
+    let fill = weight.dot(lighting.zenith + lighting.horizon) * 0.5 * lighting.sky_scale;
     let darkness = STRENGTH * key / (key + fill).max(1e-6);
     Some([low.with_y(height).extend(darkness), high.with_y(height).extend(reach)])
 }

@@ -7,7 +7,7 @@ use super::look::Look;
 use super::scenery::Scenery;
 use super::session::{Session, Which};
 use super::stage::Drawn;
-use isophote_render::look::Look as Light;
+use isophote_render::lighting::Lighting as Light;
 use isophote_scene::camera::View;
 
 /// Time that nothing must move before the whole picture is rendered.

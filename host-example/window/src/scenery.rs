@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use isophote_finishing::staging::ReadingArgs;
 use isophote_render::background::Background;
-use isophote_render::look::Look as Light;
+use isophote_render::lighting::Lighting as Light;
 use isophote_scene::Scene;
 use isophote_scene::animation::Animation;
 use isophote_scene::camera::{self, Direction, Framing, Orbit, View};

@@ -13,7 +13,7 @@ use isophote_loader::abi::{
 };
 use isophote_render::background::Background;
 use isophote_render::gpu::Gpu;
-use isophote_render::look::Look as Light;
+use isophote_render::lighting::Lighting as Light;
 use isophote_render::renderer::Renderer;
 use isophote_render::targets::Targets;
 use isophote_scene::Scene;

@@ -28,7 +28,7 @@ use isophote_files::error::{Error, Result};
 use isophote_loader::abi::IsophoteRequest;
 use isophote_render::gpu::Gpu;
 use isophote_render::layouts;
-use isophote_render::look::Look as Light;
+use isophote_render::lighting::Lighting as Light;
 use isophote_render::timestamps::Timestamps;
 use isophote_scene::camera::View;
 
