@@ -12,7 +12,7 @@ use isophote_example::history::Past;
 use isophote_example::kernels::Kernels;
 use isophote_example::plan_runner::PlanRunner;
 use isophote_finishing::apply::backend::Backend;
-use isophote_finishing::apply::filter::{self, Filter, Look};
+use isophote_finishing::apply::filter::{self, Filter, MaskedStyle};
 use isophote_finishing::apply::frame_cache::{CachedFrame, Window, guide_bit};
 use isophote_finishing::apply::memory::Budget;
 use isophote_finishing::stylize::style::Style;
@@ -72,7 +72,8 @@ fn applied(path: &Path, name: &str, space: Option<Space>, backend: Backend) -> P
     let own = Arc::new(CachedFrame::new(None, source, true, budget.share()));
     let exr = own.take_exr();
     let window = Window { frames: vec![Arc::clone(&own)], own };
-    let mut filter = Filter::new(library, vec![Look::whole(style)], backend, space, 0).expect("a filter");
+    let mut filter =
+        Filter::new(library, vec![MaskedStyle::whole(style)], backend, space, 0).expect("a filter");
     let filtered = filter.run("picture", &window, exr.as_ref(), format, &mut |_| {}).expect("a result");
     filtered.results.into_iter().next().expect("a picture")
 }

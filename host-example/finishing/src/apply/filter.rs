@@ -24,16 +24,16 @@ use isophote_pictures::space::Space;
 use isophote_pictures::working::WorkingSpace;
 use isophote_pictures::write::Format;
 
-/// Look of a picture: a style, maybe where a mask is.
+/// MaskedStyle of a picture: a style, maybe where a mask is.
 #[derive(Debug)]
-pub struct Look {
+pub struct MaskedStyle {
     /// The style.
     pub style: Style,
     /// Index of the mask among those of pictures.
     pub mask: Option<usize>,
 }
 
-impl Look {
+impl MaskedStyle {
     /// A style for whole pictures.
     pub fn whole(style: Style) -> Self {
         Self { style, mask: None }
@@ -54,7 +54,7 @@ pub struct Filter {
 /// A look with what is kept of it.
 #[derive(Debug)]
 struct Layer {
-    look: Look,
+    look: MaskedStyle,
     /// The mask that its graph takes as an input; that of other looks is applied to their results.
     input: Option<usize>,
     /// State that is kept of the frames of each picture.
@@ -94,11 +94,11 @@ pub struct Planner {
 ///
 /// # Errors
 /// [`isophote_files::error::Error::Input`] for a mask of what is no picture of colours.
-fn layers(looks: Vec<Look>) -> Result<Vec<Layer>> {
+fn layers(looks: Vec<MaskedStyle>) -> Result<Vec<Layer>> {
     let is_single = looks.len() == 1;
     let mut layers = Vec::with_capacity(looks.len());
     for look in looks {
-        let Look { style, mask } = &look;
+        let MaskedStyle { style, mask } = &look;
         if (mask.is_some() || !is_single) && style.kind != Kind::Color {
             return Err(Error::input(
                 &style.name,
@@ -115,7 +115,7 @@ fn layers(looks: Vec<Look>) -> Result<Vec<Layer>> {
 /// Frames before and after its own that a frame of any of the looks depends on.
 fn frames(library: &Library, layers: &[Layer]) -> Result<[i64; 2]> {
     let mut most = [0; 2];
-    for Layer { look: Look { style, .. }, .. } in layers {
+    for Layer { look: MaskedStyle { style, .. }, .. } in layers {
         let frames = library.frames(&style.graph).map_err(|e| e.at(&style.name, "choose another style"))?;
         most = [0, 1].map(|side| i64::from(frames[side]).max(most[side]));
     }
@@ -182,7 +182,7 @@ impl Filter {
     /// [`Error::Failure`] when there is no such device, [`Error::Input`] for a mask of what is no picture of colours.
     pub fn new(
         library: Library,
-        looks: Vec<Look>,
+        looks: Vec<MaskedStyle>,
         backend: Backend,
         space: Option<Space>,
         threads: u32,
@@ -195,7 +195,7 @@ impl Filter {
     ///
     /// # Errors
     /// As [`Filter::new`].
-    pub fn beside(&self, looks: Vec<Look>) -> Result<Self> {
+    pub fn beside(&self, looks: Vec<MaskedStyle>) -> Result<Self> {
         let (library, device) = (self.library.clone(), self.device.clone());
         Ok(Self { library, layers: layers(looks)?, device, space: self.space, threads: self.threads })
     }
@@ -312,7 +312,7 @@ impl Planner {
     ///
     /// # Errors
     /// As [`Filter::new`].
-    pub fn new(library: Library, looks: Vec<Look>) -> Result<Self> {
+    pub fn new(library: Library, looks: Vec<MaskedStyle>) -> Result<Self> {
         let mut guides = Vec::new();
         for look in &looks {
             guides.extend(usable_guides(&library, &look.style)?);

@@ -14,7 +14,7 @@ use isophote_files::replacing::Made;
 use isophote_files::stop::Stop;
 use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::apply::dry_run::DryRun;
-use isophote_finishing::apply::filter::{self, Filter, Look, Planner};
+use isophote_finishing::apply::filter::{self, Filter, MaskedStyle, Planner};
 use isophote_finishing::apply::looks::{self, Entry};
 use isophote_finishing::apply::masks::{MaskChoice, Masks};
 use isophote_finishing::apply::memory::{self, Budget, Bytes, Needs, too_large};
@@ -343,15 +343,15 @@ impl ApplyArgs {
     }
 
     /// Looks that every picture gets: those of a file, or else the style.
-    fn looks(&self, library: &Library, name: &Path, entries: &[Entry]) -> Result<Vec<Look>> {
+    fn looks(&self, library: &Library, name: &Path, entries: &[Entry]) -> Result<Vec<MaskedStyle>> {
         let mut masks = 0..;
         let looks = if entries.is_empty() {
             let style = Style::load(library, name, &self.set)?;
-            vec![Look { style, mask: self.mask.as_ref().and_then(|_| masks.next()) }]
+            vec![MaskedStyle { style, mask: self.mask.as_ref().and_then(|_| masks.next()) }]
         } else {
             let look = |entry: &Entry| {
                 let style = entry.style(library)?;
-                Ok(Look { style, mask: entry.mask.as_ref().and_then(|_| masks.next()) })
+                Ok(MaskedStyle { style, mask: entry.mask.as_ref().and_then(|_| masks.next()) })
             };
             entries.iter().map(look).collect::<Result<_>>()?
         };
@@ -366,9 +366,9 @@ impl ApplyArgs {
     }
 
     /// The looks with what the command line says of time and lengths. Of several, one that knows of time is enough.
-    fn timed(&self, mut looks: Vec<Look>) -> Result<Vec<Look>> {
+    fn timed(&self, mut looks: Vec<MaskedStyle>) -> Result<Vec<MaskedStyle>> {
         let mut refused = Vec::new();
-        for Look { style, .. } in &mut looks {
+        for MaskedStyle { style, .. } in &mut looks {
             self.lengths.apply(style);
             self.precision.precision.apply(style)?;
             refused.extend(self.steadiness.and_then(|steadiness| style.steady(steadiness).err()));
@@ -452,7 +452,7 @@ impl ApplyArgs {
     }
 
     /// Guides that are looked for.
-    fn wanted(&self, library: &Library, looks: &[Look]) -> Result<Vec<Guide>> {
+    fn wanted(&self, library: &Library, looks: &[MaskedStyle]) -> Result<Vec<Guide>> {
         let mut wanted = Vec::new();
         for look in looks {
             wanted.extend(filter::usable_guides(library, &look.style)?);
@@ -465,7 +465,7 @@ impl ApplyArgs {
     fn selection(
         &self,
         library: &Library,
-        looks: &[Look],
+        looks: &[MaskedStyle],
         masks: &[MaskChoice],
         format: Format,
     ) -> Result<Selection> {

@@ -16,7 +16,7 @@ use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::files::Existing;
 use isophote_files::output;
 use isophote_finishing::apply::backend::Backend;
-use isophote_finishing::apply::filter::{Filter, Look, Planner};
+use isophote_finishing::apply::filter::{Filter, MaskedStyle, Planner};
 use isophote_finishing::apply::memory;
 use isophote_finishing::stylize::lengths::Lengths;
 use isophote_finishing::stylize::precision::Precision;
@@ -182,7 +182,7 @@ impl Card {
             let mut style = Style::load(library, STYLE, &[])?;
             style.lengths = Lengths::Pixels;
             precision.apply(&style)?;
-            Ok::<_, Error>(vec![Look::whole(style)])
+            Ok::<_, Error>(vec![MaskedStyle::whole(style)])
         };
         let what = format!("a sequence of {}", described(STYLE, precision, size));
         let measured = self.step(&what, || {
