@@ -33,7 +33,7 @@ use isophote_scene::environment::Environment;
 use isophote_scene::{Scene, camera, floor};
 
 /// Something to be opened.
-enum Job {
+enum OpenJob {
     Demo,
     /// A picture that comes with the program, whose file is in a folder.
     Sample(&'static Sample, PathBuf),
@@ -80,7 +80,7 @@ impl Dialog {
 
 /// The work beside the window.
 pub struct Background {
-    opener: Worker<Job, Result<Opened>>,
+    opener: Worker<OpenJob, Result<Opened>>,
     idle_search: Worker<IdleRequest, IdleControls>,
     /// Reads looks again whose files have changed.
     reader: Worker<(Library, PathBuf), (PathBuf, Result<Look>)>,
@@ -149,12 +149,12 @@ impl Background {
                 }
             };
             match dialog {
-                Dialog::File => self.opener.ask(Job::Files(session.library.clone(), vec![path])),
+                Dialog::File => self.opener.ask(OpenJob::Files(session.library.clone(), vec![path])),
                 Dialog::Look => {
                     session.settings.look_folder = path.parent().map(Path::to_owned);
-                    self.opener.ask(Job::Look(session.library.clone(), path));
+                    self.opener.ask(OpenJob::Look(session.library.clone(), path));
                 }
-                Dialog::Surroundings => self.opener.ask(Job::Surroundings(path)),
+                Dialog::Surroundings => self.opener.ask(OpenJob::Surroundings(path)),
                 Dialog::LookFolder => {
                     session.settings.add_look_folder(&path);
                     session.browser.is_outdated = true;
@@ -220,14 +220,14 @@ impl Background {
                             view,
                             ..Selection::default()
                         };
-                        self.opener.ask(Job::Again(file.clone(), Box::new(selection)));
+                        self.opener.ask(OpenJob::Again(file.clone(), Box::new(selection)));
                     }
                 }
                 Request::ChooseOutput => self.choose(Dialog::Export, session),
-                Request::OpenDemo => self.opener.ask(Job::Demo),
+                Request::OpenDemo => self.opener.ask(OpenJob::Demo),
                 Request::OpenSample(index) => {
                     if let Some(sample) = SAMPLES.get(index) {
-                        self.opener.ask(Job::Sample(sample, session.settings.place_for_samples()));
+                        self.opener.ask(OpenJob::Sample(sample, session.settings.place_for_samples()));
                     }
                 }
                 Request::ChooseFile => self.choose(Dialog::File, session),
@@ -248,7 +248,7 @@ impl Background {
             }
         }
         if !files.is_empty() {
-            self.opener.ask(Job::Files(session.library.clone(), files));
+            self.opener.ask(OpenJob::Files(session.library.clone(), files));
         }
         if !session.has_picture() && !std::mem::replace(&mut session.thumbnails.are_asked, true) {
             self.reducer.ask(());
@@ -267,7 +267,7 @@ impl Background {
         let preset =
             if look.is_plain() { Ok(None) } else { look.whole().map(|preset| Some(preset.to_json())) };
         let started = preset.and_then(|preset| {
-            let mut job = export::Job::new(plan.kind, file, Path::new(&plan.path), preset);
+            let mut job = export::ExportJob::new(plan.kind, file, Path::new(&plan.path), preset);
             (job.frames, job.turntable) = (plan.frames(), plan.what == What::Turntable);
             let mut words: Vec<String> = match &session.playback {
                 Some(playback) => {
@@ -375,20 +375,20 @@ fn is_look(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
 }
 
-fn open(job: Job) -> Result<Opened> {
+fn open(job: OpenJob) -> Result<Opened> {
     Ok(match job {
-        Job::Demo => Opened::Scene(Box::new(demo::scene()?), None),
-        Job::Sample(sample, folder) => {
+        OpenJob::Demo => Opened::Scene(Box::new(demo::scene()?), None),
+        OpenJob::Sample(sample, folder) => {
             let document = Document::open(&sample.file_in(&folder)?, &Options::default())?;
             Opened::Pictures(Box::new(Playback::new(document)?))
         }
-        Job::Files(library, files) => first_of(&library, files)?,
-        Job::Again(path, selection) => {
+        OpenJob::Files(library, files) => first_of(&library, files)?,
+        OpenJob::Again(path, selection) => {
             let options = Options { selection: *selection, ..Options::default() };
             Opened::Again(Box::new(Playback::new(Document::open(&path, &options)?)?))
         }
-        Job::Look(library, path) => Opened::Look(Box::new(Look::open(&library, &path)?)),
-        Job::Surroundings(path) => {
+        OpenJob::Look(library, path) => Opened::Look(Box::new(Look::open(&library, &path)?)),
+        OpenJob::Surroundings(path) => {
             let environment = Arc::new(Environment::read(&path)?);
             Opened::Surroundings(Surround::Environment(environment), path)
         }

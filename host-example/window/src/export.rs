@@ -32,7 +32,7 @@ const FRAMES: &str = "frame.######.png";
 
 /// An export to be made.
 #[derive(Clone, Debug)]
-pub struct Job {
+pub struct ExportJob {
     /// Kind of the input: scenes are rendered, the others filtered.
     pub kind: Kind,
     /// The document's path.
@@ -53,7 +53,7 @@ pub struct Job {
     pub program: Option<PathBuf>,
 }
 
-impl Job {
+impl ExportJob {
     /// The whole of a document into a file, at full resolution and 24 frames a second.
     pub fn new(kind: Kind, input: &Path, output: &Path, preset: Option<String>) -> Self {
         Self {
@@ -161,7 +161,7 @@ impl Export {
     /// # Errors
     /// [`Error::Input`] for jobs without a look that need one, [`Error::Failure`] when the system gives no thread; what else
     /// is wrong is told by [`Export::poll`].
-    pub fn start(job: Job) -> Result<Self> {
+    pub fn start(job: ExportJob) -> Result<Self> {
         if job.preset.is_none() && job.kind != Kind::Scene {
             return Err(Error::input("the export", "has no look", "choose a style first"));
         }
@@ -250,7 +250,7 @@ impl Shared {
     }
 
     /// Does a job, or says why it cannot be done.
-    fn run(&self, job: &Job) -> std::result::Result<(), String> {
+    fn run(&self, job: &ExportJob) -> std::result::Result<(), String> {
         let folder = tempfile::tempdir().map_err(|e| format!("no folder for the time being: {e}"))?;
         self.process(job.command(folder.path()).map_err(|e| e.to_string())?)?;
         if job.is_in_two_steps() {
@@ -316,7 +316,7 @@ impl Shared {
     }
 
     /// Makes a video of pictures.
-    fn film(&self, job: &Job, pictures: &Path) -> Result<()> {
+    fn film(&self, job: &ExportJob, pictures: &Path) -> Result<()> {
         let none =
             || Error::file(pictures, "has no place for a frame number", "report this mistake in the program");
         let pattern = Pattern::new(pictures)?.ok_or_else(none)?;

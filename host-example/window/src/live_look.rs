@@ -16,7 +16,7 @@ use isophote_loader::abi::{IsophoteRequest, IsophoteSpace};
 use isophote_loader::catalogue::Kind;
 
 /// A look to be built.
-struct Job {
+struct BuildJob {
     library: Library,
     kernels: Arc<Kernels>,
     recipe: Recipe,
@@ -57,7 +57,7 @@ pub struct Part {
 
 /// A look on its way to the canvas.
 pub struct LiveLook {
-    worker: Worker<Job, (Recipe, Result<Ready>)>,
+    worker: Worker<BuildJob, (Recipe, Result<Ready>)>,
     kernels: Arc<Kernels>,
     ready: Option<Ready>,
     /// The look for pictures of another scale, which are shown while something moves.
@@ -77,7 +77,7 @@ impl LiveLook {
     /// # Errors
     /// As [`Worker::new`].
     pub fn new(kernels: &Arc<Kernels>, wake: Wake) -> Result<Self> {
-        let worker = Worker::new("look", wake, |job: Job| {
+        let worker = Worker::new("look", wake, |job: BuildJob| {
             let built = build(&job);
             (job.recipe, built)
         })?;
@@ -132,7 +132,11 @@ impl LiveLook {
             self.asked = None;
             return Ok(());
         }
-        self.worker.ask(Job { library: library.clone(), kernels: Arc::clone(&self.kernels), recipe: wanted });
+        self.worker.ask(BuildJob {
+            library: library.clone(),
+            kernels: Arc::clone(&self.kernels),
+            recipe: wanted,
+        });
         Ok(())
     }
 
@@ -278,8 +282,8 @@ impl Ready {
     }
 }
 
-fn build(job: &Job) -> Result<Ready> {
-    let Job { library, kernels, recipe } = job;
+fn build(job: &BuildJob) -> Result<Ready> {
+    let BuildJob { library, kernels, recipe } = job;
     let Recipe { look, precision, asked } = recipe;
     let missing = || Error::failure("the plain look has no style", "choose a style");
     let style = look.style(library)?.ok_or_else(missing)?;

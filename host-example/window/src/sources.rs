@@ -13,7 +13,7 @@ use isophote_render::gpu::Gpu;
 use isophote_scene::Scene;
 
 /// An upload to be made.
-enum Job {
+enum UploadJob {
     Scene { state: Box<SceneState>, size: (u32, u32), usual: IsophoteRequest },
     Picture { frame: Arc<Frame>, scale: f32, usual: IsophoteRequest },
 }
@@ -31,7 +31,7 @@ type Uploaded = (Thing, Result<Source>);
 /// Inputs of looks, as far as they are on the device.
 pub struct Sources {
     gpu: Gpu,
-    worker: Worker<Job, Uploaded>,
+    worker: Worker<UploadJob, Uploaded>,
     present: Option<Source>,
     /// The picture at its other size: whole, or its small copy.
     spare: Option<Source>,
@@ -89,7 +89,7 @@ impl Sources {
                     }
                     _ => {
                         let usual = IsophoteRequest { scale, ..usual };
-                        self.replace(Thing::Scene(Arc::clone(&scenery.scene)), || Job::Scene {
+                        self.replace(Thing::Scene(Arc::clone(&scenery.scene)), || UploadJob::Scene {
                             state: Box::new(SceneState::of(scenery)),
                             size,
                             usual,
@@ -141,7 +141,7 @@ impl Sources {
             self.number += 1;
             return;
         }
-        let job = || Job::Picture { frame: Arc::clone(frame), scale, usual };
+        let job = || UploadJob::Picture { frame: Arc::clone(frame), scale, usual };
         match other {
             Some(other) if shows(self.present.as_ref(), other) => {
                 self.ask(Thing::Picture(frame.clone()), job)
@@ -169,12 +169,12 @@ impl Sources {
     }
 
     /// Shows nothing until something is uploaded.
-    fn replace(&mut self, thing: Thing, job: impl FnOnce() -> Job) {
+    fn replace(&mut self, thing: Thing, job: impl FnOnce() -> UploadJob) {
         (self.present, self.spare) = (None, None);
         self.ask(thing, job);
     }
 
-    fn ask(&mut self, thing: Thing, job: impl FnOnce() -> Job) {
+    fn ask(&mut self, thing: Thing, job: impl FnOnce() -> UploadJob) {
         if self.asked.as_ref().is_some_and(|asked| asked.is(&thing)) {
             return;
         }
@@ -197,13 +197,13 @@ fn shows(source: Option<&Source>, frame: &Arc<Frame>) -> bool {
     matches!(source, Some(Source::Picture(source)) if source.shows(frame))
 }
 
-fn upload(gpu: &Gpu, job: Job) -> Uploaded {
+fn upload(gpu: &Gpu, job: UploadJob) -> Uploaded {
     match job {
-        Job::Scene { state, size, usual } => {
+        UploadJob::Scene { state, size, usual } => {
             let source = SceneSource::new(gpu, &state, size, usual);
             (Thing::Scene(state.scene), source.map(|source| Source::Scene(Box::new(source))))
         }
-        Job::Picture { frame, scale, usual } => {
+        UploadJob::Picture { frame, scale, usual } => {
             let source = PictureSource::new(gpu, &frame, scale, usual);
             (Thing::Picture(frame), source.map(Source::Picture))
         }

@@ -137,11 +137,11 @@ impl Layer {
     fn process(
         &mut self,
         (library, device): (&Library, Option<&Device>),
-        job: &Job<'_>,
+        job: &LayerJob<'_>,
         result: &mut Pixels,
         control: &mut Control<'_>,
     ) -> isophote_loader::Result<u64> {
-        let Job { at, there, mut request, color, window } = *job;
+        let LayerJob { at, there, mut request, color, window } = *job;
         let Some(picture) = window.own.source.pictures.get(at) else { return Ok(0) };
         let style = &mut self.look.style;
         request.reference_height = style.lengths.reference_height();
@@ -254,7 +254,7 @@ impl Filter {
             let size = (color.width(), color.height());
             let usual = self.library.request(size).map_err(|e| e.at(name, "use a smaller picture"))?;
             let request = Asked::of(picture, source.state, working.space, own.number).request(usual);
-            let job = Job { at, there, request, color, window };
+            let job = LayerJob { at, there, request, color, window };
             let share = 1.0 / count as f32;
             let mut report = |done: f32| progress((at as f32 + done) * share);
             let meaning = Meaning { state: source.state, space: working.space };
@@ -277,7 +277,7 @@ impl Filter {
     fn layered(
         &mut self,
         name: &str,
-        job: &Job<'_>,
+        job: &LayerJob<'_>,
         (channels, precision): (u32, Precision),
         meaning: Meaning,
         progress: &mut dyn FnMut(f32),
@@ -403,7 +403,7 @@ impl Planner {
 
 /// One picture of a frame.
 #[derive(Clone, Copy)]
-struct Job<'a> {
+struct LayerJob<'a> {
     at: usize,
     /// The change to the working space.
     there: Option<&'a Change>,

@@ -33,7 +33,7 @@ const AHEAD: usize = 2;
 
 /// A video that is to be filtered.
 #[derive(Debug)]
-pub struct Job<'a> {
+pub struct VideoJob<'a> {
     /// Input: a file, or `-`.
     pub input: &'a Path,
     /// Output: a file, or `-`.
@@ -57,7 +57,7 @@ pub struct Job<'a> {
 /// # Errors
 /// [`Error::Input`] for what ffmpeg does not read or write; [`Error::Failure`] without ffmpeg, when it or the filter fails,
 /// the video is damaged or the disk full, or the run is stopped.
-pub fn run(job: &Job<'_>, filter: &mut Filter) -> Result<()> {
+pub fn run(job: &VideoJob<'_>, filter: &mut Filter) -> Result<()> {
     let mut input = Input::open(job.input)?;
     let missing = input.missing()?;
     if let Some(missing) = missing.as_ref().filter(|_| job.on_error == OnError::Fail) {
@@ -85,7 +85,7 @@ struct Filtered {
     encoder: Option<Encoder>,
 }
 
-impl Job<'_> {
+impl VideoJob<'_> {
     /// Decodes, filters and encodes to `place`. Of the input something may be missing, in words.
     fn all(
         &self,

@@ -331,7 +331,7 @@ impl ApplyArgs {
         let (input, output, encode) = (files.input, files.output, self.encode.as_deref());
         let run = |existing| {
             let (on_error, json, masks, stop) = (self.on_error, self.json, &masks, &stop);
-            let job = video::Job { input, output, existing, encode, on_error, json, masks, stop };
+            let job = video::VideoJob { input, output, existing, encode, on_error, json, masks, stop };
             video::run(&job, &mut filter)
         };
         self.consent().write(made, Path::is_file, run).map(drop)
