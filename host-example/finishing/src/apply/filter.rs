@@ -24,7 +24,7 @@ use isophote_pictures::space::Space;
 use isophote_pictures::working::WorkingSpace;
 use isophote_pictures::write::Format;
 
-/// MaskedStyle of a picture: a style, maybe where a mask is.
+/// Look of a picture: a style, maybe where a mask is.
 #[derive(Debug)]
 pub struct MaskedStyle {
     /// The style.
