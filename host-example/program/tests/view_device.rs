@@ -14,7 +14,7 @@ use isophote_render::gpu::Gpu;
 use isophote_scene::Scene;
 use isophote_window::app::{App, Event};
 use isophote_window::document::{Document, Options};
-use isophote_window::look::Look;
+use isophote_window::look::EditedLook;
 use isophote_window::playback::Playback;
 use isophote_window::scenery::{Scenery, Staging};
 use isophote_window::session::Session;
@@ -115,7 +115,7 @@ fn alone(name: &str, test: impl FnOnce(&Path)) {
 /// A session of some styles with a picture.
 fn session(folder: &Path, styles: &[&str], size: (u32, u32)) -> Session {
     let library = Library::from_file(support::library()).unwrap();
-    let looks = styles.iter().map(|name| Look::open(&library, name.as_ref()).unwrap()).collect();
+    let looks = styles.iter().map(|name| EditedLook::open(&library, name.as_ref()).unwrap()).collect();
     let mut session = Session::new(library, looks, Settings::default()).unwrap();
     let file = folder.join("photo.png");
     support::picture(size.0, size.1).save(&file).unwrap();

@@ -15,7 +15,7 @@ use isophote_window::browser::entry::{Content, Group};
 use isophote_window::browser::listing::{self, Listing, ListingRequest};
 use isophote_window::document::{Document, Options};
 use isophote_window::leaving::Leaving;
-use isophote_window::look::Look;
+use isophote_window::look::EditedLook;
 use isophote_window::playback::Playback;
 use isophote_window::session::{Request, Session};
 use isophote_window::settings::Settings;
@@ -52,7 +52,8 @@ fn read(folder: &Path) -> Listing {
 /// A window with a picture and the looks of a folder, in which two looks are at hand.
 fn session(folder: &Path) -> Session {
     let library = library();
-    let looks = ["none", "cartoon", "ink"].map(|name| Look::open(&library, name.as_ref()).expect("a style"));
+    let looks =
+        ["none", "cartoon", "ink"].map(|name| EditedLook::open(&library, name.as_ref()).expect("a style"));
     let mut session = Session::new(library, looks.into(), Settings::default()).expect("a session");
     let picture = folder.join("picture.png");
     support::picture(90, 60).save(&picture).expect("the folder is writable");
@@ -264,7 +265,7 @@ fn names_and_tags_are_written_to_the_file() {
     let session = harness.state_mut();
     assert!(session.browser.is_outdated && session.look().name == "Twilight" && !session.look().is_changed());
     // The window's own writing is no change from outside.
-    let again = Look::open(&session.library, &file);
+    let again = EditedLook::open(&session.library, &file);
     session.reload(&file, again);
     assert_eq!(session.look().name, "Twilight");
     session.list(read(folder.path()));

@@ -12,7 +12,7 @@ use isophote_loader::Library;
 use isophote_pictures::floats::{self, Layer, Picture, Precision};
 use isophote_scene::Scene;
 use isophote_window::document::{Document, Options};
-use isophote_window::look::Look;
+use isophote_window::look::EditedLook;
 use isophote_window::playback::Playback;
 use isophote_window::scenery::{Scenery, Staging};
 use isophote_window::session::{Request, Session};
@@ -26,7 +26,7 @@ fn session() -> Session {
     let mut names = vec!["none".to_owned()];
     let catalogue = library.catalogue().unwrap();
     names.extend(catalogue.nodes.iter().filter(|n| n.group == "styles").map(|n| n.id.to_owned()));
-    let looks = names.iter().map(|name| Look::open(&library, name.as_ref()).unwrap()).collect();
+    let looks = names.iter().map(|name| EditedLook::open(&library, name.as_ref()).unwrap()).collect();
     let mut session = Session::new(library, looks, Settings::default()).unwrap();
     let folder = support::folder();
     let scene = Scene::load(&support::cube(folder.path()), None).unwrap();
@@ -154,10 +154,10 @@ fn a_saved_look_is_the_same_look_and_its_command_is_short() {
     assert_eq!(look.settings(&parameters).len(), 4);
     look.save(&file, look.preset.title.clone()).unwrap();
     assert!(!look.is_changed() && look.settings(&parameters).is_empty());
-    let opened = Look::open(&session.library, &file).unwrap();
+    let opened = EditedLook::open(&session.library, &file).unwrap();
     assert_eq!(opened, look);
     std::fs::write(&file, r#"{"style": "cartoon", "parameters": {"later": 1}}"#).unwrap();
-    let error = Look::open(&session.library, &file).unwrap_err().to_string();
+    let error = EditedLook::open(&session.library, &file).unwrap_err().to_string();
     assert!(error.contains("later"), "{error}");
 }
 

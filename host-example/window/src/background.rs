@@ -13,7 +13,7 @@ use super::document::kind::Kind;
 use super::document::{Document, Options};
 use super::export::{self, Export, Progress, State};
 use super::idle::{self, IdleControls, IdleRequest};
-use super::look::Look;
+use super::look::EditedLook;
 use super::look_work::LookWork;
 use super::pictures;
 use super::plan::What;
@@ -52,7 +52,7 @@ enum Opened {
     Again(Box<Playback>),
     /// One of several, with what is wrong with others and how many were left.
     Among(Box<Opened>, Vec<Error>, usize),
-    Look(Box<Look>),
+    Look(Box<EditedLook>),
     Surroundings(Surround, PathBuf),
 }
 
@@ -83,13 +83,13 @@ pub struct Background {
     opener: Worker<OpenJob, Result<Opened>>,
     idle_search: Worker<IdleRequest, IdleControls>,
     /// Reads looks again whose files have changed.
-    reader: Worker<(Library, PathBuf), (PathBuf, Result<Look>)>,
+    reader: Worker<(Library, PathBuf), (PathBuf, Result<EditedLook>)>,
     watch: Watch,
     looks: LookWork,
     /// Makes the pictures of the start small.
     reducer: Worker<(), Vec<Arc<ColorImage>>>,
     /// The last request to the search for idle controls.
-    asked: Option<(Look, Option<IsophoteRequest>)>,
+    asked: Option<(EditedLook, Option<IsophoteRequest>)>,
     chosen: Receiver<(Dialog, Result<Option<PathBuf>>)>,
     choose: Sender<(Dialog, Result<Option<PathBuf>>)>,
     export: Option<Export>,
@@ -109,7 +109,7 @@ impl Background {
             opener: Worker::new("open", Arc::clone(wake), open)?,
             idle_search: Worker::new("controls", Arc::clone(wake), idle::idle_controls)?,
             reader: Worker::new("look again", Arc::clone(wake), |(library, path): (Library, PathBuf)| {
-                let read = Look::open(&library, &path);
+                let read = EditedLook::open(&library, &path);
                 (path, read)
             })?,
             watch: Watch::new(wake)?,
@@ -387,7 +387,7 @@ fn open(job: OpenJob) -> Result<Opened> {
             let options = Options { selection: *selection, ..Options::default() };
             Opened::Again(Box::new(Playback::new(Document::open(&path, &options)?)?))
         }
-        OpenJob::Look(library, path) => Opened::Look(Box::new(Look::open(&library, &path)?)),
+        OpenJob::Look(library, path) => Opened::Look(Box::new(EditedLook::open(&library, &path)?)),
         OpenJob::Surroundings(path) => {
             let environment = Arc::new(Environment::read(&path)?);
             Opened::Surroundings(Surround::Environment(environment), path)
@@ -412,7 +412,7 @@ fn first_of(library: &Library, files: Vec<PathBuf>) -> Result<Opened> {
 /// Opens a scene, a picture, a sequence, a video or a look.
 fn file(library: &Library, path: PathBuf) -> Result<Opened> {
     if is_look(&path) {
-        return Ok(Opened::Look(Box::new(Look::open(library, &path)?)));
+        return Ok(Opened::Look(Box::new(EditedLook::open(library, &path)?)));
     }
     let document = Document::open(&path, &Options::default())?;
     Ok(match document.kind() {

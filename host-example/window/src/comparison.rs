@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::canvas::Area;
-use super::look::Look;
+use super::look::EditedLook;
 use super::viewport::Compare;
 
 /// Pixels of the window between and around panes.
@@ -13,7 +13,7 @@ const GAP: f32 = 8.0;
 #[derive(Clone, Debug)]
 pub struct Comparison {
     /// The looks.
-    pub panes: Vec<Arc<Look>>,
+    pub panes: Vec<Arc<EditedLook>>,
     /// The way in which pictures were compared before.
     pub before: Compare,
     /// True where the browser was open before.

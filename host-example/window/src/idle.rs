@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::look::Look;
+use super::look::EditedLook;
 use super::value::Value;
 use isophote_files::error::Result;
 use isophote_finishing::stylize::frame_request;
@@ -18,7 +18,7 @@ pub struct IdleRequest {
     /// The library.
     pub library: Library,
     /// The look.
-    pub look: Look,
+    pub look: EditedLook,
     /// Request of looks on the picture; that of scenes without.
     pub asked: Option<IsophoteRequest>,
 }
@@ -26,7 +26,7 @@ pub struct IdleRequest {
 /// The controls that are known to have none.
 pub struct IdleControls {
     /// The look.
-    pub look: Look,
+    pub look: EditedLook,
     /// Request that it was found for.
     pub asked: Option<IsophoteRequest>,
     /// Names of the parameters without effect.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::look::{Look, Parameter};
+use super::look::{EditedLook, Parameter};
 use super::worker::{Wake, Worker};
 use isophote_example::kernels::Kernels;
 use isophote_example::plan_runner::Counts;
@@ -24,7 +24,7 @@ struct BuildJob {
 
 #[derive(Clone, Debug, PartialEq)]
 struct Recipe {
-    look: Look,
+    look: EditedLook,
     precision: Precision,
     /// Request of the pictures that the look is for; the reference of lengths is the look's own affair, and frames
     /// come later.
@@ -93,7 +93,7 @@ impl LiveLook {
     pub fn follow(
         &mut self,
         library: &Library,
-        look: &Look,
+        look: &EditedLook,
         precision: Precision,
         asked: IsophoteRequest,
     ) -> Result<()> {
@@ -249,7 +249,7 @@ impl Ready {
         if !is_same || (self.recipe.asked, self.recipe.precision) != (wanted.asked, wanted.precision) {
             return Ok(false);
         }
-        let track = |look: &Look, parameter: &Parameter| {
+        let track = |look: &EditedLook, parameter: &Parameter| {
             look.preset
                 .params
                 .iter()

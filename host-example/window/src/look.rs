@@ -21,7 +21,7 @@ pub const PLAIN: &str = "none";
 
 /// A style with the values of its parameters.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Look {
+pub struct EditedLook {
     /// Name for people.
     pub name: String,
     /// Name that it was opened by: the id of a node, or the path of a graph file or preset.
@@ -49,7 +49,7 @@ pub struct Parameter {
     pub default: Value,
 }
 
-impl Look {
+impl EditedLook {
     /// The look that leaves pictures as they are.
     pub fn plain() -> Self {
         let preset = bare(String::new());

@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::look::Look;
+use super::look::EditedLook;
 use super::scenery::Scenery;
 use super::session::{Session, Which};
 use super::stage::Drawn;
@@ -20,7 +20,7 @@ const SCALES: [f32; 4] = [1.0, 0.5, 1.0 / 3.0, 0.25];
 /// Appearance of a picture, as far as an artist can change it.
 #[derive(Clone, Debug, PartialEq)]
 struct Appearance {
-    look: Look,
+    look: EditedLook,
     view: Option<View>,
     light: Option<Light>,
     shown: [Which; 2],

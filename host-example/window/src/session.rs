@@ -17,7 +17,7 @@ use super::document::kind::Kind;
 use super::file_steps::FileSteps;
 use super::history::History;
 use super::leaving::Leaving;
-use super::look::{Look, Parameter};
+use super::look::{EditedLook, Parameter};
 use super::notes::Notes;
 use super::plan::Plan;
 use super::playback::Playback;
@@ -71,7 +71,7 @@ pub enum Request {
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     current: usize,
-    looks: Vec<Arc<Look>>,
+    looks: Vec<Arc<EditedLook>>,
     lighting: Option<Lighting>,
     /// Changes of files that were made.
     files: usize,
@@ -97,7 +97,7 @@ pub struct Session {
     /// Precision in which looks are computed.
     pub precision: Precision,
     /// Looks in the order of the keys 1, 2, ...
-    pub looks: Vec<Arc<Look>>,
+    pub looks: Vec<Arc<EditedLook>>,
     /// Parameters of the present look.
     pub parameters: Vec<Parameter>,
     /// The list of nodes that the present look is, if it is one.
@@ -111,7 +111,7 @@ pub struct Session {
     /// Names of those that have no effect at the moment.
     pub idle: HashSet<String>,
     /// Look that the present one is compared with, if that is not the original.
-    pub compared: Option<Look>,
+    pub compared: Option<EditedLook>,
     /// The scene that is open.
     pub scenery: Option<Scenery>,
     /// The picture, sequence or video that is open, where no scene is.
@@ -168,8 +168,8 @@ impl Session {
     /// A window of these looks, at least one, with nothing open.
     ///
     /// # Errors
-    /// As [`Look::parameters`].
-    pub fn new(library: Library, looks: Vec<Look>, settings: Settings) -> Result<Self> {
+    /// As [`EditedLook::parameters`].
+    pub fn new(library: Library, looks: Vec<EditedLook>, settings: Settings) -> Result<Self> {
         let parameters = looks.first().map_or_else(|| Ok(Vec::new()), |look| look.parameters(&library))?;
         let chain = looks.first().map_or(Ok(None), |look| look.chain(&library))?;
         Ok(Self {
@@ -213,12 +213,12 @@ impl Session {
     }
 
     /// The look that is shown and edited.
-    pub fn look(&self) -> &Look {
+    pub fn look(&self) -> &EditedLook {
         &self.looks[self.current]
     }
 
     /// The look as far as it is looked at.
-    pub fn seen(&self) -> Cow<'_, Look> {
+    pub fn seen(&self) -> Cow<'_, EditedLook> {
         let (Some(chain), Some(watched)) = (&self.chain, &self.watched) else {
             return Cow::Borrowed(self.look());
         };

@@ -11,7 +11,7 @@ use winit::window::Window;
 use super::canvas::{Arrangement, Canvas, SURROUND, Shown};
 use super::document::frame::Frame;
 use super::live_look::{LiveLook, Part};
-use super::look::Look;
+use super::look::EditedLook;
 use super::panel::Panel;
 use super::probe::Probe;
 use super::screen::{self, Screen};
@@ -198,10 +198,11 @@ impl Stage {
             self.gpu.check()?;
             return Ok(problems);
         };
-        let overlay = session.viewport.overlay.node().map(|node| Look::open(&session.library, node.as_ref()));
-        let overlay = overlay.transpose()?.unwrap_or_else(Look::plain);
+        let overlay =
+            session.viewport.overlay.node().map(|node| EditedLook::open(&session.library, node.as_ref()));
+        let overlay = overlay.transpose()?.unwrap_or_else(EditedLook::plain);
         let seen = session.seen();
-        let compared = session.compared.clone().unwrap_or_else(Look::plain);
+        let compared = session.compared.clone().unwrap_or_else(EditedLook::plain);
         let asked = source.asked();
         for (live, look) in self.looks.iter_mut().zip([&*seen, &compared, &overlay]) {
             problems.extend(live.follow(&session.library, look, session.precision, asked).err());

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::look::Look;
+use crate::look::EditedLook;
 use isophote_finishing::stylize::title::Title;
 
 /// Group that a look belongs to.
@@ -21,7 +21,7 @@ pub enum Group {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Content {
     /// The look.
-    Look(Arc<Look>),
+    Look(Arc<EditedLook>),
     /// Message about what is wrong.
     Broken(String),
 }
@@ -47,7 +47,7 @@ pub struct Entry {
 
 impl Entry {
     /// The look, where it can be used.
-    pub fn look(&self) -> Option<&Arc<Look>> {
+    pub fn look(&self) -> Option<&Arc<EditedLook>> {
         match &self.content {
             Content::Look(look) => Some(look),
             Content::Broken(_) => None,

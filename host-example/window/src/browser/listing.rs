@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::entry::{Content, Group};
-use crate::look::{Look, PLAIN};
+use crate::look::{EditedLook, PLAIN};
 use isophote_files::error::Error;
 use isophote_finishing::stylize::looks;
 use isophote_finishing::stylize::title::Title;
@@ -106,7 +106,7 @@ impl Listing {
 }
 
 fn found(library: &Library, group: Group, source: PathBuf) -> Found {
-    let (style, content) = match Look::open(library, &source) {
+    let (style, content) = match EditedLook::open(library, &source) {
         Ok(look) => (style_of(library, &look), Content::Look(Arc::new(look))),
         Err(error) => (String::new(), Content::Broken(error.to_string())),
     };
@@ -114,7 +114,7 @@ fn found(library: &Library, group: Group, source: PathBuf) -> Found {
 }
 
 /// Name of a look's style for people.
-fn style_of(library: &Library, look: &Look) -> String {
+fn style_of(library: &Library, look: &EditedLook) -> String {
     match library.find_node(&look.preset.style) {
         Ok(node) => node.label.to_owned(),
         Err(_) if look.is_plain() => String::new(),

@@ -8,7 +8,7 @@ use egui::ColorImage;
 use super::picture::{self, Meaning, Picture};
 use crate::document::frame::Frame;
 use crate::document::reduce;
-use crate::look::Look;
+use crate::look::EditedLook;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::limits;
 use isophote_finishing::apply::filter;
@@ -31,7 +31,7 @@ pub const FINENESS: u32 = 3;
 #[derive(Clone, Debug)]
 pub struct Order {
     /// The look.
-    pub look: Arc<Look>,
+    pub look: Arc<EditedLook>,
     /// Pixels across and down of the whole picture as it is seen, at most those of the frame.
     pub size: (u32, u32),
     /// The pixels of it that are seen.
@@ -43,7 +43,7 @@ pub struct Order {
 
 impl Order {
     /// All of the picture.
-    pub fn whole(look: Arc<Look>, size: (u32, u32), fineness: u32) -> Self {
+    pub fn whole(look: Arc<EditedLook>, size: (u32, u32), fineness: u32) -> Self {
         Self { look, size, part: reduce::whole(size), fineness }
     }
 }

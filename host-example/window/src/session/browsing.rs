@@ -10,7 +10,7 @@ use crate::browser::listing::Listing;
 use crate::browser::title_edit::{self, TitleEdit, Words};
 use crate::comparison::Comparison;
 use crate::document::frame::Frame;
-use crate::look::Look;
+use crate::look::EditedLook;
 use crate::preview::picture::Picture;
 use crate::saving::Saving;
 use crate::viewport::Compare;
@@ -74,7 +74,7 @@ impl Session {
     /// Shows the looks that are marked beside each other.
     pub fn compare_marked(&mut self) {
         let look = |id: &u64| self.browser.entry(*id).and_then(|entry| entry.look().cloned());
-        let panes: Vec<Arc<Look>> = self.browser.marked.iter().filter_map(look).collect();
+        let panes: Vec<Arc<EditedLook>> = self.browser.marked.iter().filter_map(look).collect();
         if panes.len() < 2 {
             return;
         }

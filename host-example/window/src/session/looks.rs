@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::Session;
 use crate::chain::Chain;
-use crate::look::{Look, Parameter};
+use crate::look::{EditedLook, Parameter};
 use crate::value::Value;
 use isophote_files::error::Result;
 use isophote_finishing::stylize::lengths::Lengths;
@@ -14,14 +14,14 @@ use isophote_loader::Library;
 
 impl Session {
     /// The look was saved.
-    pub fn saved(&mut self, look: Look) {
+    pub fn saved(&mut self, look: EditedLook) {
         let current = self.current;
         self.looks[current] = Arc::new(look);
         self.turn_to(current);
     }
 
     /// A file has what this look was opened as.
-    pub(super) fn keep(&mut self, look: &Look) {
+    pub(super) fn keep(&mut self, look: &EditedLook) {
         self.kept.insert(look.source.clone(), look.opened().clone());
     }
 
@@ -94,7 +94,7 @@ impl Session {
     }
 
     /// Shows a look that may be new here, as one step. A look that was opened as the same is replaced.
-    pub fn take(&mut self, look: Arc<Look>) {
+    pub fn take(&mut self, look: Arc<EditedLook>) {
         self.let_go();
         let before = self.state();
         let known = self.looks.iter().position(|known| known.source == look.source);
@@ -110,7 +110,7 @@ impl Session {
     }
 
     /// The files of the look that is shown may say something else now: this is what can be read of them.
-    pub fn reload(&mut self, source: &Path, read: Result<Look>) {
+    pub fn reload(&mut self, source: &Path, read: Result<EditedLook>) {
         if self.look().source != source {
             return;
         }
@@ -152,7 +152,7 @@ impl Session {
         match known {
             Some(index) => self.turn_to(index),
             None => {
-                if let Ok(look) = Look::open(&self.library, last) {
+                if let Ok(look) = EditedLook::open(&self.library, last) {
                     self.looks.push(Arc::new(look));
                     self.turn_to(self.looks.len() - 1);
                 }

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::{Session, State};
-use crate::look::Look;
+use crate::look::EditedLook;
 use crate::scenery::Lighting;
 use isophote_files::error::Result;
 
@@ -66,7 +66,7 @@ impl Session {
     }
 
     /// Changes the look; changes of the same thing are one step until [`Session::let_go`].
-    pub fn edit(&mut self, what: &str, change: impl FnOnce(&mut Look)) {
+    pub fn edit(&mut self, what: &str, change: impl FnOnce(&mut EditedLook)) {
         let before = self.state();
         let current = self.current;
         change(Arc::make_mut(&mut self.looks[current]));

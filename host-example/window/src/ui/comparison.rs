@@ -7,7 +7,7 @@ use egui::{Align2, Color32, Id, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2}
 use super::{canvas, card, theme};
 use crate::canvas::Area;
 use crate::comparison;
-use crate::look::Look;
+use crate::look::EditedLook;
 use crate::preview::picture::Picture;
 use crate::preview::render::Order;
 use crate::preview::{Place, Preview};
@@ -49,7 +49,7 @@ fn pane(
     rect: Rect,
     session: &mut Session,
     index: usize,
-    look: &Arc<Look>,
+    look: &Arc<EditedLook>,
     by: [f32; 2],
 ) -> bool {
     let response = ui.interact(rect, Id::unique(("pane", index)), Sense::click_and_drag());
@@ -102,7 +102,7 @@ fn ask(
     rect: Rect,
     session: &mut Session,
     index: usize,
-    look: &Arc<Look>,
+    look: &Arc<EditedLook>,
     place: Area,
     picture: &Picture,
 ) {
