@@ -41,7 +41,7 @@ pub fn cargo(arguments: &[&str]) -> Result<()> {
     run(&mut cargo_command(arguments))
 }
 
-/// Where a build leaves its programs and libraries: `debug`, or the name of another profile.
+/// Folder where a build leaves its programs and libraries: `debug`, or the name of another profile.
 pub fn target_dir(profile: &str) -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
     target.join(profile)
@@ -78,7 +78,7 @@ pub fn build_with_host(profile: &str, more: &[&str]) -> Result<()> {
     run(command.args(chosen(profile)))
 }
 
-/// How cargo is told the profile of that folder.
+/// Arguments that tell cargo the profile of that folder.
 fn chosen(profile: &str) -> Vec<&str> {
     if profile == "debug" { Vec::new() } else { vec!["--profile", profile] }
 }

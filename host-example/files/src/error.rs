@@ -10,7 +10,7 @@ use isophote_loader::abi::{
 };
 use isophote_loader::{Fault, printable};
 
-/// Why a command could not be carried out.
+/// Reason why a command could not be carried out.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -19,17 +19,17 @@ pub enum Error {
     Input {
         /// The file, option or value at fault.
         place: String,
-        /// What is wrong with it.
+        /// The problem with it.
         problem: String,
-        /// How to put it right.
+        /// Advice to put it right.
         fix: String,
     },
     /// The machine or a device could not do its part (exit code 1).
     #[error("{problem}; {fix}")]
     Failure {
-        /// What went wrong.
+        /// The problem.
         problem: String,
-        /// How to put it right.
+        /// Advice to put it right.
         fix: String,
     },
 }

@@ -50,7 +50,7 @@ impl PictureSource {
         Ok(source)
     }
 
-    /// Whether it shows this frame.
+    /// True where it shows this frame.
     pub fn shows(&self, frame: &Arc<Frame>) -> bool {
         Arc::ptr_eq(&self.frame, frame)
     }
@@ -93,7 +93,7 @@ impl PictureSource {
         }
     }
 
-    /// What looks on it are asked for.
+    /// Request of looks on it.
     pub fn asked(&self) -> IsophoteRequest {
         self.request
     }
@@ -130,7 +130,7 @@ impl PictureSource {
     }
 }
 
-/// What the numbers of a space are on the canvas.
+/// Meaning of the numbers of a space on the canvas.
 pub fn numbers(space: IsophoteSpace) -> Numbers {
     match space {
         ISOPHOTE_SPACE_LINEAR => Numbers::Linear,
@@ -139,13 +139,13 @@ pub fn numbers(space: IsophoteSpace) -> Numbers {
     }
 }
 
-/// What there is of a frame: names, numbers a pixel, and these.
+/// Inputs that a frame has: names, numbers a pixel, and these.
 fn inputs(frame: &Frame) -> impl Iterator<Item = (&'static str, u32, &[f32])> {
     let guides = frame.guides.iter().map(|image| (image.guide.id(), image.channels, image.data.as_slice()));
     [("color", 4, frame.color.as_flattened())].into_iter().chain(guides)
 }
 
-/// What `apply` asks for, of a picture of so much of the size.
+/// Request of `apply`, for a picture of so much of the size.
 pub fn request(frame: &Frame, scale: f32, usual: IsophoteRequest) -> IsophoteRequest {
     let guides = frame.guides.iter().map(|image| match image.guide {
         Guide::Normal => ISOPHOTE_GUIDE_NORMAL,

@@ -1,12 +1,12 @@
-//! What is done to every frame: the graph on each of its pictures.
+//! Work on every frame: the graph on each of its pictures.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use super::asked::Asked;
 use super::backend::Backend;
+use super::frame_cache::Window;
 use super::memory::Needs;
-use super::reel::Window;
 use crate::stylize::style::Style;
 use isophote_example::history::{is_stage, split};
 use isophote_files::error::{AtPlace, Error, Result};
@@ -24,16 +24,16 @@ use isophote_pictures::space::Space;
 use isophote_pictures::working::WorkingSpace;
 use isophote_pictures::write::Format;
 
-/// What is done to a picture: a style, maybe where a mask is.
+/// Look of a picture: a style, maybe where a mask is.
 #[derive(Debug)]
-pub struct Look {
+pub struct MaskedStyle {
     /// The style.
     pub style: Style,
     /// Index of the mask among those of pictures.
     pub mask: Option<usize>,
 }
 
-impl Look {
+impl MaskedStyle {
     /// A style for whole pictures.
     pub fn whole(style: Style) -> Self {
         Self { style, mask: None }
@@ -54,14 +54,14 @@ pub struct Filter {
 /// A look with what is kept of it.
 #[derive(Debug)]
 struct Layer {
-    look: Look,
+    look: MaskedStyle,
     /// The mask that its graph takes as an input; that of other looks is applied to their results.
     input: Option<usize>,
-    /// What is kept of the frames of each picture.
+    /// State that is kept of the frames of each picture.
     sequences: Vec<Kept>,
 }
 
-/// What is kept of the frames of one picture, whose size it is made for.
+/// State that is kept of the frames of one picture, whose size it is made for.
 #[derive(Debug)]
 struct Kept {
     size: (u32, u32),
@@ -96,11 +96,11 @@ pub struct Planner {
 ///
 /// # Errors
 /// [`isophote_files::error::Error::Input`] for a mask of what is no picture of colours.
-fn layers(looks: Vec<Look>) -> Result<Vec<Layer>> {
+fn layers(looks: Vec<MaskedStyle>) -> Result<Vec<Layer>> {
     let is_single = looks.len() == 1;
     let mut layers = Vec::with_capacity(looks.len());
     for look in looks {
-        let Look { style, mask } = &look;
+        let MaskedStyle { style, mask } = &look;
         if (mask.is_some() || !is_single) && style.kind != Kind::Color {
             return Err(Error::input(
                 &style.name,
@@ -117,7 +117,7 @@ fn layers(looks: Vec<Look>) -> Result<Vec<Layer>> {
 /// Frames before and after its own that a frame of any of the looks depends on.
 fn frames(library: &Library, layers: &[Layer]) -> Result<[i64; 2]> {
     let mut most = [0; 2];
-    for Layer { look: Look { style, .. }, .. } in layers {
+    for Layer { look: MaskedStyle { style, .. }, .. } in layers {
         let frames = library.frames(&style.graph).map_err(|e| e.at(&style.name, "choose another style"))?;
         most = [0, 1].map(|side| i64::from(frames[side]).max(most[side]));
     }
@@ -130,7 +130,7 @@ impl Layer {
         self.input.map(|_| "mask")
     }
 
-    /// Whether its result is mixed with what is below it.
+    /// True where its result is mixed with what is below it.
     fn is_mixed(&self) -> bool {
         self.look.mask.is_some() && self.input.is_none()
     }
@@ -139,11 +139,11 @@ impl Layer {
     fn process(
         &mut self,
         (library, device): (&Library, Option<&Device>),
-        job: &Job<'_>,
+        job: &LayerJob<'_>,
         result: &mut Pixels,
         control: &mut Control<'_>,
     ) -> isophote_loader::Result<u64> {
-        let Job { at, there, mut request, color, window } = *job;
+        let LayerJob { at, there, mut request, color, window } = *job;
         let Some(picture) = window.own.source.pictures.get(at) else { return Ok(0) };
         let style = &mut self.look.style;
         request.reference_height = style.lengths.reference_height();
@@ -184,7 +184,7 @@ impl Filter {
     /// [`Error::Failure`] when there is no such device, [`Error::Input`] for a mask of what is no picture of colours.
     pub fn new(
         library: Library,
-        looks: Vec<Look>,
+        looks: Vec<MaskedStyle>,
         backend: Backend,
         space: Option<Space>,
         threads: u32,
@@ -197,13 +197,13 @@ impl Filter {
     ///
     /// # Errors
     /// As [`Filter::new`].
-    pub fn beside(&self, looks: Vec<Look>) -> Result<Self> {
+    pub fn beside(&self, looks: Vec<MaskedStyle>) -> Result<Self> {
         let (library, device) = (self.library.clone(), self.device.clone());
         Ok(Self { library, layers: layers(looks)?, device, space: self.space, threads: self.threads })
     }
 
-    /// How many of them should work on the frames of a sequence. Two on a graphics device: while it computes one frame,
-    /// another one is uploaded or read back. Frames that depend on others are done by one, which knows them.
+    /// Number of them that should work on the frames of a sequence. Two on a graphics device: while it computes one
+    /// frame, another one is uploaded or read back. Frames that depend on others are done by one, which knows them.
     ///
     /// # Errors
     /// [`Error::Failure`] when the library fails.
@@ -256,7 +256,7 @@ impl Filter {
             let size = (color.width(), color.height());
             let usual = self.library.request(size).map_err(|e| e.at(name, "use a smaller picture"))?;
             let request = Asked::of(picture, source.state, working.space, own.number).request(usual);
-            let job = Job { at, there, request, color, window };
+            let job = LayerJob { at, there, request, color, window };
             let share = 1.0 / count as f32;
             let mut report = |done: f32| progress((at as f32 + done) * share);
             let meaning = Meaning { state: source.state, space: working.space };
@@ -279,7 +279,7 @@ impl Filter {
     fn layered(
         &mut self,
         name: &str,
-        job: &Job<'_>,
+        job: &LayerJob<'_>,
         (channels, precision): (u32, Precision),
         meaning: Meaning,
         progress: &mut dyn FnMut(f32),
@@ -314,7 +314,7 @@ impl Planner {
     ///
     /// # Errors
     /// As [`Filter::new`].
-    pub fn new(library: Library, looks: Vec<Look>) -> Result<Self> {
+    pub fn new(library: Library, looks: Vec<MaskedStyle>) -> Result<Self> {
         let mut guides = Vec::new();
         for look in &looks {
             guides.extend(usable_guides(&library, &look.style)?);
@@ -387,7 +387,7 @@ impl Planner {
         frames(&self.library, &self.layers)
     }
 
-    /// How many frames are held while `frame` is done: it and all that it depends on.
+    /// Number of frames that are held while `frame` is done: it and all that it depends on.
     ///
     /// # Errors
     /// As [`Planner::frames`].
@@ -396,7 +396,7 @@ impl Planner {
         Ok((past + future + 1) as u64)
     }
 
-    /// What the frame `file` needs; nothing when it will be refused, which is reported when its turn comes.
+    /// Needs of the frame `file`; nothing when it will be refused, which is reported when its turn comes.
     ///
     /// # Errors
     /// As [`Planner::filter_memory`].
@@ -413,7 +413,7 @@ impl Planner {
 
 /// One picture of a frame.
 #[derive(Clone, Copy)]
-struct Job<'a> {
+struct LayerJob<'a> {
     at: usize,
     /// The change to the working space.
     there: Option<&'a Change>,

@@ -21,9 +21,9 @@ const FLOW: &str = "flow";
 /// Where a mask comes from, and whether what it leaves out is meant.
 #[derive(Clone, Debug)]
 pub struct MaskChoice {
-    /// Where it comes from.
+    /// Source of the mask.
     pub source: MaskSource,
-    /// Whether it is turned round.
+    /// True where it is turned round.
     pub invert: bool,
 }
 
@@ -45,7 +45,7 @@ struct Flow {
 #[derive(Debug)]
 struct Mask {
     place: Place,
-    /// What of the file is the mask, where that is not all of it.
+    /// Part of the file that is the mask, where that is not all of it.
     source: Option<MaskSource>,
     invert: bool,
     on_unknown: OnUnknown,
@@ -183,7 +183,7 @@ impl Mask {
         of_file(&self.kept, &self.place, frame, || Ok(self.finished(self.read(path, frame)?)))
     }
 
-    /// What is in a file, in the size of a picture.
+    /// Mask in a file, in the size of a picture.
     fn read(&self, path: &Path, frame: Frame) -> Result<Pixels> {
         let unread = Unread::open(path)?;
         let opened = match unread.any(path)? {
@@ -296,7 +296,7 @@ fn of_file(
 }
 
 impl Frame {
-    /// Which window of a mask belongs to the picture: the same part of the display, or else all of it.
+    /// Window of a mask that belongs to the picture: the same part of the display, or else all of it.
     fn place(self, data: Window, display: Option<Window>) -> std::result::Result<Window, String> {
         let display = display.unwrap_or(data);
         let size = |window: Window| (window.width, window.height);

@@ -1,4 +1,4 @@
-//! Where graphs and presets are read from.
+//! Sources that graphs and presets are read from.
 
 use std::path::Path;
 

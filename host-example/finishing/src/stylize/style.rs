@@ -1,4 +1,4 @@
-//! What `--style` and `--set` say, as a graph of the library.
+//! Style that `--style` and `--set` name, as a graph of the library.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -58,9 +58,9 @@ pub struct Style {
     pub name: String,
     /// The graph.
     pub graph: Graph,
-    /// What it yields.
+    /// Kind of image that it yields.
     pub kind: Kind,
-    /// What its lengths mean.
+    /// Unit of its lengths.
     pub lengths: Lengths,
     /// Its parameters by name and by frame.
     tracks: Tracks,
@@ -135,7 +135,7 @@ impl Style {
         Ok(Self { name, graph, kind, lengths, tracks })
     }
 
-    /// What is asked of the library for pictures of a size, with lengths as the style means them.
+    /// Request to the library for pictures of a size, with lengths as the style means them.
     ///
     /// # Errors
     /// As [`Library::request`].
@@ -217,7 +217,7 @@ impl Style {
         Ok(())
     }
 
-    /// Whether a node of the graph can use pictures of a kind.
+    /// True where a node of the graph can use pictures of a kind.
     ///
     /// # Errors
     /// [`Error::Failure`] when the library fails.
@@ -323,13 +323,13 @@ fn graph_beside(library: &Library, path: &Path, preset: &Preset) -> Result<Optio
     source::read(named).map(Some).map_err(|e| e.within(path))
 }
 
-/// Whether the name of a style can be that of a file alone, since no node has such a name.
+/// True where the name of a style can be that of a file alone, since no node has such a name.
 fn looks_like_file(style: &Path) -> bool {
     style.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) || style.components().count() > 1
 }
 
-/// Whether a style is a file, and neither a node nor a look nor a graph written out. Of a node and a file of one name the
-/// node counts.
+/// True where a style is a file, and neither a node nor a look nor a graph written out. Of a node and a file of one
+/// name the node counts.
 pub fn is_file(style: &Path) -> bool {
     if preset::id_of_look(style).is_some() || style.to_str().is_some_and(preset::is_written_out) {
         return false;

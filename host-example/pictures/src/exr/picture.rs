@@ -24,13 +24,13 @@ pub struct Picture {
     pub guides: Vec<(&'static str, Pixels)>,
     /// Red, green, blue, white: x and y of each.
     pub chromaticities: Option<[f32; 8]>,
-    /// Where its first pixel stands in the display window's coordinates.
+    /// Place of its first pixel in the display window's coordinates.
     pub origin: [i32; 2],
     /// The display window, where the picture may be a part of it or more.
     pub display: Option<Window>,
-    /// How much of results is used, 0 to 1: a mask for each that was asked for.
+    /// Share of results that is used, 0 to 1: a mask for each that was asked for.
     pub masks: Vec<Option<Pixels>>,
-    /// Why there can be no result of it, for want of masks; neighbouring frames may depend on it all the same.
+    /// Reason why there can be no result of it, for want of masks; neighbouring frames may depend on it all the same.
     pub refused: Option<Error>,
 }
 

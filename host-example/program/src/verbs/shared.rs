@@ -20,7 +20,7 @@ use isophote_scene::Scene;
 pub struct SceneArgs {
     /// The scene: .gltf, .glb or .obj.
     pub scene: PathBuf,
-    /// How it is read.
+    /// Options of reading it.
     #[command(flatten)]
     pub reading: ReadingArgs,
 }
@@ -35,7 +35,7 @@ impl SceneArgs {
     }
 }
 
-/// What lengths of a style mean.
+/// Meaning of a style's lengths.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct LengthArgs {
     /// What lengths of parameters are: pixels of a picture 1080 lines high, so that pictures of all sizes get the same look,
@@ -65,10 +65,10 @@ impl LengthArgs {
     }
 }
 
-/// How precisely graphics devices compute a style.
+/// Precision in which graphics devices compute a style.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct PrecisionArgs {
-    /// How precisely graphics devices compute; the CPU always computes exactly.
+    /// Precision in which graphics devices compute; the CPU always computes exactly.
     #[arg(long, value_enum, default_value_t)]
     pub precision: Precision,
 }
@@ -96,7 +96,7 @@ impl ForceArgs {
 /// Width and height in pixels, such as `1280x720`.
 ///
 /// # Errors
-/// What to write instead.
+/// Advice what to write instead.
 pub fn parse_size(text: &str) -> std::result::Result<(u32, u32), String> {
     let parse = || {
         let (width, height) = text.split_once(['x', 'X'])?;

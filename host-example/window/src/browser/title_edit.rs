@@ -7,12 +7,12 @@ use isophote_files::files::{self, Existing};
 use isophote_finishing::stylize::preset::{self, Preset, Title, is_line};
 use isophote_finishing::stylize::source;
 
-/// What is typed.
+/// Words that are typed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Words {
     /// The name.
     pub name: String,
-    /// What it looks like.
+    /// Description of the look.
     pub about: String,
     /// Tags with commas between them.
     pub tags: String,
@@ -20,10 +20,10 @@ pub struct Words {
 
 /// A title that is being changed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Titling {
+pub struct TitleEdit {
     /// The file.
     pub file: PathBuf,
-    /// What is typed.
+    /// Words that are typed.
     pub words: Words,
 }
 
