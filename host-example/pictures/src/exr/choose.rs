@@ -148,7 +148,7 @@ impl Chosen {
     }
 }
 
-/// GuideSource of a guide.
+/// Source of a guide.
 #[derive(Clone, Debug)]
 pub struct GuideSource {
     /// The guide.
