@@ -8,15 +8,19 @@
 //! or `bool`, so that a wrong value is an error and not undefined behaviour.
 
 pub mod constants;
+pub mod guides;
 pub mod openfx;
 pub mod precision;
+pub mod presets;
 pub mod sequences;
 pub mod table;
 pub mod types;
 pub mod vulkan;
 
 pub use constants::*;
+pub use guides::*;
 pub use precision::*;
+pub use presets::*;
 pub use sequences::*;
 pub use table::*;
 pub use types::*;

@@ -102,6 +102,7 @@ const OF_EVERY_EFFECT: &[OfAnEffect] = named! {
     render::light_beyond_coverage_survives,
     render::lines_are_shown_alone_or_over_the_source,
     render::guides_enter_in_the_general_context,
+    render::object_numbers_and_painted_flow_enter_in_the_general_context,
     render::a_mask_decides_where_the_effect_shows,
     render::identity_is_what_is_rendered,
     render::a_missing_source_is_transparent_black_and_a_missing_output_a_failure,

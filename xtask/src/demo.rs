@@ -4,8 +4,10 @@
 use crate::error::{Context, Result};
 use crate::scene;
 use crate::setup::{self, VULKAN};
-use crate::tools::{build_with_host, heading, host, root, run as run_command};
+use crate::tools::{build_packages, heading, program, root, run as run_command};
+use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Stdio;
 
 /// Options of `cargo xtask demo`.
 #[derive(clap::Args)]
@@ -17,6 +19,13 @@ pub struct Options {
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u32).range(1..=1000))]
     frames: u32,
 }
+
+/// The example, which draws all frames: the window and what it needs are not compiled.
+const EXAMPLE: &str = "isophote-example";
+/// The program that makes the contact sheet.
+const SHEET: &str = "isophote-demo-sheet";
+/// All packages of the demo. Each build names all of them, so that both choose the same features of what they share.
+const PACKAGES: [&str; 4] = ["isophote-plugin", EXAMPLE, scene::PACKAGE, SHEET];
 
 const PANEL: &str = "960x540";
 const TURNTABLE: &str = "640x360";
@@ -38,7 +47,7 @@ const STYLES: [(&str, &str); 4] = [
 pub fn run(options: &Options) -> Result<()> {
     setup::ensure(&[&VULKAN])?;
     heading("build");
-    build_with_host("debug", &[scene::PACKAGE])?;
+    build_packages(&PACKAGES, &["--lib", "--bin", EXAMPLE, "--bin", scene::PACKAGE])?;
     let out = root().join(&options.out);
     heading("scene");
     let scene = scene::write(&out.join("scene"))?;
@@ -46,35 +55,42 @@ pub fn run(options: &Options) -> Result<()> {
     heading("panels");
     let panels = STYLES.map(|(name, _)| out.join(format!("{name}.png")));
     for (panel, (_, style)) in panels.iter().zip(STYLES) {
-        render(&scene, panel, style, PANEL, &[])?;
+        frames(&scene, style, PANEL, 1, |_| panel.clone())?;
         println!("{}", panel.display());
     }
 
     heading("turntables");
     let turntable = out.join("turntable");
-    std::fs::create_dir_all(&turntable).context(|| format!("cannot create {}", turntable.display()))?;
-    let frames = options.frames.to_string();
+    fs::create_dir_all(&turntable).context(|| format!("cannot create {}", turntable.display()))?;
+    let turned = |name: &str, frame: u32| turntable.join(format!("{name}.{frame:04}.png"));
     for (name, style) in STYLES {
-        let pattern = turntable.join(format!("{name}.####.png"));
-        render(&scene, &pattern, style, TURNTABLE, &["--frames", &frames, "--turntable"])?;
-        println!("{}", pattern.display());
+        frames(&scene, style, TURNTABLE, options.frames, |frame| turned(name, frame))?;
+        println!("{}", turntable.join(format!("{name}.####.png")).display());
     }
 
     heading("contact sheet");
+    build_packages(&PACKAGES, &["--bin", SHEET])?;
     let sheet = out.join("contact-sheet.png");
     let columns = STYLES.len().to_string();
     // A column for each style: the panels above, the frames of the turntables below them.
-    let pictures = (1..=options.frames)
-        .flat_map(|frame| STYLES.map(|(name, _)| turntable.join(format!("{name}.{frame:04}.png"))));
-    let mut command = host("debug");
-    command.args(["sheet", "--force"]).arg(&sheet).args(&panels).args(pictures);
+    let pictures = (1..=options.frames).flat_map(|frame| STYLES.map(|(name, _)| turned(name, frame)));
+    let mut command = program(SHEET, "debug");
+    command.arg(&sheet).args(&panels).args(pictures);
     run_command(command.args(["--columns", &columns, "--width", THUMBNAIL]))?;
     println!("{}", sheet.display());
     Ok(())
 }
 
-fn render(scene: &Path, out: &Path, style: &str, size: &str, more: &[&str]) -> Result<()> {
-    let mut command = host("debug");
-    command.current_dir(root()).args(["render", "--force"]).arg(scene).arg(out);
-    run_command(command.args(["--style", style, "--size", size]).args(more))
+/// Lets the example write frames of a style, and gives each the name that `place` has for its number.
+fn frames(scene: &Path, style: &str, size: &str, count: u32, place: impl Fn(u32) -> PathBuf) -> Result<()> {
+    let folder = scene.with_file_name("frames");
+    let mut command = program(EXAMPLE, "debug");
+    command.current_dir(root()).arg(scene).args(["--style", style, "--size", size]);
+    command.args(["--count", &count.to_string(), "--frames"]).arg(&folder);
+    run_command(command.stdout(Stdio::null()))?;
+    for frame in 1..=count {
+        let (from, to) = (folder.join(format!("frame.{frame:04}.png")), place(frame));
+        fs::rename(&from, &to).context(|| format!("cannot write {}", to.display()))?;
+    }
+    fs::remove_dir_all(&folder).context(|| format!("cannot remove {}", folder.display()))
 }

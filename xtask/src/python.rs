@@ -241,7 +241,7 @@ fn installed() -> Result<(Environment, PathBuf)> {
     Ok((environment, wheel))
 }
 
-/// Packs the library of a build, the looks, the package and its extension module.
+/// Packs the library of a build, the package and its extension module.
 fn build_wheel(environment: &Environment, profile: &str, out: &Path) -> Result<PathBuf> {
     put_beside_the_package(profile)?;
     for old in files(out, "whl").unwrap_or_default() {
@@ -274,15 +274,6 @@ fn put_beside_the_package(profile: &str) -> Result<()> {
     packing::write_licences(&COMPILED, profile, &package().join(packing::OTHERS))?;
     let (library, inner) = (library_file(profile), package().join("isophote"));
     copy(&library, &inner)?;
-    let looks = inner.join("looks");
-    if looks.exists() {
-        std::fs::remove_dir_all(&looks).context(|| format!("cannot replace {}", looks.display()))?;
-    }
-    std::fs::create_dir_all(&looks).context(|| format!("cannot create {}", looks.display()))?;
-    for (_, look) in crate::tools::looks()? {
-        copy(&look, &looks)?;
-    }
-    copy(&root().join("host-example/looks/order.txt"), &looks)?;
     Ok(())
 }
 

@@ -58,6 +58,15 @@ pub fn build(profile: &str, programs: &[&str]) -> Result<()> {
     run(command.args(chosen(profile)))
 }
 
+/// Builds targets of some packages alone, in the profile of development.
+///
+/// # Errors
+/// The command line, when it fails.
+pub fn build_packages(packages: &[&str], targets: &[&str]) -> Result<()> {
+    let mut command = cargo_command(&["build"]);
+    run(command.args(packages.iter().flat_map(|package| ["-p", package])).args(targets))
+}
+
 /// Builds the dynamic library, the sample host and some more programs. The libraries of the workspace come along,
 /// for a choice of packages would give their dependencies other features and compile them anew.
 ///
@@ -133,8 +142,10 @@ pub fn run(command: &mut Command) -> Result<()> {
 /// # Errors
 /// When the list cannot be read.
 pub fn looks() -> Result<Vec<(String, PathBuf)>> {
-    let folder = root().join("host-example/looks");
-    let order = folder.join("order.txt");
+    let folder = root().join("nodes/library/looks");
+    let order = folder.join("order.rs");
     let text = std::fs::read_to_string(&order).context(|| format!("cannot read {}", order.display()))?;
-    Ok(text.split_whitespace().map(|id| (id.to_owned(), folder.join(format!("{id}.json")))).collect())
+    let list = text.split_once('{').and_then(|(_, rest)| rest.split_once('}'));
+    let (ids, _) = list.ok_or_else(|| Failure(format!("{} has no list", order.display())))?;
+    Ok(ids.split_whitespace().map(|id| (id.to_owned(), folder.join(format!("{id}.json")))).collect())
 }

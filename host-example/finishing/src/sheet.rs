@@ -16,6 +16,7 @@ use image::imageops::{FilterType, resize};
 use image::{ImageBuffer, Rgb, RgbImage, Rgba};
 
 use isophote_files::error::{Error, Result};
+use isophote_files::files::{self, Existing};
 use isophote_pictures::convert;
 use isophote_pictures::exr::Selection;
 use isophote_pictures::pixels::MOST_PIXELS;
@@ -86,8 +87,22 @@ pub fn cells(path: &Path, label: &str, width: u32) -> Result<Vec<Cell>> {
     Ok(cells)
 }
 
+/// Writes all cells in rows of `columns`, each `width` pixels wide, as PNG.
+///
+/// # Errors
+/// [`Error::Input`] for sheets that are too large or cannot be written.
+pub fn save(path: &Path, existing: Existing, cells: &[Cell], columns: usize, width: u32) -> Result<()> {
+    let sheet = arranged(cells, columns, width).ok_or_else(|| {
+        Error::input("the sheet", "would be too large", "choose a smaller --width or fewer pictures")
+    })?;
+    files::write(path, existing, |file| {
+        let encoder = image::codecs::png::PngEncoder::new(file);
+        sheet.write_with_encoder(encoder).map_err(|e| e.to_string())
+    })
+}
+
 /// All cells in rows of `columns`, each `width` pixels wide; nothing when that would be too large.
-pub fn arranged(cells: &[Cell], columns: usize, width: u32) -> Option<RgbImage> {
+fn arranged(cells: &[Cell], columns: usize, width: u32) -> Option<RgbImage> {
     let rows: Vec<&[Cell]> = cells.chunks(columns.max(1)).collect();
     let heights: Vec<u32> =
         rows.iter().map(|row| row.iter().map(|c| c.picture.height()).max().unwrap_or(1)).collect();

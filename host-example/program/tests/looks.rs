@@ -204,7 +204,7 @@ fn looks_are_listed_shown_and_checked() {
     let styles: Vec<String> = looks.iter().map(Look::style).collect();
     let checked = succeeds(isophote().args(["preset", "check"]).args(styles)).0;
     assert_eq!(checked.lines().count(), looks.len(), "{checked}");
-    let files = fs::read_dir(support::root().join("host-example/looks")).expect("the folder is there");
+    let files = fs::read_dir(support::root().join("nodes/library/looks")).expect("the folder is there");
     let files = files.map(|entry| entry.expect("an entry").path());
     let files = files.filter(|path| path.extension().is_some_and(|extension| extension == "json"));
     succeeds(isophote().args(["preset", "check"]).args(files));

@@ -28,11 +28,13 @@ pub type Result<T> = std::result::Result<T, Error>;
 
 /// The known name nearest to a misspelt one, as a hint for a message; empty when none is near.
 pub(crate) fn nearest<'a>(wanted: &str, known: impl Iterator<Item = &'a str>) -> String {
-    let best = known.map(|name| (distance(wanted, name), name)).min();
-    match best {
-        Some((d, name)) if d <= (wanted.chars().count() / 2).max(2) => format!("; did you mean '{name}'?"),
-        _ => String::new(),
-    }
+    nearest_name(wanted, known).map_or_else(String::new, |name| format!("; did you mean '{name}'?"))
+}
+
+/// The known name nearest to a misspelt one, unless none is near.
+pub(crate) fn nearest_name<'a>(wanted: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let (far, name) = known.map(|name| (distance(wanted, name), name)).min()?;
+    (far <= (wanted.chars().count() / 2).max(2)).then_some(name)
 }
 
 /// Levenshtein distance.

@@ -6,74 +6,9 @@ pub(crate) mod neighbours;
 use crate::declare::spec::{ImageKind, NodeSpec, Param, Port};
 use crate::declare::value::Value;
 use crate::error::{Error, Result, nearest};
+pub use crate::guides::GraphInput;
 use crate::registry;
 use isophote_engine::program::Precision;
-
-/// A picture that enters a graph.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum GraphInput {
-    /// The picture to stylize.
-    Color,
-    /// View-space normals.
-    Normal,
-    /// Distance from the camera.
-    Depth,
-    /// Object numbers.
-    ObjectId,
-    /// How much of a result is used.
-    Mask,
-    /// A painted flow map.
-    Flow,
-    /// From where points are to where they were in the frame before.
-    Motion,
-    /// From where points are to where they will be in the next frame.
-    MotionForward,
-    /// Points of the undeformed object.
-    RestPosition,
-}
-
-impl GraphInput {
-    /// All of them.
-    pub const ALL: [Self; 9] = [
-        Self::Color,
-        Self::Normal,
-        Self::Depth,
-        Self::ObjectId,
-        Self::Mask,
-        Self::Flow,
-        Self::Motion,
-        Self::MotionForward,
-        Self::RestPosition,
-    ];
-
-    /// Stable name, which is also the name of the plan's input.
-    pub const fn id(self) -> &'static str {
-        match self {
-            Self::Mask => "mask",
-            Self::MotionForward => "motion_forward",
-            other => other.kind().id(),
-        }
-    }
-
-    /// What it holds.
-    pub const fn kind(self) -> ImageKind {
-        match self {
-            Self::Color => ImageKind::Color,
-            Self::Normal => ImageKind::Normal,
-            Self::Depth => ImageKind::Depth,
-            Self::ObjectId => ImageKind::ObjectId,
-            Self::Mask => ImageKind::Scalar,
-            Self::Flow => ImageKind::Flow,
-            Self::Motion | Self::MotionForward => ImageKind::Motion,
-            Self::RestPosition => ImageKind::Position,
-        }
-    }
-
-    /// The input of this name.
-    pub fn from_id(id: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|i| i.id() == id)
-    }
-}
 
 /// Where an input port takes its picture from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -15,9 +15,11 @@ pub mod declare;
 pub mod error;
 pub mod frames;
 pub mod graph;
+pub mod guides;
 pub mod kernels;
 pub mod nodes;
 pub mod plan;
+pub mod preset;
 pub mod registry;
 mod stages;
 

@@ -5,12 +5,11 @@ use std::ffi::CStr;
 use std::marker::PhantomData;
 
 use super::catalogue::{self, Kind, Node};
-use super::error::{Error, Result, check};
-use super::library::Library;
+use super::error::{Result, check};
+use super::library::{Library, extension};
 use super::text;
 use isophote_abi::{
-    ISOPHOTE_ERROR_UNSUPPORTED, IsophoteApi, IsophoteGraph, IsophotePrecision, IsophotePrecisionApi,
-    IsophoteStatus, IsophoteText,
+    IsophoteApi, IsophoteGraph, IsophotePrecision, IsophotePrecisionApi, IsophoteStatus, IsophoteText,
 };
 
 /// Name of the extension for precision.
@@ -62,7 +61,12 @@ impl Library {
         let mut handle = Default::default();
         let (status, message) = text::message(|error| create(error, &raw mut handle));
         check(status, || message)?;
-        Ok(Graph { api: self.api, handle, one_thread: PhantomData })
+        Ok(self.graph_of(handle))
+    }
+
+    /// The object of a handle that nobody else destroys.
+    pub(super) fn graph_of(&self, handle: IsophoteGraph) -> Graph {
+        Graph { api: self.api, handle, one_thread: PhantomData }
     }
 }
 
@@ -146,13 +150,8 @@ impl Graph {
     /// # Errors
     /// [`Error`] when the library computes exactly alone.
     pub fn set_precision(&self, precision: IsophotePrecision) -> Result<()> {
-        // SAFETY: the name ends with a zero.
-        let table = unsafe { (self.api.extension)(PRECISION.as_ptr()) }.cast::<IsophotePrecisionApi>();
-        // SAFETY: an extension's struct is constant as long as the library is loaded, which is until the process ends.
-        let table = unsafe { table.as_ref() }.ok_or_else(|| Error::Call {
-            status: ISOPHOTE_ERROR_UNSUPPORTED,
-            message: "this library computes exactly alone".into(),
-        })?;
+        let table =
+            extension::<IsophotePrecisionApi>(self.api, PRECISION, "this library computes exactly alone")?;
         // SAFETY: the handle is this object's.
         self.check(unsafe { (table.graph_set_precision)(self.handle, precision) })
     }

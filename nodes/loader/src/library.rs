@@ -1,10 +1,14 @@
 //! The opened library: its version and its requests.
 
+use std::ffi::CStr;
 use std::path::{Path, PathBuf};
 
-use super::error::{Result, check};
+use super::error::{Error, Result, check};
 use super::{open, text};
-use isophote_abi::{IsophoteApi, IsophoteRequest, IsophoteStatus};
+use isophote_abi::{
+    ISOPHOTE_ERROR_UNSUPPORTED, IsophoteApi, IsophoteGuidesApi, IsophotePrecisionApi, IsophotePresetsApi,
+    IsophoteRequest, IsophoteSequenceApi, IsophoteStatus,
+};
 
 /// The library, open until the process ends.
 #[derive(Clone, Debug)]
@@ -55,6 +59,10 @@ impl Library {
         check(status, || status_name(self.api, status).to_owned())
     }
 
+    pub(super) fn extension<T: Table>(&self, id: &CStr, missing: &str) -> Result<&'static T> {
+        extension(self.api, id, missing)
+    }
+
     /// A request for a whole picture: full scale, sRGB, premultiplied alpha, no guides.
     ///
     /// # Errors
@@ -79,6 +87,30 @@ impl Library {
         Ok(request)
     }
 }
+
+/// The table of an extension; `missing` says what cannot be done without it.
+///
+/// # Errors
+/// [`Error`] when the library has none, or a smaller one.
+pub(super) fn extension<T: Table>(api: &'static IsophoteApi, id: &CStr, missing: &str) -> Result<&'static T> {
+    // SAFETY: the name ends with a zero.
+    let table = unsafe { (api.extension)(id.as_ptr()) }.cast::<T>();
+    // SAFETY: the extensions of these names have these structs, constant as long as the library is loaded, which is until
+    // the process ends; each begins with its size, which is read first.
+    let table = unsafe {
+        let is_whole = !table.is_null() && table.cast::<u32>().read() as usize >= size_of::<T>();
+        is_whole.then(|| &*table)
+    };
+    table.ok_or_else(|| Error::Call { status: ISOPHOTE_ERROR_UNSUPPORTED, message: missing.to_owned() })
+}
+
+/// A table of functions that begins with its size in bytes.
+pub(super) trait Table: 'static {}
+
+impl Table for IsophoteGuidesApi {}
+impl Table for IsophotePrecisionApi {}
+impl Table for IsophotePresetsApi {}
+impl Table for IsophoteSequenceApi {}
 
 /// The library's name of a status.
 pub(super) fn status_name(api: &IsophoteApi, status: IsophoteStatus) -> &'static str {

@@ -5,7 +5,7 @@ use std::ffi::{CStr, c_char, c_void};
 use std::marker::PhantomData;
 
 use super::device::Device;
-use super::error::{Error, Result, check};
+use super::error::{Result, check};
 use super::graph::{Graph, GraphHandle};
 use super::image::{AsImage, AsTarget};
 use super::library::Library;
@@ -13,8 +13,8 @@ use super::plan::Plan;
 use super::process::{self, Control, Report};
 use super::text;
 use isophote_abi::{
-    self as c, IsophoteDevice, IsophoteFrames, IsophoteHistory, IsophoteImage, IsophoteReport,
-    IsophoteRequest, IsophoteSequence, IsophoteSequenceApi, IsophoteStatus,
+    IsophoteDevice, IsophoteFrames, IsophoteHistory, IsophoteImage, IsophoteReport, IsophoteRequest,
+    IsophoteSequence, IsophoteSequenceApi, IsophoteStatus,
 };
 
 /// Name of the extension.
@@ -38,20 +38,7 @@ struct Frames<'a, P> {
 
 impl Library {
     fn sequences(&self) -> Result<&'static IsophoteSequenceApi> {
-        // SAFETY: the name ends with a zero.
-        let table = unsafe { (self.api.extension)(EXTENSION.as_ptr()) }.cast::<IsophoteSequenceApi>();
-        let missing = || Error::Call {
-            status: c::ISOPHOTE_ERROR_UNSUPPORTED,
-            message: "this library knows nothing of sequences".into(),
-        };
-        // SAFETY: an extension's struct begins with its size, and is constant as long as the library is loaded, which is
-        // until the process ends.
-        let table = unsafe { table.as_ref() }.ok_or_else(missing)?;
-        if (table.struct_size as usize) < size_of::<IsophoteSequenceApi>() {
-            Err(missing())
-        } else {
-            Ok(table)
-        }
+        self.extension(EXTENSION, "this library knows nothing of sequences")
     }
 
     /// A sequence of which stages are kept in at most `memory` bytes.

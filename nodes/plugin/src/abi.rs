@@ -12,11 +12,13 @@ pub mod entry;
 pub mod failure;
 pub mod graph;
 pub mod guard;
+pub mod guides;
 pub mod handles;
 pub mod images;
 pub mod objects;
 pub mod plan;
 pub mod precision;
+pub mod presets;
 pub mod process;
 pub mod request;
 pub mod run;
@@ -110,6 +112,8 @@ unsafe extern "C" fn extension(id: *const c_char) -> *const c_void {
     let id = unsafe { CStr::from_ptr(id) };
     match id {
         _ if id == sequence::EXTENSION => (&raw const sequence::API).cast(),
+        _ if id == guides::EXTENSION => (&raw const guides::API).cast(),
+        _ if id == presets::EXTENSION => (&raw const presets::API).cast(),
         _ if id == precision::EXTENSION => (&raw const precision::API).cast(),
         #[cfg(not(target_vendor = "apple"))]
         _ if id == vulkan::EXTENSION => (&raw const vulkan::API).cast(),

@@ -12,7 +12,7 @@ from typing import Any
 
 from ._catalogue import Node, Param, catalogue
 from ._pixels import Array
-from .style import apply
+from .style import GUIDES, apply
 
 __all__ = list(catalogue())
 
@@ -44,7 +44,7 @@ def _function(node: Node) -> Callable[..., Array]:
 
 def guides(node: Node) -> list[str]:
     """Pictures beside the colour that a node reads, and no other node makes."""
-    return [port.id for port in node.inputs if port.id not in ("color", "tensor", "edges")]
+    return [port.id for port in node.inputs if port.id in GUIDES]
 
 
 def type_of(param: Param) -> str:

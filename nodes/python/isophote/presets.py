@@ -1,30 +1,31 @@
 """Presets: a style with its parameters as a JSON file, which may change from frame to frame; and the looks that ship.
 
-`isophote preset --help` of the sample host describes the files, which are the same here.
+`isophote preset --help` of the sample host describes the files, which are the same here. The library reads them.
 """
 
 from __future__ import annotations
 
 import functools
 import json
-import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from importlib import resources
 from pathlib import Path
 from typing import Any, Union
 
 import numpy as np
 
-from ._catalogue import Node, Param, Value
+from ._catalogue import Node, Value
+from ._library import native
 from .errors import InvalidValueError, UnknownNameError
 
 LOOK = "look:"
 """What the names of looks start with."""
 
-_KEYS = ("name", "about", "tags", "style", "lengths", "parameters")
-LENGTHS = {"relative": 1080, "pixels": 0}
+PLACE = "the preset"
+"""What messages call a preset that is no file."""
+
+LENGTHS = {"relative": native.REFERENCE_HEIGHT, "pixels": 0}
 """What lengths mean, and the height of pictures at which they are meant."""
 
 
@@ -36,45 +37,6 @@ class Keys:
     """Values as text, by ascending frame; at least one."""
     between: str | None = None
     """`linear`, `step`, or what suits the parameter."""
-
-    def at(self, frame: int, param: Param) -> str:
-        """The value at a frame, as text."""
-        after = sum(key <= frame for key, _ in self.values)
-        before = max(after - 1, 0)
-        changes = param.type in ("float", "int", "color") and self.between != "step"
-        if not changes or after in (0, len(self.values)):
-            return self.values[before][1]
-        (first, a), (last, b) = self.values[before], self.values[after]
-        return _mixed(_numbers(a), _numbers(b), (frame - first) / (last - first), param.type == "int")
-
-
-def _value(text: str, param: Param) -> Value:
-    """A value that the library reads as text, of the type that it has in the catalogue."""
-    if param.type == "choice":
-        return text
-    if param.type == "bool":
-        return text in ("true", "on", "yes", "1")
-    numbers = _numbers(text)
-    if param.type == "color":
-        # A colour without opacity is opaque.
-        return (*numbers, *[1.0] * (4 - len(numbers)))
-    return int(numbers[0]) if param.type == "int" else numbers[0]
-
-
-def _mixed(a: list[float], b: list[float], share: float, whole: bool) -> str:
-    # A colour without opacity is opaque.
-    length = max(len(a), len(b))
-    a, b = (part + [1.0] * (length - len(part)) for part in (a, b))
-    mixed = (x + (y - x) * share for x, y in zip(a, b))
-    if whole:
-        return ",".join(str(int(math.copysign(math.floor(abs(value) + 0.5), value))) for value in mixed)
-    return ",".join(str(np.float32(value)) for value in mixed)
-
-
-def _numbers(text: str) -> list[float]:
-    if text.startswith("#"):
-        return [value / 255 for value in bytes.fromhex(text[1:])]
-    return [float(part) for part in text.split(",")]
 
 
 @dataclass(frozen=True)
@@ -93,13 +55,26 @@ class Preset:
 
     def values(self, node: Node, frame: int = 0) -> dict[str, Value]:
         """The parameters at a frame as values of the node that is the style."""
-        found = {}
-        for name, value in self.parameters.items():
+        style = native.Style.from_json(PLACE, self.to_json(), None)
+        graph = style.graph()
+        style.at_frame(graph, frame)
+        given = json.loads(graph.to_json())["nodes"][0].get("params", {})
+        found: dict[str, Value] = {}
+        for name in self.parameters:
             param = node.param(name)
             if param is None:
                 raise UnknownNameError(f"node '{node.id}' has no parameter '{name}'")
-            found[name] = _value(value if isinstance(value, str) else value.at(frame, param), param)
+            value = given.get(name, param.default)
+            found[name] = tuple(value) if param.type == "color" else value
         return found
+
+    def to_json(self) -> str:
+        """The preset as the text of a file."""
+        file: dict[str, Any] = {"name": self.name, "about": self.about, "tags": list(self.tags)}
+        file = {key: value for key, value in file.items() if value}
+        file.update(style=self.style, lengths=self.lengths)
+        file["parameters"] = {name: _written(value) for name, value in self.parameters.items()}
+        return as_json(file)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Preset:
@@ -107,60 +82,59 @@ class Preset:
         named = os.fspath(path)
         if named.startswith(LOOK):
             return look(named[len(LOOK) :])
-        try:
-            file = json.loads(Path(path).read_text(encoding="utf-8"))
-        except ValueError as error:
-            raise InvalidValueError(f"{named}: is no JSON: {error}; correct the file") from error
-        preset = cls.from_dict(file, named)
+        preset = cls._read(Path(path).read_text(encoding="utf-8"), named)
         # Graph files lie beside the preset.
         if isinstance(preset.style, str) and preset.style.lower().endswith(".json"):
             return Preset(**{**preset.__dict__, "style": str(Path(path).parent / preset.style)})
         return preset
 
     @classmethod
-    def from_dict(cls, file: Mapping[str, Any], place: str = "the preset") -> Preset:
+    def from_dict(cls, file: Mapping[str, Any], place: str = PLACE) -> Preset:
         """The preset that is written out; `place` names it in messages."""
-        if not isinstance(file, Mapping):
-            raise InvalidValueError(f"{place}: is no preset: an object is wanted; correct the preset")
-        for key in file:
-            if key not in _KEYS:
-                raise InvalidValueError(f"{place}: has an unknown key '{key}'; the keys are {', '.join(_KEYS)}")
-        if not isinstance(file.get("style"), (str, Mapping)):
-            raise InvalidValueError(f'{place}: names no style; add "style": "cartoon" or another node')
-        lengths = file.get("lengths", "relative")
-        if lengths not in LENGTHS:
-            raise InvalidValueError(f"{place}: its lengths are {lengths!r}; write {' or '.join(LENGTHS)}")
-        parameters = file.get("parameters", {})
-        if not isinstance(parameters, Mapping):
-            raise InvalidValueError(f"{place}: its parameters are no object; correct the preset")
+        return cls._read(as_json(file), place)
+
+    @classmethod
+    def _read(cls, text: str, place: str) -> Preset:
+        read = native.read_preset(place, text)
+        if read is None:
+            raise InvalidValueError(f"{place}: is a graph and no preset; name a preset")
+        file = json.loads(read)
+        style = file["style"]
+        title = {key: value for key, value in file["title"].items() if value is not None}
         return cls(
-            style=file["style"],
-            parameters={name: _track(value, f"{place}: parameter '{name}'") for name, value in parameters.items()},
-            lengths=lengths,
-            name=file.get("name", ""),
-            about=file.get("about", ""),
-            tags=tuple(file.get("tags", ())),
+            style=json.loads(style) if style.lstrip().startswith("{") else style,
+            parameters={name: _track(track) for name, track in file["params"]},
+            lengths=file["lengths"] or "relative",
+            **{**title, "tags": tuple(title["tags"])},
         )
 
 
-def _track(value: Any, place: str) -> str | Keys:
-    if not isinstance(value, Mapping):
-        return as_text(value, place)
-    between = value.get("between")
-    if between not in (None, "linear", "step"):
-        raise InvalidValueError(f'{place}: does not say how values change between frames; write "between": "linear" or "step"')
-    keys = []
-    for frame, entry in value.items():
-        if frame != "between":
-            try:
-                keys.append((int(frame), as_text(entry, f"{place} at frame {frame}")))
-            except ValueError as error:
-                raise InvalidValueError(
-                    f'{place}: \'{frame}\' is no number of a frame; write keyframes such as {{"1001": 2, "1050": 6}}'
-                ) from error
-    if not keys:
-        raise InvalidValueError(f'{place}: has no keyframe; write keyframes such as {{"1001": 2, "1050": 6}}')
-    return Keys(tuple(sorted(keys)), between)
+def _track(track: Mapping[str, Any]) -> str | Keys:
+    if "still" in track:
+        return str(track["still"])
+    keys = track["keys"]
+    between = {None: None, True: "step", False: "linear"}[keys["step"]]
+    return Keys(tuple((frame, text) for frame, text in keys["keys"]), between)
+
+
+def _written(value: str | Keys) -> str | dict[str, str]:
+    if isinstance(value, str):
+        return value
+    between = {} if value.between is None else {"between": value.between}
+    return {**{str(frame): text for frame, text in value.values}, **between}
+
+
+def as_json(file: Any) -> str:
+    """What is in a file as its text; numbers and arrays may be those of NumPy."""
+
+    def plain(value: Any) -> Any:
+        if isinstance(value, (np.generic, np.ndarray)):
+            return value.tolist()
+        if isinstance(value, Mapping):
+            return dict(value)
+        raise InvalidValueError(f"a preset cannot hold {value!r}; give numbers, bools, texts, lists and dicts")
+
+    return json.dumps(file, default=plain)
 
 
 def as_text(value: Any, place: str) -> str:
@@ -185,21 +159,15 @@ def looks() -> dict[str, Preset]:
 
 @functools.cache
 def _looks() -> dict[str, Preset]:
-    folder = resources.files(__package__).joinpath("looks")
-    texts = {id: folder.joinpath(f"{id}.json").read_text("utf-8") for id in folder.joinpath("order.txt").read_text().split()}
-    return {id: Preset.from_dict(json.loads(text), LOOK + id) for id, text in texts.items()}
+    return {id: Preset._read(text, LOOK + id) for id, text in native.looks()}
 
 
 def look(id: str) -> Preset:
     """The look of this id."""
-    import difflib
-
-    known = _looks()
-    if id in known:
-        return known[id]
-    near = difflib.get_close_matches(id.lower().replace(" ", "_"), known, 1)
-    hint = f"did you mean '{LOOK}{near[0]}'?" if near else "isophote.looks() has them all"
-    raise UnknownNameError(f"there is no look '{id}'; {hint}")
+    if id not in _looks():
+        # It names the nearest.
+        native.Style.named(LOOK + id)
+    return _looks()[id]
 
 
 StyleLike = Union[str, "os.PathLike[str]", Mapping[str, Any], Preset]

@@ -65,7 +65,7 @@ class Sequence:
             given = image if (name, frame) == ("color", number) else self._source(name, frame)
             return None if given is None else pixels(given, name)
 
-        request = self._settings.request(pixels(image, "color"), self._guides, number, self.style._lengths)
+        request = self._settings.request(pixels(image, "color"), self._guides, number, self.style)
         with self._lock, self.style._lock:
             self.style._at(number)
             target = Target(image, self.style.output_kind, out)

@@ -9,14 +9,13 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypedDict
 
-from ._catalogue import Node, Param, catalogue
 from ._library import native
 from ._pixels import Array, Target, pixels
 from .devices import Device, DeviceLike, open_device
 from .errors import InvalidValueError
-from .presets import LENGTHS, LOOK, Keys, Preset, StyleLike, as_text
+from .presets import LENGTHS, LOOK, PLACE, Preset, StyleLike, as_json, as_text
 
-GUIDES = ("normal", "depth", "object_id", "mask", "flow", "motion", "motion_forward", "rest_position")
+GUIDES = tuple(guide["id"] for guide in json.loads(native.guides()))
 """Pictures that may enter a graph beside the colour."""
 
 
@@ -73,8 +72,8 @@ class Settings:
         self.threads = threads
         self.progress = progress
 
-    def request(self, image: Array, guides: list[str], frame: int, lengths: str) -> native.Request:
-        """What is asked of the library for a picture; `lengths` are the style's."""
+    def request(self, image: Array, guides: list[str], frame: int, style: Style) -> native.Request:
+        """What is asked of the library for a picture of a style."""
         height, width = image.shape[:2]
         return native.Request(
             (width, height),
@@ -84,7 +83,7 @@ class Settings:
             guides=guides,
             origin=self.origin,
             frame=frame,
-            reference_height=LENGTHS[self.lengths or lengths],
+            reference_height=style._reference_height if self.lengths is None else LENGTHS[self.lengths],
             canonical_height=self.canonical_height,
         )
 
@@ -102,84 +101,17 @@ class Style:
         `precision` says how graphics devices compute: `exact`, or `half` and `fast` with 16-bit floats.
         """
         self._lock = threading.RLock()
-        self._keys: dict[tuple[int, str], tuple[Keys, Param]] = {}
-        self._lengths = "relative"
-        self._graph, self._is_single = self._open(style)
+        self._style = _opened(style)
+        self._graph = self._style.graph()
         if precision != "exact":
             self._graph.set_precision(precision)
         for name, value in params.items():
             self.set(name, value)
 
-    def _open(self, style: StyleLike) -> tuple[native.Graph, bool]:
-        if isinstance(style, Preset):
-            return self._follow(style)
-        if isinstance(style, Mapping):
-            if "nodes" in style or "format" in style:
-                return native.Graph(json.dumps(style)), False
-            return self._follow(Preset.from_dict(style))
-        named = os.fspath(style)
-        if named.lstrip().startswith("{"):
-            return self._open(json.loads(named))
-        if named.startswith(LOOK):
-            return self._follow(Preset.load(named))
-        if named.lower().endswith(".json") or isinstance(style, os.PathLike):
-            text = Path(named).read_text(encoding="utf-8")
-            if _is_graph(text):
-                return native.Graph(text), False
-            return self._follow(Preset.load(named))
-        return _fed(named), True
-
-    def _follow(self, preset: Preset) -> tuple[native.Graph, bool]:
-        self._graph, self._is_single = self._open(preset.style)
-        self._lengths = preset.lengths
-        for name, value in preset.parameters.items():
-            self._put(name, value)
-        return self._graph, self._is_single
-
     def set(self, name: str, value: Any) -> None:
         """Sets a parameter, for all frames: `posterize`, or `node.posterize` where several nodes have it."""
-        self._put(name, as_text(value, f"parameter '{name}'"))
-
-    def _put(self, name: str, value: str | Keys) -> None:
         with self._lock:
-            node, param = self._find(name)
-            self._keys.pop((node, param), None)
-            if isinstance(value, str):
-                self._graph.set(node, param, value)
-                return
-            # From the last to the first, whose value stays.
-            for _, text in reversed(value.values):
-                self._graph.set(node, param, text)
-            declared = self._specs()[node][1].param(param)
-            assert declared is not None, "the graph took a value for it"
-            self._keys[node, param] = (value, declared)
-
-    def _find(self, name: str) -> tuple[int, str]:
-        """The node that a parameter's name means, and the parameter."""
-        specs = self._specs()
-        node_name, _, param = name.rpartition(".")
-        if node_name:
-            for index, (known, _) in enumerate(specs):
-                if known == node_name:
-                    return index, param
-            names = ", ".join(known for known, _ in specs)
-            raise InvalidValueError(f"the graph has no node '{node_name}'; choose from {names}")
-        holders = [index for index, (_, spec) in enumerate(specs) if spec.param(param)]
-        if len(holders) == 1 or (self._is_single and 0 in holders):
-            return holders[0], param
-        if holders:
-            first, second = (specs[index][0] for index in holders[:2])
-            raise InvalidValueError(
-                f"several nodes of the graph have a parameter '{param}'; write {first}.{param} or {second}.{param}"
-            )
-        if self._is_single:
-            # It is asked even when it has no such parameter: its message names the nearest.
-            return 0, param
-        raise InvalidValueError(f"no node of the graph has a parameter '{param}'")
-
-    def _specs(self) -> list[tuple[str, Node]]:
-        known = catalogue()
-        return [(name, known[id]) for name, id in self._graph.nodes()]
+            self._style.set(self._graph, name, as_text(value, f"parameter '{name}'"))
 
     def to_json(self) -> str:
         """The graph as JSON, with the parameters that differ from their defaults."""
@@ -206,10 +138,14 @@ class Style:
         }
         return tuple(name for name in ("color", *GUIDES) if name in read)
 
+    @property
+    def _reference_height(self) -> int:
+        """Lines of the pictures that its lengths are meant for; 0: lengths are pixels."""
+        return self._style.reference_height()
+
     def _at(self, frame: int) -> None:
         """Gives animated parameters their values at a frame."""
-        for (node, param), (keys, declared) in self._keys.items():
-            self._graph.set(node, param, keys.at(frame, declared))
+        self._style.at_frame(self._graph, frame)
 
     def apply(
         self,
@@ -226,7 +162,7 @@ class Style:
         settings = settings or Settings(**inputs)
         images = {"color": pixels(image, "color")}
         images.update((name, pixels(guide, name)) for name, guide in guides.items() if guide is not None)
-        request = settings.request(images["color"], list(images), frame, self._lengths)
+        request = settings.request(images["color"], list(images), frame, self)
         with self._lock:
             self._at(frame)
             target = Target(image, self.output_kind, out)
@@ -234,36 +170,29 @@ class Style:
         return target.finished()
 
 
-def _is_graph(text: str) -> bool:
-    try:
-        file = json.loads(text)
-    except ValueError:
-        return False
-    return isinstance(file, dict) and ("nodes" in file or "format" in file)
+def _opened(style: StyleLike) -> native.Style:
+    """The style that a name, a file or what is in one means."""
+    if isinstance(style, Preset):
+        return _written_out(style.to_json(), PLACE, Path())
+    if isinstance(style, Mapping):
+        return _written_out(as_json(style), PLACE, Path())
+    named = os.fspath(style)
+    if named.lstrip().startswith("{"):
+        return _written_out(named, PLACE, Path())
+    if not named.startswith(LOOK) and (named.lower().endswith(".json") or isinstance(style, os.PathLike)):
+        return _written_out(Path(named).read_text(encoding="utf-8"), named, Path(named).parent)
+    return native.Style.named(named)
 
 
-def _fed(node: str) -> native.Graph:
-    """A graph of one node, fed with what it needs and no picture gives, such as a tensor: from the first node of the
-    catalogue that makes it of pictures alone."""
-    graph = native.Graph.single(node)
-    nodes = catalogue()
-
-    def is_picture(name: str) -> bool:
-        return name in ("color", *GUIDES)
-
-    for port in nodes[node].inputs:
-        if port.optional or is_picture(port.id):
-            continue
-        for feeder in nodes.values():
-            makes = feeder.output.kind == port.kind and feeder.id != node
-            if makes and all(p.optional or is_picture(p.id) for p in feeder.inputs):
-                index = graph.add(port.id, feeder.id)
-                for picture in feeder.inputs:
-                    if is_picture(picture.id):
-                        graph.connect_input(picture.id, index)
-                graph.connect(index, 0, port.id)
-                break
-    return graph
+def _written_out(text: str, place: str, folder: Path) -> native.Style:
+    """The style of a text. The graph file that it may name lies in `folder`."""
+    graph = None
+    preset = native.read_preset(place, text)
+    if preset is not None:
+        named = str(json.loads(preset)["style"])
+        if named.lower().endswith(".json"):
+            graph = (folder / named).read_text(encoding="utf-8")
+    return native.Style.from_json(place, text, graph)
 
 
 def apply(

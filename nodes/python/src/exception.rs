@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 pub fn raised(py: Python<'_>, error: &Error) -> PyErr {
     match error {
         Error::Call { status, message } => of_status(py, *status, message),
+        Error::Fault { status, fault } => of_status(py, *status, &fault.to_string()),
         error => PyImportError::new_err(error.to_string()),
     }
 }

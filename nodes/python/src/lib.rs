@@ -16,8 +16,10 @@ pub mod opened;
 pub mod owned;
 pub mod watch;
 
-use crate::exception::{raised, usage};
+use crate::exception::{invalid, raised, usage};
 use crate::opened::library;
+use isophote_loader::StyleText;
+use isophote_loader::abi::ISOPHOTE_REFERENCE_HEIGHT;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
@@ -29,7 +31,11 @@ pub mod native {
     #[pymodule_export]
     use crate::motion::motion;
     #[pymodule_export]
-    use crate::objects::{Device, Graph, Request, Sequence};
+    use crate::objects::{Device, Graph, Request, Sequence, Style};
+
+    /// Lines of the picture that relative lengths are meant for.
+    #[pymodule_export]
+    const REFERENCE_HEIGHT: u32 = ISOPHOTE_REFERENCE_HEIGHT;
 
     /// Loads the library: the file that the environment variable ISOPHOTE_LIBRARY names, or this one.
     #[pyfunction]
@@ -54,6 +60,31 @@ pub mod native {
     fn catalogue(py: Python<'_>) -> PyResult<String> {
         let catalogue = library()?.catalogue().map_err(|error| raised(py, &error))?;
         serde_json::to_string(&catalogue).map_err(|e| usage(&format!("the catalogue: {e}")))
+    }
+
+    /// The pictures that may enter a graph beside the colour, as JSON.
+    #[pyfunction]
+    fn guides(py: Python<'_>) -> PyResult<String> {
+        let guides = library()?.guides().map_err(|error| raised(py, &error))?;
+        serde_json::to_string(&guides).map_err(|e| usage(&format!("the guides: {e}")))
+    }
+
+    /// The looks that ship: their ids with the texts of their presets, in their order.
+    #[pyfunction]
+    fn looks(py: Python<'_>) -> PyResult<Vec<(&'static str, &'static str)>> {
+        let looks = library()?.looks().map_err(|error| raised(py, &error))?;
+        Ok(looks.into_iter().map(|look| (look.id, look.json)).collect())
+    }
+
+    /// What the text of a preset says, as JSON of one form; none for the text of a graph. `place` names it in messages.
+    #[pyfunction]
+    fn read_preset(py: Python<'_>, place: &str, json: &str) -> PyResult<Option<String>> {
+        let read = library()?.read_style(place, json).map_err(|error| raised(py, &error))?;
+        let StyleText::Preset(preset, faults) = read else { return Ok(None) };
+        match faults.first() {
+            Some(fault) => Err(invalid(fault.to_string())),
+            None => serde_json::to_string(&preset).map(Some).map_err(|e| usage(&format!("the preset: {e}"))),
+        }
     }
 
     /// Ends worker threads that are idle and gives back memory kept for later calls.

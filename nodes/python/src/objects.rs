@@ -49,27 +49,14 @@ impl Request {
             ("premultiplied", c::ISOPHOTE_ALPHA_PREMULTIPLIED),
             ("emissive", c::ISOPHOTE_ALPHA_EMISSIVE),
         ];
-        const GUIDES: [(&str, u32); 9] = [
-            ("color", 0),
-            ("normal", c::ISOPHOTE_GUIDE_NORMAL),
-            ("depth", c::ISOPHOTE_GUIDE_DEPTH),
-            ("object_id", c::ISOPHOTE_GUIDE_OBJECT_ID),
-            ("mask", c::ISOPHOTE_GUIDE_MASK),
-            ("flow", c::ISOPHOTE_GUIDE_FLOW),
-            ("motion", c::ISOPHOTE_GUIDE_MOTION),
-            ("motion_forward", c::ISOPHOTE_GUIDE_MOTION_FORWARD),
-            ("rest_position", c::ISOPHOTE_GUIDE_REST_POSITION),
-        ];
-        let mut bits = 0;
-        for guide in &guides {
-            bits |= word("a guide", guide, &GUIDES)?;
-        }
-        let whole = library()?.request(size).map_err(|error| raised(py, &error))?;
+        let library = library()?;
+        let guides = answer(py, library.guide_bits(guides.iter().map(String::as_str)))?;
+        let whole = answer(py, library.request(size))?;
         Ok(Self(IsophoteRequest {
             scale,
             space: word("the colour space", color_space, &SPACES)?,
             alpha: word("alpha", alpha_mode, &ALPHAS)?,
-            guides: bits,
+            guides,
             origin_x: origin.0,
             origin_y: origin.1,
             frame,
@@ -102,6 +89,52 @@ impl Device {
     }
 }
 
+/// The parameters of a graph as a style sets them.
+#[pyclass(frozen, module = "isophote._native")]
+#[derive(Debug)]
+pub struct Style(Owned<loader::Style>);
+
+#[pymethods]
+impl Style {
+    /// The node of an id, or the look that is named `look:ID`.
+    #[staticmethod]
+    fn named(py: Python<'_>, name: &str) -> PyResult<Self> {
+        let style = answer(py, library()?.style(name))?;
+        Ok(Self(Owned::new(style)))
+    }
+
+    /// The preset or graph of a JSON text, which `place` names in messages; `graph` is the text of the graph file that the
+    /// preset names.
+    #[staticmethod]
+    fn from_json(py: Python<'_>, place: &str, json: &str, graph: Option<&str>) -> PyResult<Self> {
+        let style = answer(py, library()?.style_from_json(place, json, graph))?;
+        Ok(Self(Owned::new(style)))
+    }
+
+    /// The graph with the values of its parameters; those with keyframes have that of the first.
+    fn graph(&self, py: Python<'_>) -> PyResult<Graph> {
+        let graph = answer(py, self.0.with(py, |style| style.graph())?)?;
+        Ok(Graph(Owned::new(graph)))
+    }
+
+    /// Lines of the pictures that its lengths are meant for; 0: lengths are pixels.
+    fn reference_height(&self, py: Python<'_>) -> PyResult<u32> {
+        self.0.with(py, |style| style.reference_height())
+    }
+
+    /// Sets a parameter of its graph for all frames, by its id or `node.id`, from text as a person writes it.
+    fn set(&self, py: Python<'_>, graph: &Graph, name: &str, text: &str) -> PyResult<()> {
+        let graph = graph.0.with(py, |graph| graph.handle())?;
+        answer(py, self.0.with(py, |style| style.set(graph, name, text))?).map(drop)
+    }
+
+    /// Gives parameters with keyframes their values at a frame in its graph.
+    fn at_frame(&self, py: Python<'_>, graph: &Graph, frame: i64) -> PyResult<()> {
+        let graph = graph.0.with(py, |graph| graph.handle())?;
+        answer(py, self.0.with(py, |style| style.at_frame(graph, frame))?).map(drop)
+    }
+}
+
 /// A graph of nodes.
 #[pyclass(frozen, module = "isophote._native")]
 #[derive(Debug)]
@@ -109,40 +142,6 @@ pub struct Graph(Owned<loader::Graph>);
 
 #[pymethods]
 impl Graph {
-    /// The graph that a JSON text describes.
-    #[new]
-    fn new(py: Python<'_>, json: &str) -> PyResult<Self> {
-        let graph = answer(py, library()?.graph_from_json(json))?;
-        Ok(Self(Owned::new(graph)))
-    }
-
-    /// A graph of one node whose inputs are the pictures of the same name.
-    #[staticmethod]
-    fn single(py: Python<'_>, node: &str) -> PyResult<Self> {
-        let graph = answer(py, library()?.single(node))?;
-        Ok(Self(Owned::new(graph)))
-    }
-
-    /// Adds a node under a name of its own; its index.
-    fn add(&self, py: Python<'_>, name: &str, node: &str) -> PyResult<u32> {
-        answer(py, self.0.with(py, |graph| graph.add(name, node))?)
-    }
-
-    /// Connects the output of a node to an input of another.
-    fn connect(&self, py: Python<'_>, from_node: u32, to: u32, port: &str) -> PyResult<()> {
-        answer(py, self.0.with(py, |graph| graph.connect(from_node, to, port))?)
-    }
-
-    /// Connects a picture that enters the graph to the input of a node that bears its name.
-    fn connect_input(&self, py: Python<'_>, input: &str, to: u32) -> PyResult<()> {
-        answer(py, self.0.with(py, |graph| graph.connect_input(input, to))?)
-    }
-
-    /// Sets a parameter from text as a person writes it.
-    fn set(&self, py: Python<'_>, node: u32, param: &str, text: &str) -> PyResult<()> {
-        answer(py, self.0.with(py, |graph| graph.set(node, param, text))?)
-    }
-
     /// Sets how precisely graphics devices compute it.
     fn set_precision(&self, py: Python<'_>, precision: &str) -> PyResult<()> {
         const WORDS: [(&str, u32); 3] = [
@@ -152,15 +151,6 @@ impl Graph {
         ];
         let precision = word("the precision", precision, &WORDS)?;
         answer(py, self.0.with(py, |graph| graph.set_precision(precision))?)
-    }
-
-    /// The name and the node of each node.
-    fn nodes(&self, py: Python<'_>) -> PyResult<Vec<(String, String)>> {
-        let nodes = self.0.with(py, |graph| {
-            let node = |index| Ok((graph.name(index)?, graph.spec(index)?.id.to_owned()));
-            (0..graph.count()).map(node).collect::<loader::Result<Vec<_>>>()
-        })?;
-        answer(py, nodes)
     }
 
     /// What leaves the graph, as the catalogue names it.

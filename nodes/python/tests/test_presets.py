@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import os
 import subprocess
@@ -13,6 +14,10 @@ from conftest import ROOT
 from PIL import Image
 
 import isophote
+from isophote.style import GUIDES
+
+TABLE = ROOT / "tests/data/presets.json"
+ORDER = ROOT / "nodes/library/looks/order.rs"
 
 
 def by_host(host: Path, style: str, picture: np.ndarray, folder: Path, frame: int) -> np.ndarray:
@@ -60,10 +65,10 @@ def test_looks_are_those_of_the_host(small: np.ndarray, host: Path, tmp_path: Pa
 
 
 def test_all_looks_are_there_and_open() -> None:
-    files = {file.stem for file in (ROOT / "host-example/looks").glob("*.json")}
+    files = {file.stem for file in (ROOT / "nodes/library/looks").glob("*.json")}
     looks = isophote.looks()
     assert set(looks) == files and len(files) > 40
-    assert list(looks) == (ROOT / "host-example/looks/order.txt").read_text().split()
+    assert list(looks) == ORDER.read_text().partition("{")[2].partition("}")[0].split()
     for id, look in looks.items():
         assert look.name and look.about and look.tags
         assert isophote.Style(f"look:{id}").output_kind == "color"
@@ -107,6 +112,39 @@ def test_parameters_of_graphs_are_named_by_node_where_they_must(small: np.ndarra
             style.set(name, 1)
 
 
+@pytest.mark.parametrize("case", json.loads(TABLE.read_text(encoding="utf-8")), ids=lambda case: case["why"])
+def test_presets_are_read_as_by_the_other_faces(tmp_path: Path, case: dict) -> None:
+    file = tmp_path / "preset.json"
+    file.write_text(json.dumps(case["preset"]), encoding="utf-8")
+    for opened in (file, case["preset"], json.dumps(case["preset"])):
+        if "error" in case:
+            with pytest.raises(isophote.IsophoteError) as raised:
+                isophote.Style(opened)
+            assert case["error"] in str(raised.value)
+            continue
+        style = isophote.Style(opened)
+        style._at(case.get("frame", 0))
+        nodes = json.loads(style.to_json())["nodes"]
+        assert {node["name"]: node["params"] for node in nodes if "params" in node} == case["values"]
+
+
+def test_every_node_opens_by_its_id() -> None:
+    for id in isophote.catalogue():
+        assert "color" in isophote.Style(id).inputs, id
+
+
+def test_values_are_of_the_types_that_the_catalogue_names() -> None:
+    preset = isophote.Preset.from_dict({**PRESET, "parameters": {**PRESET["parameters"], "line_opacity": 1}})
+    values = preset.values(isophote.catalogue()["cartoon"], 1006)
+    assert (values["posterize"], values["abstraction"], values["detail"]) == (4, "full", 0.2)
+    assert len(values["line_color"]) == 4 and values["darks"] == 0.1 and values["line_opacity"] == 1
+
+
+def test_every_guide_is_an_argument() -> None:
+    arguments = inspect.signature(isophote.apply).parameters
+    assert [name for name in arguments if name in GUIDES] == list(GUIDES)
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -116,7 +154,7 @@ def test_parameters_of_graphs_are_named_by_node_where_they_must(small: np.ndarra
         ("{}", "names no style"),
         ('{"style": "ink", "lengths": "long"}', "write relative or pixels"),
         ('{"style": "ink", "parameters": 3}', "no object"),
-        ('{"style": "ink", "parameters": {"tone": null}}', "parameter 'tone' cannot be None"),
+        ('{"style": "ink", "parameters": {"tone": null}}', "parameter 'tone': cannot be null"),
         ('{"style": "ink", "parameters": {"tone": {}}}', "has no keyframe"),
         ('{"style": "ink", "parameters": {"tone": {"one": 1}}}', "'one' is no number of a frame"),
         ('{"style": "ink", "parameters": {"tone": {"1": 1, "between": "x"}}}', "linear"),

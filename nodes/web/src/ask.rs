@@ -12,11 +12,11 @@ use serde_json::Value;
 #[derive(Debug, Deserialize)]
 #[serde(tag = "ask", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Request {
-    /// All nodes with their inputs and parameters.
+    /// All nodes with their inputs and parameters, and the guides.
     Catalogue,
     /// A look as a graph file, with the parameters that differ from their defaults.
     Graph {
-        /// A preset, or a graph.
+        /// A preset, a graph, or the name of a node or a look.
         look: Value,
         /// Frame whose keys count.
         #[serde(default)]
@@ -24,7 +24,7 @@ pub enum Request {
     },
     /// A new plan: its number and its program.
     Plan {
-        /// A preset, or a graph.
+        /// A preset, a graph, or the name of a node or a look.
         look: Value,
         /// The picture.
         picture: Picture,
@@ -35,7 +35,7 @@ pub enum Request {
     Update {
         /// Its number.
         plan: u32,
-        /// A preset, or a graph.
+        /// A preset, a graph, or the name of a node or a look.
         look: Value,
         /// The picture, of the same size.
         picture: Picture,
@@ -138,12 +138,9 @@ impl Picture {
     /// # Errors
     /// [`Error::Unknown`] for a guide that is none.
     pub fn request(&self, reference_height: u32) -> Result<isophote::Request, Error> {
-        if let Some(unknown) = self.guides.iter().find(|id| GraphInput::from_id(id).is_none()) {
-            let known: Vec<&str> = GraphInput::ALL.iter().skip(1).map(|input| input.id()).collect();
-            return Err(Error::Unknown(format!(
-                "'{unknown}' is no guide; the guides are {}",
-                known.join(", ")
-            )));
+        if let Some(unknown) = self.guides.iter().find(|id| GraphInput::guide_from_id(id).is_none()) {
+            let known = GraphInput::GUIDES.map(GraphInput::id).join(", ");
+            return Err(Error::Unknown(format!("'{unknown}' is no guide; the guides are {known}")));
         }
         let (premultiplied, emission) = match self.alpha {
             Alpha::Straight => (false, false),

@@ -1,14 +1,27 @@
 //! The nodes' declarations as JSON.
 
+use isophote::graph::GraphInput;
 use isophote::registry;
 use isophote::spec::{NodeSpec, Param, Port};
 use isophote::value::{Value as Number, decimal};
 use serde_json::{Value, json};
 
-/// All nodes, in the registry's order.
+/// All nodes, in the registry's order, and the guides.
 pub fn catalogue() -> Value {
     let nodes: Vec<Value> = registry::nodes().iter().map(|spec| node(spec)).collect();
-    json!({ "nodes": nodes })
+    let guides: Vec<Value> = GraphInput::GUIDES.into_iter().map(guide).collect();
+    json!({ "nodes": nodes, "guides": guides })
+}
+
+fn guide(guide: GraphInput) -> Value {
+    let kind = guide.kind();
+    json!({
+        "id": guide.id(),
+        "label": guide.label(),
+        "doc": guide.doc(),
+        "kind": kind.id(),
+        "channels": kind.channels(),
+    })
 }
 
 fn node(spec: &NodeSpec) -> Value {

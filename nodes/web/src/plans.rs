@@ -170,7 +170,8 @@ mod tests {
                 "0",
             ),
             (
-                json!({ "ask": "plan", "look": { "style": "composite_lines" }, "picture": size }),
+                json!({ "ask": "plan", "look": { "format": "isophote-graph", "version": 1, "output": "lines",
+                    "nodes": [{ "name": "lines", "node": "composite_lines" }] }, "picture": size }),
                 "not connected",
             ),
             (json!({ "ask": "shader", "plan": 9, "dispatch": 0 }), "no plan 9"),

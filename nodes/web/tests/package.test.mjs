@@ -46,34 +46,8 @@ after(async () => {
   await rm(folder, { recursive: true, force: true });
 });
 
-/** Looks of which each has one node, fed by others where it does not take pictures alone. */
-function looksOfNodes() {
-  const maker = { tensor: "structure_tensor", scalar: "flow_dog", motion: "optical_flow" };
-  const byId = new Map(window.iso.catalogue.nodes.map((node) => [node.id, node]));
-  const graph = (id) => {
-    const nodes = [];
-    const add = (node) => {
-      const inputs = {};
-      for (const port of byId.get(node).inputs) {
-        if (["color", "normal", "depth", "object_id"].includes(port.kind)) {
-          inputs[port.id] = `@${port.kind}`;
-        } else if (!port.optional) {
-          inputs[port.id] = add(maker[port.kind]);
-        }
-      }
-      if (!nodes.some(({ name }) => name === node)) {
-        nodes.push({ name: node, node, inputs });
-      }
-      return node;
-    };
-    add(id);
-    return { format: "isophote-graph", version: 1, nodes, output: id };
-  };
-  return [...byId.keys()].map((id) => [id, graph(id)]);
-}
-
 test("every node runs in every precision", { timeout: 600_000 }, async () => {
-  const outcome = await page.evaluate(async (source) => {
+  const outcome = await page.evaluate(async () => {
     const [width, height] = [48, 32];
     const { device } = window.iso;
     const made = (format, bytes) => {
@@ -90,10 +64,10 @@ test("every node runs in every precision", { timeout: 600_000 }, async () => {
       object_id: made("r32float", 4),
     };
     const done = [];
-    for (const [id, look] of new Function(`return ${source}`)()()) {
+    for (const { id, output } of window.iso.catalogue.nodes) {
       for (const precision of ["exact", "half"]) {
         const guides = ["normal", "depth", "object_id"];
-        const stylizer = await window.iso.stylizer(look, { width, height, guides, precision });
+        const stylizer = await window.iso.stylizer(id, { width, height, guides, precision });
         await window.iso.checked(() => {
           const encoder = device.createCommandEncoder();
           stylizer.encode(encoder, inputs);
@@ -102,14 +76,14 @@ test("every node runs in every precision", { timeout: 600_000 }, async () => {
         await device.queue.onSubmittedWorkDone();
         stylizer.destroy();
       }
-      if (look.nodes.every(({ node }) => node === id) && window.iso.catalogue.nodes.find((n) => n.id === id).output.kind === "color") {
+      if (window.iso.graph(id).nodes.length === 1 && output.kind === "color") {
         // Samplers read pictures of a page, which have eight bits.
         await window.iso.apply({ style: id }, window.picture, { precision: "fast" });
       }
       done.push(id);
     }
     return done;
-  }, looksOfNodes.toString());
+  });
   assert.ok(outcome.length > 25, `${outcome.length} nodes`);
   assert.deepEqual(complaints, []);
 });
@@ -202,7 +176,8 @@ test("what is wrong with a look is said", async () => {
     { style: "cartoon", parameters: { posterise: 3 } },
     { style: "cartoon", parameters: { posterize: "many" } },
     { styles: "cartoon" },
-    "cartoon",
+    "cartoom",
+    3,
   ].map((look) => {
     try {
       window.iso.graph(look);
@@ -215,13 +190,47 @@ test("what is wrong with a look is said", async () => {
   assert.match(said[1], /posterise.*posterize/);
   assert.match(said[2], /posterize/);
   assert.match(said[3], /styles/);
-  assert.match(said[4], /preset or a graph/);
+  assert.match(said[4], /did you mean 'cartoon'/);
+  assert.match(said[5], /no preset/);
+});
+
+test("presets are read as by the other faces", async () => {
+  const table = JSON.parse(await readFile(new URL("../../../tests/data/presets.json", import.meta.url), "utf8"));
+  assert.ok(table.length > 20);
+  const found = await page.evaluate((cases) => cases.map(({ preset, frame = 0 }) => {
+    try {
+      const { nodes } = window.iso.graph(preset, frame);
+      return { values: Object.fromEntries(nodes.filter(({ params }) => params).map(({ name, params }) => [name, params])) };
+    } catch (error) {
+      return { error: error.message };
+    }
+  }), table);
+  table.forEach(({ why, values, error }, at) => {
+    if (error === undefined) {
+      assert.deepEqual(found[at].values, values, `${why}: ${found[at].error}`);
+    } else {
+      assert.ok(found[at].error?.includes(error), `${why}: ${JSON.stringify(found[at])}`);
+    }
+  });
+});
+
+test("looks are named as presets are", async () => {
+  const [named, written] = await page.evaluate(() => ["look:linocut", window.looks.linocut].map((look) => window.iso.graph(look)));
+  assert.deepEqual(named, written);
+});
+
+test("types name every guide", async () => {
+  const types = await readFile(new URL("../package/src/index.d.ts", import.meta.url), "utf8");
+  const [, list] = types.match(/export type Guide =([^;]*);/);
+  const ids = await page.evaluate(() => window.iso.catalogue.guides.map(({ id }) => id));
+  assert.deepEqual([...list.matchAll(/"(\w+)"/g)].map(([, id]) => id), ids);
 });
 
 test("all looks that ship are accepted", async () => {
   const count = await page.evaluate(() => Object.values(window.looks).map((look) => window.iso.graph(look)).length);
   assert.ok(count > 40, `${count} looks`);
-  const file = new URL("../../../host-example/looks/order.txt", import.meta.url);
-  const order = (await readFile(file, "utf8")).trim().split(/\s+/);
+  const file = new URL("../../../nodes/library/looks/order.rs", import.meta.url);
+  const [, list] = (await readFile(file, "utf8")).match(/\{([^}]*)\}/);
+  const order = list.trim().split(/\s+/);
   assert.deepEqual(await page.evaluate(() => Object.keys(window.looks)), order);
 });

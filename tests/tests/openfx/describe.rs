@@ -72,6 +72,8 @@ pub fn clips_are_source_and_output_and_in_general_a_mask_and_guides(binary: &Bin
         ("motion", "Motion"),
         ("motion_forward", "MotionForward"),
         ("rest_position", "RestPosition"),
+        ("object_id", "ObjectId"),
+        ("flow", "Flow"),
     ] {
         general.extend(takes(port).then_some(clip));
     }

@@ -3,6 +3,7 @@
 use crate::reference::*;
 use isophote::ColourSpace;
 use isophote::Value;
+use isophote::graph::GraphInput;
 use isophote::spec::Unit;
 use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::{Described, Wanted};
@@ -221,6 +222,46 @@ pub fn guides_enter_in_the_general_context(binary: &Binary, effect: Expected) {
     assert!(got == wanted, "{}", effect.plugin(binary).identifier());
     let without = through(&graph, &source, layout, ColourSpace::Srgb);
     assert!(got != without, "{} does not mind its guides", effect.plugin(binary).identifier());
+    host.no_faults();
+}
+
+pub fn object_numbers_and_painted_flow_enter_in_the_general_context(binary: &Binary, effect: Expected) {
+    let host = Host::new(Behaviour::default());
+    let layout = Layout::default();
+    let instance = Described::new(&host, effect.plugin(binary)).instance(kOfxImageEffectContextGeneral);
+    let names = instance.effect.clip_names();
+    plain(&instance);
+    let mut graph = effect.graph(false);
+    let first = graph.find("t").or_else(|_| graph.find("n")).unwrap();
+    let source = source(layout, true);
+    instance.connect("Source", source.clone());
+    let color = source.packed();
+    let mut inputs = vec![("color", color.as_slice(), layout)];
+    // Numbers in bytes are numbers, and not shares of the largest.
+    let numbers = Layout { components: kOfxImageComponentAlpha, depth: kOfxBitDepthByte, ..layout };
+    let objects: Vec<u8> = (0..WIDTH * HEIGHT).map(|i| if i % WIDTH < WIDTH / 2 { 3 } else { 200 }).collect();
+    if names.contains(&"ObjectId".to_owned()) {
+        instance.connect("ObjectId", Picture::packed_in(numbers, WIDTH, HEIGHT, &objects));
+        graph.connect_input(GraphInput::ObjectId, first, "object_id").unwrap();
+        inputs.push(("object_id", &objects, numbers));
+    }
+    let slanted = [0.5 + 0.35, 0.5 + 0.35, 0.0, 1.0].map(f32::to_ne_bytes).concat();
+    let flow = slanted.repeat((WIDTH * HEIGHT) as usize);
+    if names.contains(&"Flow".to_owned()) {
+        instance.connect("Flow", Picture::packed_in(layout, WIDTH, HEIGHT, &flow));
+        graph.connect_input(GraphInput::Flow, first, "flow").unwrap();
+        inputs.push(("flow", &flow, layout));
+    }
+    let got = instance.render(layout, SIZE).packed();
+    let wanted =
+        Through { graph: &graph, size: SIZE, scale: 1.0, space: ColourSpace::Srgb, premultiplied: true }
+            .c(&inputs, layout);
+    assert!(got == wanted, "{}", effect.plugin(binary).identifier());
+    let follows_flow = ["oil_paint", "painting", "coherent", "line_integral_convolution", "flow_bilateral"];
+    if follows_flow.contains(&effect.node.id) {
+        let without = through(&graph, &source, layout, ColourSpace::Srgb);
+        assert!(got != without, "{} does not mind its flow map", effect.node.id);
+    }
     host.no_faults();
 }
 

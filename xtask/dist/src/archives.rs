@@ -193,7 +193,7 @@ fn openfx(built: &Built, tree: &mut Tree) -> Result<()> {
 fn program(built: &Built, tree: &mut Tree) -> Result<()> {
     let program = add_program(built, tree)?;
     documents(&program, tree)?;
-    tree.folder("share/isophote/looks", &built.source("host-example/looks"), ".json")?;
+    tree.folder("share/isophote/looks", &built.source("nodes/library/looks"), ".json")?;
     tree.folder("share/isophote/graphs", &built.source("host-example/graphs"), ".json")?;
     tree.text("README.md", include_str!("../files/program.md").replace("@VERSION@", VERSION));
     add_licences(tree, "share/doc/isophote", &built.root, &[LIBRARY, PROGRAM])

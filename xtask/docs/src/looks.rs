@@ -2,16 +2,14 @@
 
 use crate::error::{Error, Result};
 use crate::page::escaped;
-use isophote::registry;
-use serde_json::Value;
+use isophote::{preset, registry};
 use std::fmt::Write as _;
-use std::path::Path;
 
 /// A look.
 #[derive(Debug)]
 pub struct Look {
     /// The stem of its file.
-    pub id: String,
+    pub id: &'static str,
     name: String,
     about: String,
     style: String,
@@ -20,23 +18,14 @@ pub struct Look {
 /// All looks, in their order.
 ///
 /// # Errors
-/// A file that cannot be read, or lacks its name, its description or its style.
-pub fn all(root: &Path) -> Result<Vec<Look>> {
-    let folder = root.join("host-example/looks");
-    let order = folder.join("order.txt");
-    let order = std::fs::read_to_string(&order).map_err(Error::at(&order))?;
-    let read = |id: &str| {
-        let path = folder.join(format!("{id}.json"));
-        let text = std::fs::read_to_string(&path).map_err(Error::at(&path))?;
-        look(id, &text).ok_or_else(|| Error::page(path.display(), "is no look with a name"))
+/// A look that lacks its name or its description.
+pub fn all() -> Result<Vec<Look>> {
+    let read = |look: &preset::Look| {
+        let preset::Preset { title, style, .. } = look.preset().ok()?;
+        Some(Look { id: look.id, name: title.name?, about: title.about?, style })
     };
-    order.split_whitespace().map(read).collect()
-}
-
-fn look(id: &str, text: &str) -> Option<Look> {
-    let value: Value = serde_json::from_str(text).ok()?;
-    let text = |key: &str| value[key].as_str().map(str::to_owned);
-    Some(Look { id: id.to_owned(), name: text("name")?, about: text("about")?, style: text("style")? })
+    let looks = preset::LOOKS.iter();
+    looks.map(|look| read(look).ok_or_else(|| Error::page(look.name(), "is no look with a name"))).collect()
 }
 
 /// The grid.

@@ -85,7 +85,7 @@ fn run(options: &Options) -> Result<()> {
     std::fs::create_dir_all(&pictures).map_err(Error::at(&pictures))?;
 
     // What is wrong with pages is found before pictures are made.
-    let looks = looks::all(&root)?;
+    let looks = looks::all()?;
     let mut pages = pages(&sources, &root)?;
     for page in &mut pages {
         page.text = page.text.replace("<!-- looks -->", &looks::contents(&looks));

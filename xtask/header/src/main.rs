@@ -10,12 +10,14 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// The files that declare the contract, in the order of the header.
-const SOURCES: [&str; 7] = [
+const SOURCES: [&str; 9] = [
     "include/src/constants.rs",
     "include/src/types.rs",
     "include/src/table.rs",
     "include/src/sequences.rs",
     "include/src/precision.rs",
+    "include/src/guides.rs",
+    "include/src/presets.rs",
     "include/src/vulkan.rs",
     "nodes/plugin/src/abi/entry.rs",
 ];
@@ -50,6 +52,11 @@ const PREAMBLE: &str = "\
  * Half the bytes on graphics devices, where eleven bits of colour suffice, are asked for by
  *
  *   const struct IsophotePrecisionApi *precision = api->extension(\"isophote.precision/1\");
+ *
+ * The pictures that may enter a graph beside the colour, and presets, looks and colours as people write them, are those of
+ *
+ *   const struct IsophoteGuidesApi *guides = api->extension(\"isophote.guides/1\");
+ *   const struct IsophotePresetsApi *presets = api->extension(\"isophote.presets/1\");
  *
  * A host that renders with Vulkan records the filter into its command buffers, from and to its images:
  *
@@ -186,10 +193,16 @@ fn generate(root: &Path) -> Result<String, Error> {
         ..Config::default()
     };
     // Only the documents name the type of the entry point, and tables of extensions, which are asked for by a string.
-    config.export.include =
-        ["IsophoteEntry", "IsophoteSequenceApi", "IsophotePrecisionApi", "IsophoteVulkanApi"]
-            .map(Into::into)
-            .into();
+    config.export.include = [
+        "IsophoteEntry",
+        "IsophoteSequenceApi",
+        "IsophotePrecisionApi",
+        "IsophoteGuidesApi",
+        "IsophotePresetsApi",
+        "IsophoteVulkanApi",
+    ]
+    .map(Into::into)
+    .into();
     let mut builder = Builder::new().with_config(config);
     for source in SOURCES {
         builder = builder.with_src(root.join(source));

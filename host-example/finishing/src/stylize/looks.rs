@@ -11,7 +11,7 @@ use isophote_files::error::{Error, Result};
 /// What the names of looks start with; no node has such an id.
 const PREFIX: &str = "look:";
 
-/// Ids and files, in the order in which they are listed: that of `looks/order.txt`, whose lines group looks of one kind.
+/// Ids and files, in the order in which they are listed: that of `looks/order.rs`, whose lines group looks of one kind.
 const FILES: &[(&str, &str)] = &include!(concat!(env!("OUT_DIR"), "/looks.rs"));
 
 /// A look.
@@ -97,11 +97,11 @@ mod tests {
 
     #[test]
     fn every_file_is_built_in() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../looks");
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../nodes/library/looks");
         let entries = std::fs::read_dir(folder).expect("the folder is there");
         let mut files: Vec<String> =
             entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
-        files.retain(|file| file != "order.txt");
+        files.retain(|file| file != "order.rs");
         files.sort();
         let mut known: Vec<String> = FILES.iter().map(|(id, _)| format!("{id}.json")).collect();
         known.sort();

@@ -9,7 +9,7 @@ use isophote_files::error::{Error, Result};
 use isophote_files::files;
 use isophote_files::limits;
 use isophote_files::replacing::{Inputs, Made};
-use isophote_finishing::sheet::{arranged, cells};
+use isophote_finishing::sheet;
 
 /// Options of `sheet`.
 #[derive(Args, Debug)]
@@ -53,17 +53,11 @@ pub fn run(args: &SheetArgs) -> Result<()> {
     let mut all = Vec::new();
     for (index, path) in args.pictures.iter().enumerate() {
         let label = args.label.get(index).cloned().unwrap_or_else(|| name(&args.pictures, path));
-        all.extend(cells(path, &label, args.width)?);
+        all.extend(sheet::cells(path, &label, args.width)?);
     }
     // As many across as there are, up to four: before and after stand beside each other.
     let columns = args.columns.map_or(all.len().min(4), |columns| columns as usize);
-    let sheet = arranged(&all, columns, args.width).ok_or_else(|| {
-        Error::input("the sheet", "would be too large", "choose a smaller --width or fewer pictures")
-    })?;
-    files::write(&args.sheet, existing, |file| {
-        let encoder = image::codecs::png::PngEncoder::new(file);
-        sheet.write_with_encoder(encoder).map_err(|e| e.to_string())
-    })
+    sheet::save(&args.sheet, existing, &all, columns, args.width)
 }
 
 /// The name of a file, with its folder where others have the same.

@@ -1,6 +1,9 @@
 //! Values of parameters, and all that the library and its faces know about their types.
 
+use crate::error::{Error, Result};
 use serde_json::{Value as Json, json};
+use std::ops::Div;
+use std::str::FromStr;
 
 /// The value of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,8 +95,8 @@ impl Value {
                 numbers: v.map(f64::from),
                 count: 4,
                 value: |n| Self::Color(n.map(|v| v as f32)),
-                expected: |_, _| "a colour such as #12407b or 0.1,0.2,0.5".into(),
-                read: |text, _| parse_color(text).map(|v| v.map(f64::from)),
+                expected: |_, _| COLOUR.into(),
+                read: |text, _| channels_from_text::<f32>(text).map(|v| v.map(f64::from)),
                 json: |n, _| json!(n.map(|v| decimal(v as f32))),
             },
         }
@@ -114,22 +117,83 @@ pub fn decimal(value: f32) -> f64 {
     value.to_string().parse().unwrap_or(f64::from(value))
 }
 
-/// `#rrggbb`, `#rrggbbaa`, or three or four numbers 0..=1 with commas between.
-fn parse_color(text: &str) -> Option<[f32; 4]> {
+/// How people write colours.
+const COLOUR: &str = "a colour such as #12407b or 0.1,0.2,0.5";
+
+/// A channel of a colour, in the precision that its reader needs.
+pub(crate) trait Channel: FromStr + From<u8> + Div<Output = Self> + Copy {}
+
+impl Channel for f32 {}
+impl Channel for f64 {}
+
+/// The channels of a colour that a person wrote: `#rrggbb`, `#rrggbbaa`, or three or four numbers with commas between.
+/// A colour without opacity is opaque. The range of the numbers is not looked at.
+pub(crate) fn channels_from_text<T: Channel>(text: &str) -> Option<[T; 4]> {
+    let mut color = [T::from(1); 4];
+    let text = text.trim();
     if let Some(hex) = text.strip_prefix('#') {
-        if !hex.is_ascii() || !(hex.len() == 6 || hex.len() == 8) {
+        // Signs are no digits, though numbers may begin with them.
+        if !(hex.len() == 6 || hex.len() == 8) || !hex.bytes().all(|digit| digit.is_ascii_hexdigit()) {
             return None;
         }
-        let mut color = [1.0; 4];
-        for (i, channel) in color.iter_mut().enumerate().take(hex.len() / 2) {
-            *channel = f32::from(u8::from_str_radix(&hex[2 * i..2 * i + 2], 16).ok()?) / 255.0;
+        for (channel, at) in color.iter_mut().zip((0..hex.len()).step_by(2)) {
+            *channel = T::from(u8::from_str_radix(&hex[at..at + 2], 16).ok()?) / T::from(255);
         }
         return Some(color);
     }
-    let values: Vec<f32> = text.split(',').map(|v| v.trim().parse().ok()).collect::<Option<_>>()?;
-    match values[..] {
-        [r, g, b] => Some([r, g, b, 1.0]),
-        [r, g, b, a] => Some([r, g, b, a]),
-        _ => None,
+    let values: Vec<T> = text.split(',').map(|v| v.trim().parse().ok()).collect::<Option<_>>()?;
+    color.get_mut(..values.len())?.copy_from_slice(&values);
+    (values.len() >= 3).then_some(color)
+}
+
+/// The colour that a person wrote: gamma-encoded RGBA, 0 to 1.
+///
+/// # Errors
+/// [`Error::Value`] for text that is none.
+pub fn color_from_text(text: &str) -> Result<[f32; 4]> {
+    let color = channels_from_text(text).filter(|color| color.iter().all(|v| (0.0..=1.0).contains(v)));
+    color.ok_or_else(|| Error::Value(format!("'{text}' is no colour; write {COLOUR}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_are_read_in_one_way() {
+        for (text, wanted) in [
+            ("#ff0033", [1.0, 0.0, 0.2, 1.0]),
+            (" #FF003300 ", [1.0, 0.0, 0.2, 0.0]),
+            ("1, 0,0.2", [1.0, 0.0, 0.2, 1.0]),
+            ("1,0,0.2,0.5", [1.0, 0.0, 0.2, 0.5]),
+        ] {
+            assert_eq!(color_from_text(text).ok(), Some(wanted), "{text}");
+        }
+        let bad = [
+            "",
+            "red",
+            "#12345",
+            "#1234567",
+            "#+1+2+3",
+            "#ggffff",
+            "#é12345",
+            "# f00000",
+            "1",
+            "1,2",
+            "0,0,0,0,0",
+        ];
+        for text in bad.into_iter().chain(["nan,0,0", "0,0,2", "0,-1,0", "0,,0"]) {
+            let error = color_from_text(text).unwrap_err().to_string();
+            assert!(error.contains("#12407b"), "{text}: {error}");
+        }
+    }
+
+    #[test]
+    fn both_precisions_give_the_same_colour() {
+        for byte in 0..=255u8 {
+            let text = format!("#{byte:02x}{byte:02x}{byte:02x}");
+            let (single, double) = (channels_from_text::<f32>(&text), channels_from_text::<f64>(&text));
+            assert_eq!(single, double.map(|color| color.map(|v| v as f32)));
+        }
     }
 }

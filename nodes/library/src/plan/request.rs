@@ -2,7 +2,7 @@
 
 use crate::colour_space::{ColourSpace, Encoding};
 use crate::frames::Frames;
-use crate::graph::GraphInput;
+pub use crate::guides::Guides;
 
 /// What a host wants of a graph.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,58 +41,6 @@ pub struct Request {
     pub max_motion: f32,
 }
 
-/// The guide images that a host can supply beside the colour.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Guides {
-    /// View-space normals.
-    pub normal: bool,
-    /// Distance from the camera.
-    pub depth: bool,
-    /// Object numbers.
-    pub object_id: bool,
-    /// How much of the result is used.
-    pub mask: bool,
-    /// A painted flow map.
-    pub flow: bool,
-    /// Motion from the frame before.
-    pub motion: bool,
-    /// Motion to the next frame.
-    pub motion_forward: bool,
-    /// Points of the undeformed objects.
-    pub rest_position: bool,
-}
-
-impl Guides {
-    /// Those that `has` says there are.
-    pub fn of(has: impl Fn(GraphInput) -> bool) -> Self {
-        Self {
-            normal: has(GraphInput::Normal),
-            depth: has(GraphInput::Depth),
-            object_id: has(GraphInput::ObjectId),
-            mask: has(GraphInput::Mask),
-            flow: has(GraphInput::Flow),
-            motion: has(GraphInput::Motion),
-            motion_forward: has(GraphInput::MotionForward),
-            rest_position: has(GraphInput::RestPosition),
-        }
-    }
-
-    /// Whether an input is there; the colour always is.
-    pub fn has(self, input: GraphInput) -> bool {
-        match input {
-            GraphInput::Color => true,
-            GraphInput::Normal => self.normal,
-            GraphInput::Depth => self.depth,
-            GraphInput::ObjectId => self.object_id,
-            GraphInput::Mask => self.mask,
-            GraphInput::Flow => self.flow,
-            GraphInput::Motion => self.motion,
-            GraphInput::MotionForward => self.motion_forward,
-            GraphInput::RestPosition => self.rest_position,
-        }
-    }
-}
-
 /// Longest motion that counts unless a request says otherwise: a pan over the width of a film frame in a second.
 pub const MAX_MOTION: f32 = 128.0;
 
@@ -110,16 +58,7 @@ impl Request {
             space: ColourSpace::Srgb,
             premultiplied: true,
             emission: false,
-            guides: Guides {
-                normal: false,
-                depth: false,
-                object_id: false,
-                mask: false,
-                flow: false,
-                motion: false,
-                motion_forward: false,
-                rest_position: false,
-            },
+            guides: Guides::NONE,
             frames: Frames::NONE,
             max_motion: MAX_MOTION,
         }

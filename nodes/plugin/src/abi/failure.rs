@@ -76,7 +76,7 @@ impl From<isophote::Error> for Failure {
 
 /// A message on one line, as hosts print it on terminals: names in graph files may hold what moves a cursor or turns the
 /// direction of text, which is shown as `\u001b`, as in JSON.
-fn one_line(message: String) -> String {
+pub(super) fn one_line(message: String) -> String {
     let acts = |c: char| c.is_control() || matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     if !message.contains(acts) {
         return message;

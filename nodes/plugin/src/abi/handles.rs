@@ -7,7 +7,7 @@
 use super::failure::{Failure, Outcome};
 use isophote_abi::{
     ISOPHOTE_ERROR_INVALID_HANDLE, ISOPHOTE_ERROR_OUT_OF_MEMORY, IsophoteDevice, IsophoteGraph, IsophotePlan,
-    IsophoteSequence, IsophoteVulkan, IsophoteVulkanEffect,
+    IsophoteSequence, IsophoteStyle, IsophoteVulkan, IsophoteVulkanEffect,
 };
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
@@ -33,7 +33,15 @@ macro_rules! handles {
     };
 }
 
-handles!(IsophoteGraph, IsophotePlan, IsophoteDevice, IsophoteSequence, IsophoteVulkan, IsophoteVulkanEffect);
+handles!(
+    IsophoteGraph,
+    IsophotePlan,
+    IsophoteDevice,
+    IsophoteSequence,
+    IsophoteStyle,
+    IsophoteVulkan,
+    IsophoteVulkanEffect
+);
 
 /// What hosts hold handles of.
 pub trait Object: Send + Sync + Sized + 'static {

@@ -4,7 +4,8 @@ use super::host::Host;
 use super::image::Clip;
 use isophote::graph::GraphInput;
 use isophote_abi::openfx::Handle;
-use std::ffi::CStr;
+use std::ffi::{CStr, CString};
+use std::sync::LazyLock;
 
 /// The picture.
 pub const SOURCE: &CStr = c"Source";
@@ -17,37 +18,80 @@ pub const MOTION: &CStr = c"Motion";
 /// Vectors to the frame after.
 pub const MOTION_FORWARD: &CStr = c"MotionForward";
 
+/// Place of a guide's clip among those of guides; none for what is no such clip: the picture, and the mask, which the
+/// effects apply themselves. Hosts store inputs by their numbers, so that places are for ever: a new guide takes the next.
+const fn place(guide: GraphInput) -> Option<usize> {
+    match guide {
+        GraphInput::Color | GraphInput::Mask => None,
+        GraphInput::Normal => Some(0),
+        GraphInput::Depth => Some(1),
+        GraphInput::Motion => Some(2),
+        GraphInput::MotionForward => Some(3),
+        GraphInput::RestPosition => Some(4),
+        GraphInput::ObjectId => Some(5),
+        GraphInput::Flow => Some(6),
+    }
+}
+
+/// A guide that may be a clip.
+struct Named {
+    guide: GraphInput,
+    name: CString,
+    label: CString,
+}
+
 /// The guides that may be clips, in the order of inputs.
-pub const GUIDES: [GraphInput; 5] = [
-    GraphInput::Normal,
-    GraphInput::Depth,
-    GraphInput::Motion,
-    GraphInput::MotionForward,
-    GraphInput::RestPosition,
-];
+static CLIPS: LazyLock<Vec<Named>> = LazyLock::new(|| {
+    let mut guides: Vec<GraphInput> =
+        GraphInput::GUIDES.into_iter().filter(|g| place(*g).is_some()).collect();
+    guides.sort_by_key(|guide| place(*guide));
+    let named =
+        |guide: GraphInput| Named { guide, name: text(&in_one_word(guide.id())), label: text(guide.label()) };
+    guides.into_iter().map(named).collect()
+});
+
+/// The guides that may be clips, in the order of inputs.
+pub fn guides() -> impl Iterator<Item = GraphInput> {
+    CLIPS.iter().map(|clip| clip.guide)
+}
 
 /// Name of the clip that gives a guide.
 pub fn guide_clip(guide: GraphInput) -> Option<&'static CStr> {
-    match guide {
-        GraphInput::Normal => Some(c"Normal"),
-        GraphInput::Depth => Some(c"Depth"),
-        GraphInput::Motion => Some(MOTION),
-        GraphInput::MotionForward => Some(MOTION_FORWARD),
-        GraphInput::RestPosition => Some(c"RestPosition"),
-        _ => None,
-    }
+    CLIPS.iter().find(|clip| clip.guide == guide).map(|clip| clip.name.as_c_str())
 }
 
-/// What people read of the clip that gives a guide, where it is not its name.
+/// The label of the clip that gives a guide.
 pub fn guide_label(guide: GraphInput) -> Option<&'static CStr> {
-    match guide {
-        GraphInput::MotionForward => Some(c"Motion forward"),
-        GraphInput::RestPosition => Some(c"Rest position"),
-        other => guide_clip(other),
-    }
+    CLIPS.iter().find(|clip| clip.guide == guide).map(|clip| clip.label.as_c_str())
 }
 
-/// Whether the instance has a clip of this name, and the host does not say that it is open.
+/// True where the instance has a clip of this name, and the host does not say that it is open.
 pub fn is_connected(host: &Host, instance: Handle, name: &CStr) -> bool {
     Clip::of(host, instance, name).is_some_and(|clip| !clip.is_open())
+}
+
+/// An id as the names of clips are written: `rest_position` is `RestPosition`.
+fn in_one_word(id: &str) -> String {
+    let capital = |word: &str| word[..1].to_ascii_uppercase() + &word[1..];
+    id.split('_').map(capital).collect()
+}
+
+/// Text without what C strings cannot hold.
+fn text(text: &str) -> CString {
+    CString::new(text.replace('\0', " ")).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clips_of_guides_have_names_of_their_own() {
+        let names: Vec<&CStr> = CLIPS.iter().map(|clip| clip.name.as_c_str()).collect();
+        let known = [c"Normal", c"Depth", MOTION, MOTION_FORWARD, c"RestPosition", c"ObjectId", c"Flow"];
+        assert_eq!(names, known);
+        let places: Vec<Option<usize>> = guides().map(place).collect();
+        assert_eq!(places, (0..names.len()).map(Some).collect::<Vec<_>>());
+        assert_eq!(guide_label(GraphInput::ObjectId), Some(c"Object id"));
+    }
 }

@@ -142,9 +142,17 @@ fn clips(effect: &Effect, general: bool) -> Vec<Described> {
         clips.push(Described { components: &COMPONENTS[2..], mask: true, optional: true, ..clip(MASK) });
         clips.extend(effect.guides.iter().filter_map(|guide| {
             let name = guide_clip(*guide)?;
-            // One channel holds no vector.
-            let vectors = matches!(guide.kind(), ImageKind::Motion | ImageKind::Position);
-            let components = if vectors { &COMPONENTS[..2] } else { &COMPONENTS };
+            let components: &[&CStr] = match guide.kind() {
+                // One channel holds no vector, and three have no place for its strength.
+                ImageKind::Motion | ImageKind::Position => &COMPONENTS[..2],
+                ImageKind::Flow => &COMPONENTS[..1],
+                ImageKind::Color
+                | ImageKind::Scalar
+                | ImageKind::Tensor
+                | ImageKind::Normal
+                | ImageKind::Depth
+                | ImageKind::ObjectId => &COMPONENTS,
+            };
             let label = guide_label(*guide).unwrap_or(name);
             Some(Described { label, components, optional: true, temporal: true, ..clip(name) })
         }));

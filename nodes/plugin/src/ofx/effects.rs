@@ -5,7 +5,7 @@
 //! the first node under a prefix, so that neither can ever take the other's name) and the few that an
 //! image effect adds itself.
 
-use super::clips::GUIDES;
+use super::clips::guides;
 use super::motion::{MOTION_OPTIONS, estimate};
 use isophote::engine::Support;
 use isophote::frames::Frames;
@@ -186,7 +186,8 @@ impl Effect {
             form,
             groups: Vec::new(),
             controls: Vec::new(),
-            guides: GUIDES.into_iter().filter(|guide| nodes.iter().any(|node| reads(node, *guide))).collect(),
+            // The second node, if there is one, works on what the first makes.
+            guides: guides().filter(|guide| reads(nodes[0], *guide)).collect(),
             temporal: nodes.iter().any(|node| node.is_steady()),
             local: [true; 2],
             nodes,
@@ -295,7 +296,7 @@ impl Effect {
         let ids: Vec<NodeId> =
             self.nodes.iter().map(|node| graph.add(node.id, node.id)).collect::<isophote::Result<_>>()?;
         for (node, id) in self.nodes.iter().zip(&ids) {
-            for input in [GraphInput::Color].into_iter().chain(GUIDES).filter(|input| reads(node, *input)) {
+            for input in [GraphInput::Color].into_iter().chain(guides()).filter(|input| reads(node, *input)) {
                 graph.connect_input(input, *id, input.id())?;
             }
         }

@@ -271,7 +271,14 @@ impl<'h> Fetched<'h> {
         match input {
             GraphInput::Normal => self.channels >= 3,
             GraphInput::RestPosition => self.channels >= 3 && is_float,
-            _ => true,
+            // Its strength is in alpha.
+            GraphInput::Flow => self.channels == 4,
+            GraphInput::Color
+            | GraphInput::Depth
+            | GraphInput::ObjectId
+            | GraphInput::Mask
+            | GraphInput::Motion
+            | GraphInput::MotionForward => true,
         }
     }
 

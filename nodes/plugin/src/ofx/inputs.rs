@@ -3,7 +3,7 @@
 //! The images of other frames are fetched when they are read and given back at once. None is kept from one render to the
 //! next: hosts do not tell effects when the pictures of other frames change.
 
-use super::clips::{GUIDES, MOTION, MOTION_FORWARD, SOURCE, guide_clip};
+use super::clips::{MOTION, MOTION_FORWARD, SOURCE, guide_clip};
 use super::effects::Effect;
 use super::frame::{Frame, is_endless};
 use super::host::{Host, Outcome, Properties};
@@ -78,8 +78,7 @@ pub fn fetch_guides<'h>(
 ) -> Outcome<Vec<(GraphInput, Fetched<'h>)>> {
     let mut guides = Vec::new();
     for guide in &effect.guides {
-        let is_motion = matches!(guide, GraphInput::Motion | GraphInput::MotionForward);
-        if (wants_motion || !is_motion)
+        if (wants_motion || !guide.is_motion())
             && let Some(name) = guide_clip(*guide)
             && let Some(image) = fetch(host, instance, name, time)?
             && image.suits(*guide)
@@ -97,7 +96,7 @@ impl<'h> Inputs<'h> {
         Guides::of(|guide| match guide {
             GraphInput::Motion => self.convention.among(Way::Backward, counts).is_some(),
             GraphInput::MotionForward => self.convention.among(Way::Forward, counts).is_some(),
-            guide => GUIDES.contains(&guide) && self.guide(guide).is_some(),
+            guide => self.guide(guide).is_some(),
         })
     }
 
@@ -172,8 +171,9 @@ impl<'h> Inputs<'h> {
     }
 
     fn read_guide(&self, guide: GraphInput, image: &Fetched<'_>, window: Rect) -> Outcome<Image> {
-        // Beside what it holds there is no object.
-        let beyond = if guide == GraphInput::RestPosition { Beyond::Zero } else { Beyond::Edge };
+        // Beside what they hold there is no object, and nothing is painted.
+        let is_bounded = matches!(guide, GraphInput::RestPosition | GraphInput::Flow);
+        let beyond = if is_bounded { Beyond::Zero } else { Beyond::Edge };
         self.of_field(window, |window| image.read(&self.frame, window, guide, beyond))
     }
 

@@ -178,7 +178,7 @@ enum By {
     Mean,
     /// As means within a surface.
     Surface,
-    /// By the one in the middle: what lies between two vectors or points may be neither.
+    /// By the one in the middle: what lies between two vectors, points or numbers of objects may be neither.
     Middle,
 }
 
@@ -186,8 +186,11 @@ impl By {
     fn input(input: GraphInput) -> Self {
         match input {
             GraphInput::Depth => Self::Surface,
-            GraphInput::Motion | GraphInput::MotionForward | GraphInput::RestPosition => Self::Middle,
-            _ => Self::Mean,
+            GraphInput::ObjectId
+            | GraphInput::Motion
+            | GraphInput::MotionForward
+            | GraphInput::RestPosition => Self::Middle,
+            GraphInput::Color | GraphInput::Normal | GraphInput::Mask | GraphInput::Flow => Self::Mean,
         }
     }
 }

@@ -28,7 +28,8 @@ export interface Graph {
   output: string;
 }
 
-export type Look = Preset | Graph;
+/** A preset, a graph, or a name: the id of a node, or `look:` and the id of a look. */
+export type Look = Preset | Graph | string;
 
 export interface Port {
   id: string;
@@ -68,8 +69,19 @@ export interface Node {
   output: Port;
 }
 
+/** A picture that may enter a graph beside the colour. */
+export interface GuideInfo {
+  id: Guide;
+  label: string;
+  doc: string;
+  kind: Port["kind"];
+  /** Values a pixel. */
+  channels: number;
+}
+
 export interface Catalogue {
   nodes: Node[];
+  guides: GuideInfo[];
 }
 
 export type Guide =

@@ -6,10 +6,8 @@ import { Painter } from "./painter.js";
 import { Planner } from "./planner.js";
 import { Stylizer } from "./stylizer.js";
 
-const GUIDES = ["normal", "depth", "object_id", "mask", "flow", "motion", "motion_forward", "rest_position"];
-
-/** Guides that may be pictures of a page. */
-const OF_EIGHT_BITS = ["mask", "flow"];
+/** Kinds of guides that may be pictures of a page; the others hold numbers beyond 0 to 1. */
+const OF_EIGHT_BITS = ["scalar", "flow"];
 
 /** The planner with a graphics device. */
 export class Isophote {
@@ -48,7 +46,7 @@ export class Isophote {
     return new Isophote(planner, opened, { isSoftware: found.info?.isFallbackAdapter ?? false });
   }
 
-  /** All nodes with their inputs and parameters. */
+  /** All nodes with their inputs and parameters, and the guides. */
   get catalogue() {
     this.#catalogue ??= this.planner.ask({ ask: "catalogue" }).json;
     return this.#catalogue;
@@ -75,10 +73,11 @@ export class Isophote {
   async apply(look, inputs, options = {}) {
     const sources = "color" in inputs ? inputs : { color: inputs };
     const { width, height } = extent(sources.color);
-    const guides = GUIDES.filter((guide) => sources[guide] !== undefined);
-    const coarse = guides.find((guide) => !(sources[guide] instanceof GPUTexture) && !OF_EIGHT_BITS.includes(guide));
+    const given = this.catalogue.guides.filter(({ id }) => sources[id] !== undefined);
+    const coarse = given.find(({ id, kind }) => !(sources[id] instanceof GPUTexture) && !OF_EIGHT_BITS.includes(kind));
+    const guides = given.map(({ id }) => id);
     if (coarse !== undefined) {
-      throw new Error(`the guide '${coarse}' holds numbers that a picture of a page cannot: give a texture of floats`);
+      throw new Error(`the guide '${coarse.id}' holds numbers that a picture of a page cannot: give a texture of floats`);
     }
     const { precision, frame, origin, scale } = options;
     return apply(this, look, picture({ width, height, guides, precision, frame, origin, scale }), sources, options);
