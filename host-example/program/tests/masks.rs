@@ -5,7 +5,7 @@ mod mattes;
 mod support;
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use exr::prelude::*;
 use image::{GrayImage, Luma, Rgb, RgbImage, Rgba, RgbaImage};
@@ -57,8 +57,16 @@ fn the_result_is_used_where_the_mask_is() {
     }
     assert!(tried.iter().all(|count| *count >= 16), "{tried:?}");
     assert!(before.iter().zip(&all).filter(|(a, b)| a != b).count() > PIXELS / 2);
+}
 
-    // A graph that has no mask of its own is mixed in the same way.
+#[test]
+fn graphs_are_masked_as_nodes_are() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    save_usual(&at("in.exr"));
+    apply(folder.path(), "in.exr", "masked.exr", &["--mask", "cryptomatte:hero"]);
+    let [before, masked] = ["in.exr", "masked.exr"].map(|name| rgb(&at(name)));
+    // One that has no mask of its own is mixed in the same way.
     let graph = r#"{"format": "isophote-graph", "version": 1, "nodes": [
         {"name": "a", "node": "gaussian", "inputs": {"color": "@color"}}], "output": "a"}"#;
     fs::write(at("graph.json"), graph).expect("the folder is writable");
@@ -152,8 +160,14 @@ fn files_are_masks() {
     assert!(mask("small.png").is_err_and(|e| e.contains("23x16") && e.contains("24x16")));
     refused(folder.path(), &["in.png", "no.png", "--mask", "small.png"], &["small.png", "23x16"]);
     refused(folder.path(), &["in.png", "no.png", "--mask", "m.####.png"], &["one picture"]);
+}
 
-    // Each frame has its own, or all have the same.
+#[test]
+fn each_frame_has_its_own_mask_or_all_have_the_same() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let (w, h) = (24, 16);
+    picture(w, h).save(at("in.png")).expect("the picture can be written");
     for frame in 1..=3 {
         picture(w, h).save(at(&format!("in.{frame:04}.png"))).expect("the picture can be written");
         let shown = |x: u32, _| Luma([if x / 8 == frame - 1 { 255 } else { 0 }]);
@@ -202,40 +216,75 @@ fn layers_of_data_are_no_pictures() {
     refused(folder.path(), &["in.exr", "no.exr", "--force-layer"], &["--layer"]);
 }
 
+/// A picture with objects, and what is made of it.
+struct Shot(tempfile::TempDir);
+
+impl Shot {
+    fn new() -> Self {
+        let folder = folder();
+        save_usual(&folder.path().join("in.exr"));
+        Self(folder)
+    }
+
+    fn at(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn run(&self, args: &[&str]) {
+        succeeds(isophote().current_dir(self.0.path()).arg("apply").args(args));
+    }
+
+    /// The picture under one style.
+    fn alone(&self, style: &str, output: &str, more: &[&str]) -> Vec<[f32; 3]> {
+        self.run(&[&[style, "in.exr", output, "--backend", "cpu"], more].concat());
+        rgb(&self.at(output))
+    }
+
+    /// The picture under a list of looks.
+    fn layered(&self, looks: &str) -> Vec<[f32; 3]> {
+        fs::write(self.at("looks.json"), looks).expect("the folder is writable");
+        self.run(&["--layered", "looks.json", "in.exr", "out.exr", "--force", "--backend", "cpu"]);
+        rgb(&self.at("out.exr"))
+    }
+}
+
 #[test]
 fn looks_are_laid_over_each_other() {
-    let folder = folder();
-    let at = |name: &str| folder.path().join(name);
-    save_usual(&at("in.exr"));
-    let write = |text: &str| fs::write(at("looks.json"), text).expect("the folder is writable");
-    let run = |args: &[&str]| succeeds(isophote().current_dir(folder.path()).arg("apply").args(args)).1;
-    let alone = |style: &str, output: &str, more: &[&str]| {
-        run(&[&[style, "in.exr", output, "--backend", "cpu"], more].concat());
-        rgb(&at(output))
-    };
-    let layered = || {
-        run(&["--layered", "looks.json", "in.exr", "out.exr", "--force", "--backend", "cpu"]);
-        rgb(&at("out.exr"))
-    };
-    let before = rgb(&at("in.exr"));
-    let soft = alone("gaussian", "soft.exr", &["--set", "sigma=3"]);
-    let drawn = alone("cartoon", "drawn.exr", &[]);
+    let shot = Shot::new();
+    let soft = shot.alone("gaussian", "soft.exr", &["--set", "sigma=3"]);
+    let drawn = shot.alone("cartoon", "drawn.exr", &[]);
     let hero = coverage(&["hero"]);
-
     // Complementary masks: each single result inside its own, made from the picture and not from each other.
-    write(
+    let layered = shot.layered(
         r#"[{"style": "gaussian", "params": {"sigma": 3}, "mask": "cryptomatte:hero"},
             {"style": "cartoon", "mask": "cryptomatte:hero", "invert": true}]"#,
     );
-    for (pixel, (out, share)) in layered().iter().zip(&hero).enumerate() {
+    for (pixel, (out, share)) in layered.iter().zip(&hero).enumerate() {
         match *share {
             1.0 => assert_eq!(*out, soft[pixel], "{pixel}"),
             0.0 => assert_eq!(*out, drawn[pixel], "{pixel}"),
             _ => assert!(out.iter().all(|v| v.is_finite())),
         }
     }
+    // One look by itself is what --mask gives.
+    let one = shot.layered(r#"[{"style": "gaussian", "params": {"sigma": 3}, "mask": "cryptomatte:hero"}]"#);
+    let same = shot.alone("gaussian", "same.exr", &["--set", "sigma=3", "--mask", "cryptomatte:hero"]);
+    assert_eq!(one, same);
+    // Over a whole look.
+    let over = shot.layered(
+        r#"[{"style": "cartoon"}, {"style": "gaussian", "params": {"sigma": 3}, "mask": "cryptomatte:hero"}]"#,
+    );
+    assert!((0..PIXELS).all(|at| hero[at] != 0.0 || over[at] == drawn[at]));
+}
 
-    // Later ones cover earlier ones; a preset's parameters give way; a mask file lies beside the looks.
+#[test]
+fn later_looks_cover_earlier_ones() {
+    let shot = Shot::new();
+    let at = |name: &str| shot.at(name);
+    let before = rgb(&at("in.exr"));
+    let soft = shot.alone("gaussian", "soft.exr", &["--set", "sigma=3"]);
+    let drawn = shot.alone("cartoon", "drawn.exr", &[]);
+    // A preset's parameters give way; a mask file lies beside the looks.
     fs::create_dir(at("looks")).expect("a folder");
     fs::write(at("looks/soft.json"), r#"{"style": "gaussian", "parameters": {"sigma": 9}}"#)
         .expect("a preset");
@@ -248,7 +297,7 @@ fn looks_are_laid_over_each_other() {
             {"preset": "soft.json", "params": {"sigma": 3}, "mask": "left.png"}]"#,
     )
     .expect("the folder is writable");
-    run(&["--layered", "looks/looks.json", "in.exr", "beside.exr", "--backend", "cpu"]);
+    shot.run(&["--layered", "looks/looks.json", "in.exr", "beside.exr", "--backend", "cpu"]);
     let any = coverage(&["bunny", "hero", "props/barrel", "props/box", "a,b*"]);
     for (pixel, out) in rgb(&at("beside.exr")).iter().enumerate() {
         match (pixel % SIZE.0 < 12, any[pixel]) {
@@ -258,18 +307,6 @@ fn looks_are_laid_over_each_other() {
             _ => {}
         }
     }
-
-    // One look by itself is what --mask gives.
-    write(r#"[{"style": "gaussian", "params": {"sigma": 3}, "mask": "cryptomatte:hero"}]"#);
-    let one = layered();
-    let same = alone("gaussian", "same.exr", &["--set", "sigma=3", "--mask", "cryptomatte:hero"]);
-    assert_eq!(one, same);
-    // Over a whole look.
-    write(
-        r#"[{"style": "cartoon"}, {"style": "gaussian", "params": {"sigma": 3}, "mask": "cryptomatte:hero"}]"#,
-    );
-    let over = layered();
-    assert!((0..PIXELS).all(|at| hero[at] != 0.0 || over[at] == drawn[at]));
 }
 
 #[test]

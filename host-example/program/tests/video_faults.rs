@@ -133,7 +133,18 @@ fn videos_that_are_cut_short_are_not_written_in_silence() {
         let (text, said) = succeeds(&mut apply(at, &[name, &out]));
         assert!(text.starts_with("50 frames written") && said.is_empty(), "{name}: {text}{said}");
     }
-    // The numbers that programs get say the same.
+}
+
+#[test]
+fn streams_that_are_cut_short_are_not_written_in_silence() {
+    if !has_ffmpeg() {
+        return;
+    }
+    let folder = folder();
+    let at = folder.path();
+    clip(at, "a.y4m", "-pix_fmt yuv420p");
+    cut(at, "a.y4m", "cut.y4m", 0.405);
+    // The numbers that programs get say the same as the sentences.
     let output = apply(at, &["cut.y4m", "out.mp4", "--json"]).output().expect("the program runs");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     let end = text.lines().last().expect("an end");

@@ -5,6 +5,7 @@
 mod support;
 
 use std::fs;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
@@ -86,6 +87,12 @@ fn a_photograph_is_dropped_looked_at_saved_reopened_and_exported() {
     again.close();
     assert_eq!(again.said(), "");
 
+    is_what_the_command_line_makes(folder.path());
+}
+
+/// Compares what was exported with what `apply` makes of the preset.
+fn is_what_the_command_line_makes(folder: &Path) {
+    let at = |name: &str| folder.join(name);
     let mut apply = isophote();
     apply.arg("apply").arg("--preset").arg(at("mine.json")).arg(at("photo.png")).arg(at("apply.png"));
     succeeds(&mut apply);

@@ -52,10 +52,15 @@ pub fn run(library: &Library, subject: &Subject, picture: &Pixels, runs: u32) ->
         once()?;
     }
     let measured: Vec<(f64, Vec<PassTime>)> = (0..runs).map(|_| once()).collect::<Result<_>>()?;
+    Ok(entry(subject, size, &measured))
+}
+
+/// Medians of the runs that were measured.
+fn entry(subject: &Subject, size: (u32, u32), measured: &[(f64, Vec<PassTime>)]) -> Entry {
     let seconds = |at: usize| median(measured.iter().filter_map(|(_, t)| Some(t.get(at)?.seconds)).collect());
     let passes = measured.first().map_or(&[][..], |(_, times)| times);
     let total = median(measured.iter().map(|(_, times)| times.iter().map(|t| t.seconds).sum()).collect());
-    Ok(Entry {
+    Entry {
         node: subject.label.clone(),
         backend: "cpu",
         size,
@@ -73,5 +78,5 @@ pub fn run(library: &Library, subject: &Subject, picture: &Pixels, runs: u32) ->
                 work: Some((pass.operations, pass.bytes as f64)),
             })
             .collect(),
-    })
+    }
 }

@@ -128,14 +128,7 @@ pub fn run(args: &BenchArgs) -> Result<()> {
     };
     let mut gpu = gpu.map(|gpu| gpu::Bench::new(gpu, args.precision.precision));
     let on_cpu = args.backend != Some(BenchBackend::Gpu);
-    let pool = rayon::ThreadPoolBuilder::new().build();
-    let pool = pool.map_err(|e| Error::failure(e, "close other programs"))?;
-    let machine = Machine::new(
-        pool.current_num_threads(),
-        on_cpu.then(|| peak::measure(Level::new(), &pool)),
-        gpu.as_ref().map(gpu::Bench::adapter),
-    );
-    drop(pool);
+    let machine = machine(on_cpu, gpu.as_ref())?;
     let shown = match (args.json, args.markdown) {
         (true, _) => Shown::Json,
         (_, true) => Shown::Markdown,
@@ -159,6 +152,14 @@ pub fn run(args: &BenchArgs) -> Result<()> {
         files::write_bytes(path, args.force.existing(), report.json()?.as_bytes())?;
     }
     report.print_end()
+}
+
+/// Machine that times are taken on; with the most that its cores do if `on_cpu`.
+fn machine(on_cpu: bool, gpu: Option<&gpu::Bench>) -> Result<Machine> {
+    let pool = rayon::ThreadPoolBuilder::new().build();
+    let pool = pool.map_err(|e| Error::failure(e, "close other programs"))?;
+    let peak = on_cpu.then(|| peak::measure(Level::new(), &pool));
+    Ok(Machine::new(pool.current_num_threads(), peak, gpu.map(gpu::Bench::adapter)))
 }
 
 /// A number of seconds, 0 or more.

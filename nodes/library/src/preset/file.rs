@@ -66,19 +66,7 @@ impl Preset {
         let Value::Object(mut file) = json else {
             return Err(Fault::format(place, "is no preset: an object is wanted", fix));
         };
-        let mut faults = Vec::new();
-        let keys = [title::KEYS, KEYS].concat();
-        for key in file.keys().filter(|key| !keys.contains(&key.as_str())) {
-            let known = nearest_name(key, keys.iter().copied()).map_or_else(
-                || format!("the keys are {}", keys.join(", ")),
-                |near| format!("did you mean '{near}'?"),
-            );
-            faults.push(Fault::format(
-                place,
-                format!("has an unknown key '{}'", key.escape_default()),
-                known,
-            ));
-        }
+        let mut faults = unknown_keys(place, &file);
         let title = Title::take(place, &mut file, &mut faults);
         let style = match file.remove("style") {
             Some(Value::String(style)) => style,
@@ -155,6 +143,20 @@ impl Preset {
         file.insert(parameters.into(), params.into());
         file
     }
+}
+
+/// Faults of the keys of a file that are not known, each with the nearest one that is.
+fn unknown_keys(place: &str, file: &Map<String, Value>) -> Vec<Fault> {
+    let keys = [title::KEYS, KEYS].concat();
+    let unknown = file.keys().filter(|key| !keys.contains(&key.as_str()));
+    let fault = |key: &String| {
+        let known = nearest_name(key, keys.iter().copied()).map_or_else(
+            || format!("the keys are {}", keys.join(", ")),
+            |near| format!("did you mean '{near}'?"),
+        );
+        Fault::format(place, format!("has an unknown key '{}'", key.escape_default()), known)
+    };
+    unknown.map(fault).collect()
 }
 
 /// True for a name of a style that is a graph itself, as JSON.
