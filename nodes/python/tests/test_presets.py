@@ -134,10 +134,10 @@ def test_every_node_opens_by_its_id() -> None:
 
 
 def test_values_are_of_the_types_that_the_catalogue_names() -> None:
-    preset = isophote.Preset.from_dict({**PRESET, "parameters": {**PRESET["parameters"], "line_opacity": 1}})
+    preset = isophote.Preset.from_dict(PRESET)
     values = preset.values(isophote.catalogue()["cartoon"], 1006)
     assert (values["posterize"], values["abstraction"], values["detail"]) == (4, "full", 0.2)
-    assert len(values["line_color"]) == 4 and values["darks"] == 0.1 and values["line_opacity"] == 1
+    assert len(values["line_color"]) == 4 and values["darks"] == 0.1
 
 
 def test_every_guide_is_an_argument() -> None:
