@@ -44,7 +44,8 @@ fn picture(port: &Port) -> Option<GraphInput> {
 mod tests {
     use super::*;
     use crate::guides::Guides;
-    use crate::plan::{Planned, Request};
+    use crate::plan::planned::Planned;
+    use crate::plan::request::Request;
 
     #[test]
     fn every_node_can_be_planned_by_its_id() {
